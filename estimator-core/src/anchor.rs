@@ -1,0 +1,109 @@
+//! Drift anchor: the moving average of what the IMUs say beyond the bend sensors (paper, eq. 2 and 3).
+
+use crate::angle::Turns;
+
+/// When the anchor averages and when it corrects; the same for all segments.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct AnchorRule {
+    /// Length of the window, in values of the anchor's own rate.
+    pub window: u16,
+    /// Samples whose mean makes one value of the window: the sample rate over the anchor's rate, at least 1.
+    pub decimation: u16,
+    /// Offsets up to this size are left alone.
+    pub threshold: Turns,
+}
+
+/// Moving average over `window` values of θ_imu,i − θ_bend,i for one segment, of up to `W` values.
+///
+/// As both means of the paper run over the same samples, offset_i = MA(θ_imu,i) − MA(θ_bend,i) is one mean of the
+/// differences. The sum is of whole numbers and therefore exact however long it runs. Where a sample lacks one of the
+/// two, its place in the window stays empty; when the whole window is empty, the newest offset holds.
+///
+/// ```
+/// use estimator_core::{Anchor, AnchorRule, Turns};
+///
+/// let rule = AnchorRule { window: 2, decimation: 1, threshold: Turns::ZERO };
+/// let mut anchor = Anchor::<2>::new();
+/// for value in [1, 3, 5] {
+///     anchor.push(&rule, Some(Turns::from_bits(value)));
+/// }
+/// assert_eq!(anchor.offset(), Some(Turns::from_bits(4)));
+/// ```
+#[derive(Debug, Clone, Copy)]
+pub struct Anchor<const W: usize> {
+    window: [Option<Turns>; W],
+    oldest: usize,
+    mean: Mean,
+    group: Mean,
+    group_ticks: u16,
+    offset: Option<Turns>,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Mean {
+    sum: Turns,
+    count: u16,
+}
+
+impl Mean {
+    const EMPTY: Self = Self { sum: Turns::ZERO, count: 0 };
+
+    fn add(&mut self, value: Option<Turns>) {
+        if let Some(value) = value {
+            self.sum = self.sum + value;
+            self.count += 1;
+        }
+    }
+
+    fn remove(&mut self, value: Option<Turns>) {
+        if let Some(value) = value {
+            self.sum = self.sum - value;
+            self.count -= 1;
+        }
+    }
+
+    fn value(self) -> Option<Turns> {
+        (self.count > 0).then(|| self.sum.mean_of(self.count))
+    }
+}
+
+impl<const W: usize> Anchor<W> {
+    /// An anchor that has seen nothing.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self { window: [None; W], oldest: 0, mean: Mean::EMPTY, group: Mean::EMPTY, group_ticks: 0, offset: None }
+    }
+
+    /// Takes this sample's difference θ_imu,i − θ_bend,i, or `None` where one of the two is unknown.
+    pub fn push(&mut self, rule: &AnchorRule, difference: Option<Turns>) {
+        self.group.add(difference);
+        self.group_ticks += 1;
+        if self.group_ticks < rule.decimation {
+            return;
+        }
+        let newest = self.group.value();
+        (self.group, self.group_ticks) = (Mean::EMPTY, 0);
+        if let Some(place) = self.window.get_mut(self.oldest) {
+            self.mean.remove(*place);
+            self.mean.add(newest);
+            *place = newest;
+        }
+        self.oldest += 1;
+        if self.oldest >= usize::from(rule.window) {
+            self.oldest = 0;
+        }
+        self.offset = self.mean.value().or(self.offset);
+    }
+
+    /// The newest offset; `None` before the first.
+    #[must_use]
+    pub const fn offset(&self) -> Option<Turns> {
+        self.offset
+    }
+}
+
+impl<const W: usize> Default for Anchor<W> {
+    fn default() -> Self {
+        Self::new()
+    }
+}

@@ -1,0 +1,52 @@
+//! V–Orient map: a bend sensor's ADC counts to the bend angle of its segment (paper, eq. 1).
+
+use crate::scalar::Scalar;
+
+/// Volts of one ADC count: 3.3 V over 12 bits.
+pub const VOLTS_PER_COUNT: f64 = 3.3 / 4095.0;
+
+/// Quadratic map θ = c2 V² + c1 V + c0 with V = counts · 3.3 / 4095, θ in rad.
+///
+/// Held about the middle of the sensor's own voltage range and scaled to it: θ = b0 + b1 u + b2 u² with
+/// u = (counts − `center`) / 2^`shift` within ±1. So the coefficients stay as small as the angles themselves, where
+/// c2, c1 and c0 of a sensor with a narrow range are large and cancel.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BendMap<S> {
+    /// Counts in the middle of the calibrated range.
+    pub center: u16,
+    /// Binary logarithm of half the range in counts, rounded up.
+    pub shift: u8,
+    /// b0, b1, b2, rad.
+    pub coefficients: [S; 3],
+}
+
+impl<S: Scalar> BendMap<S> {
+    /// From the table's `c2` (rad/V²), `c1` (rad/V), `c0` (rad) and the `volts` [lo, hi] that they were fitted on.
+    #[must_use]
+    pub fn from_volts(c2: f64, c1: f64, c0: f64, volts: [f64; 2]) -> Self {
+        let [lo, hi] = volts.map(|v| v / VOLTS_PER_COUNT);
+        let center = ((lo + hi) / 2.0) as u16;
+        let half_range = ((hi - lo) / 2.0) as u32;
+        let shift = half_range.checked_next_power_of_two().map_or(0, u32::trailing_zeros).clamp(1, 12);
+        let v0 = f64::from(center) * VOLTS_PER_COUNT;
+        let scale = f64::from(1_u32 << shift) * VOLTS_PER_COUNT;
+        let coefficients = [(c2 * v0 + c1) * v0 + c0, (2.0 * c2 * v0 + c1) * scale, c2 * scale * scale];
+        Self { center, shift: shift as u8, coefficients: coefficients.map(S::from_f64) }
+    }
+
+    /// Bend angle at `counts`, rad.
+    ///
+    /// ```
+    /// use estimator_core::BendMap;
+    ///
+    /// let map = BendMap::<f64>::from_volts(0.1, 0.5, -1.0, [0.5, 2.5]);
+    /// let volts = 2000.0 * 3.3 / 4095.0;
+    /// assert!((map.angle(2000) - (0.1 * volts * volts + 0.5 * volts - 1.0)).abs() < 1e-12);
+    /// ```
+    #[must_use]
+    pub fn angle(&self, counts: u16) -> S {
+        let u = S::from_fraction(i32::from(counts) - i32::from(self.center), u32::from(self.shift));
+        let [b0, b1, b2] = self.coefficients;
+        b0 + u * (b1 + u * b2)
+    }
+}
