@@ -25,7 +25,7 @@ impl<S: Scalar> BendMap<S> {
     #[must_use]
     pub fn from_volts(c2: f64, c1: f64, c0: f64, volts: [f64; 2]) -> Self {
         let [lo, hi] = volts.map(|v| v / VOLTS_PER_COUNT);
-        let center = ((lo + hi) / 2.0) as u16;
+        let center = f64::midpoint(lo, hi) as u16;
         let half_range = ((hi - lo) / 2.0) as u32;
         let shift = half_range.checked_next_power_of_two().map_or(0, u32::trailing_zeros).clamp(1, 12);
         let v0 = f64::from(center) * VOLTS_PER_COUNT;

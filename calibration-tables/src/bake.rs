@@ -1,0 +1,83 @@
+//! From the file's units to the estimator's parameters, for one sample rate.
+
+use estimator_core::{
+    AnchorRule, BendMap, COVARIANCE_LIMIT, Noise, OffsetAt, SENSORS_PER_SEGMENT, Scalar, Segment, Table, Turns,
+};
+
+use crate::file::{ArmFile, FileError, NoiseKeys, SegmentKeys, Side};
+
+/// A table's parameters in the number type `S`, for sessions of one sample rate.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Baked<S> {
+    segments: Vec<Segment<S>>,
+    tare_samples: u32,
+    anchor: AnchorRule,
+}
+
+impl<S> Baked<S> {
+    /// The parameters as the estimator takes them.
+    #[must_use]
+    pub fn table(&self) -> Table<'_, S> {
+        Table { segments: &self.segments, tare_samples: self.tare_samples, anchor: self.anchor }
+    }
+}
+
+impl ArmFile {
+    /// The estimator's parameters for samples at `rate_hz`: process noise per second becomes noise per sample, seconds
+    /// of tare become samples, and the anchor averages the samples that come between its own.
+    ///
+    /// # Errors
+    /// [`FileError::NotCalibrated`] on an arm description.
+    pub fn bake<S: Scalar>(&self, rate_hz: f64) -> Result<Baked<S>, FileError> {
+        self.bend_sensors()?;
+        let references = self.tare.heading_deg.iter().copied().chain(std::iter::repeat(0.0));
+        let segments = self.segments.iter().zip(references);
+        Ok(Baked {
+            segments: segments.map(|(segment, reference)| segment.bake(reference, rate_hz)).collect(),
+            tare_samples: samples(self.tare.seconds, rate_hz),
+            anchor: AnchorRule {
+                window: self.anchor.window,
+                decimation: (rate_hz / self.anchor.rate_hz).round().max(1.0) as u16,
+                threshold: Turns::from_rad(self.anchor.threshold_deg.to_radians()),
+            },
+        })
+    }
+}
+
+/// Samples in `seconds`; at least one where there is any time at all.
+fn samples(seconds: f64, rate_hz: f64) -> u32 {
+    if seconds > 0.0 { (seconds * rate_hz).round().max(1.0) as u32 } else { 0 }
+}
+
+impl SegmentKeys {
+    fn bake<S: Scalar>(&self, reference_deg: f64, rate_hz: f64) -> Segment<S> {
+        let mut bend = [None; SENSORS_PER_SEGMENT];
+        for (place, map) in bend.iter_mut().zip(self.bend.iter().flatten()) {
+            *place = Some(BendMap::from_volts(map.c2, map.c1, map.c0, map.volts.unwrap_or([0.0, 3.3])));
+        }
+        Segment {
+            length: S::from_f64(self.length_mm / 1000.0),
+            offset: S::from_f64(self.offset_mm / 1000.0),
+            offset_at: match self.offset_at {
+                Side::Start => OffsetAt::Start,
+                Side::End => OffsetAt::End,
+            },
+            bend,
+            reference: Turns::from_rad(reference_deg.to_radians()),
+            orient: self.orient_or_default().bake(rate_hz),
+            coord: self.coord_or_default().bake(rate_hz),
+        }
+    }
+}
+
+impl NoiseKeys {
+    /// Covariances as ratios to R_bend, which is all that the gains depend on.
+    fn bake<S: Scalar>(&self, rate_hz: f64) -> Noise<S> {
+        Noise {
+            q: S::from_f64((self.q / rate_hz / self.r_bend).min(COVARIANCE_LIMIT)),
+            r_imu: S::from_f64(self.r_imu / self.r_bend),
+            h_imu: S::from_f64(self.h_imu),
+            h_bend: S::from_f64(self.h_bend),
+        }
+    }
+}

@@ -1,0 +1,115 @@
+//! What the estimator can use, checked key by key.
+
+use std::ops::RangeInclusive;
+
+use estimator_core::{COVARIANCE_LIMIT, SENSORS_PER_SEGMENT};
+
+use crate::file::{ArmFile, BendKeys, FileError, MAX_SEGMENTS, MAX_WINDOW, NoiseKeys, SegmentKeys};
+
+/// Lengths that fixed point holds with room for the chain (m: ±32).
+const MAX_ARM_MM: f64 = 16_000.0;
+/// No segment bends further, rad; fixed point ends at ±32.
+const MAX_ANGLE: f64 = 10.0;
+/// r_imu over r_bend: below it fixed point has no digits left, above it the covariance has no room.
+const VARIANCE_RATIO: RangeInclusive<f64> = 1e-5..=COVARIANCE_LIMIT;
+/// Voltages that the ADC can read, with some room for rounding.
+const ADC_VOLTS: RangeInclusive<f64> = -0.001..=3.301;
+
+impl ArmFile {
+    pub(crate) fn check(&self) -> Result<(), FileError> {
+        let n = self.segments.len();
+        ensure((1..=MAX_SEGMENTS).contains(&n), "segment", &n, &format!("1 to {MAX_SEGMENTS} segments"))?;
+        within("rate_hz", self.rate_hz, 0.01..=10_000.0)?;
+        within("tare.seconds", self.tare.seconds, 0.0..=3600.0)?;
+        let headings = self.tare.heading_deg.len();
+        ensure([0, n].contains(&headings), "tare.heading_deg", &headings, &format!("{n} headings, one per segment"))?;
+        for (i, heading) in self.tare.heading_deg.iter().enumerate() {
+            within(&format!("tare.heading_deg[{}]", i + 1), *heading, -3600.0..=3600.0)?;
+        }
+        let window = self.anchor.window;
+        ensure((1..=MAX_WINDOW).contains(&window), "anchor.window", &window, &format!("1 to {MAX_WINDOW} values"))?;
+        within("anchor.threshold_deg", self.anchor.threshold_deg, 0.0..=360.0)?;
+        within("anchor.rate_hz", self.anchor.rate_hz, 0.01..=10_000.0)?;
+        for (i, segment) in self.segments.iter().enumerate() {
+            segment.check(&format!("segment[{}]", i + 1))?;
+        }
+        let length = self.length_mm();
+        ensure(length <= MAX_ARM_MM, "segment", &format!("{length} mm of arm"), &format!("at most {MAX_ARM_MM} mm"))
+    }
+}
+
+impl SegmentKeys {
+    fn check(&self, key: &str) -> Result<(), FileError> {
+        within(&format!("{key}.length_mm"), self.length_mm, 0.1..=MAX_ARM_MM)?;
+        within(&format!("{key}.offset_mm"), self.offset_mm, 0.0..=MAX_ARM_MM)?;
+        let sensors = self.bend.as_deref().unwrap_or_default();
+        let bend = format!("{key}.bend");
+        ensure(sensors.len() <= SENSORS_PER_SEGMENT, &bend, &sensors.len(), "at most two sensors, a and b")?;
+        for (j, sensor) in sensors.iter().enumerate() {
+            sensor.check(&format!("{bend}[{}]", j + 1))?;
+        }
+        self.orient.as_ref().map_or(Ok(()), |noise| noise.check(&format!("{key}.orient")))?;
+        self.coord.as_ref().map_or(Ok(()), |noise| noise.check(&format!("{key}.coord")))
+    }
+}
+
+impl BendKeys {
+    fn check(&self, key: &str) -> Result<(), FileError> {
+        for (name, value) in [("c0", self.c0), ("c1", self.c1), ("c2", self.c2)] {
+            within(&format!("{key}.{name}"), value, -1e4..=1e4)?;
+        }
+        within(&format!("{key}.rmse_deg"), self.rmse_deg.unwrap_or(0.0), 0.0..=360.0)?;
+        let Some([lo, hi]) = self.volts else { return Ok(()) };
+        let volts = format!("{key}.volts");
+        let in_order = ADC_VOLTS.contains(&lo) && ADC_VOLTS.contains(&hi) && lo < hi;
+        ensure(in_order, &volts, &format!("[{lo}, {hi}]"), "[lowest, highest] within 0 to 3.3 V")?;
+        let steepest = [lo, hi].map(|v| self.angle(v).abs()).into_iter().fold(0.0, f64::max);
+        within(&format!("{key}: largest angle within volts, rad"), steepest, 0.0..=MAX_ANGLE)?;
+        ensure(
+            self.is_monotonic_within([lo, hi]),
+            key,
+            &format!("a map that turns back at {:.3} V", self.turning_point()),
+            &format!("one that only rises or only falls from {lo} V to {hi} V"),
+        )
+    }
+
+    /// Bend angle at a voltage, rad.
+    #[must_use]
+    pub fn angle(&self, volts: f64) -> f64 {
+        (self.c2 * volts + self.c1) * volts + self.c0
+    }
+
+    /// Whether the map only rises or only falls between the two voltages.
+    #[must_use]
+    pub fn is_monotonic_within(&self, volts: [f64; 2]) -> bool {
+        let [at_lo, at_hi] = volts.map(|v| 2.0 * self.c2 * v + self.c1);
+        at_lo * at_hi > 0.0
+    }
+
+    /// The voltage where the map turns back, V; not finite for a straight line.
+    #[must_use]
+    pub fn turning_point(&self) -> f64 {
+        -self.c1 / (2.0 * self.c2)
+    }
+}
+
+impl NoiseKeys {
+    fn check(&self, key: &str) -> Result<(), FileError> {
+        within(&format!("{key}.q"), self.q, 0.0..=1e6)?;
+        within(&format!("{key}.r_bend"), self.r_bend, 1e-12..=1e6)?;
+        within(&format!("{key}.r_imu"), self.r_imu, 1e-12..=1e6)?;
+        within(&format!("{key}.r_imu / r_bend"), self.r_imu / self.r_bend, VARIANCE_RATIO)?;
+        within(&format!("{key}.h_imu"), self.h_imu, 0.1..=4.0)?;
+        within(&format!("{key}.h_bend"), self.h_bend, 0.1..=4.0)
+    }
+}
+
+fn ensure(holds: bool, key: &str, found: &impl ToString, expected: &str) -> Result<(), FileError> {
+    let error = || FileError::Value { key: key.to_owned(), found: found.to_string(), expected: expected.to_owned() };
+    if holds { Ok(()) } else { Err(error()) }
+}
+
+/// NaN is within no range.
+fn within(key: &str, value: f64, range: RangeInclusive<f64>) -> Result<(), FileError> {
+    ensure(range.contains(&value), key, &value, &format!("{:?} to {:?}", range.start(), range.end()))
+}

@@ -1,0 +1,223 @@
+//! The TOML file as it stands, read and written without loss.
+
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+/// The `format` that this crate reads and writes.
+const FORMAT: u32 = 1;
+/// Segments of the longest arm.
+pub const MAX_SEGMENTS: usize = 16;
+/// Values of the longest anchor window.
+pub const MAX_WINDOW: u16 = 1000;
+
+/// An arm description or a table. Key names and meanings are those of the file; angles in degrees, lengths in mm.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ArmFile {
+    /// Format number, 1.
+    pub format: u32,
+    /// Name of the arm.
+    pub arm: String,
+    /// Sample rate of the sessions that the arm usually records; a session's own time stamps come first.
+    pub rate_hz: f64,
+    /// How headings get their zero.
+    #[serde(default)]
+    pub tare: TareKeys,
+    /// The drift anchor.
+    #[serde(default)]
+    pub anchor: AnchorKeys,
+    /// The segments from the base to the tip.
+    #[serde(rename = "segment")]
+    pub segments: Vec<SegmentKeys>,
+}
+
+/// `[tare]`: the arm rests in its reference pose for the first `seconds`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct TareKeys {
+    /// Duration; 0 where headings are absolute already.
+    pub seconds: f64,
+    /// Heading of each segment's end in the reference pose; none: straight.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub heading_deg: Vec<f64>,
+}
+
+impl Default for TareKeys {
+    fn default() -> Self {
+        Self { seconds: 1.0, heading_deg: Vec::new() }
+    }
+}
+
+/// `[anchor]`: the paper's moving average.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct AnchorKeys {
+    /// Values in the window.
+    pub window: u16,
+    /// Offsets up to this size are left alone.
+    pub threshold_deg: f64,
+    /// Rate of the window's values; a faster session is averaged down to it.
+    pub rate_hz: f64,
+}
+
+impl Default for AnchorKeys {
+    fn default() -> Self {
+        Self { window: 100, threshold_deg: 0.5, rate_hz: 10.0 }
+    }
+}
+
+/// `[[segment]]`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SegmentKeys {
+    /// Arc length of the curved part.
+    pub length_mm: f64,
+    /// Length of the rigid connector.
+    pub offset_mm: f64,
+    /// Side of the connector.
+    pub offset_at: Side,
+    /// The bend sensors a and b, as many as there are; `None` in an arm description.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub bend: Option<Vec<BendKeys>>,
+    /// KF_orient's parameters, rad² and rad²/s; derived from the maps' `rmse_deg` where there are none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub orient: Option<NoiseKeys>,
+    /// KF_coord's parameters, m² and m²/s; derived as `orient` where there are none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub coord: Option<NoiseKeys>,
+}
+
+/// `offset_at`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Side {
+    /// The connector precedes the curved part.
+    Start,
+    /// The connector follows the curved part.
+    End,
+}
+
+/// One bend sensor's V–Orient map, θ = c2 V² + c1 V + c0 in rad.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BendKeys {
+    /// rad.
+    pub c0: f64,
+    /// rad/V.
+    pub c1: f64,
+    /// rad/V².
+    pub c2: f64,
+    /// Residual of the calibration.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rmse_deg: Option<f64>,
+    /// Lowest and highest voltage of the calibration, V; the whole 0…3.3 where it is not known.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub volts: Option<[f64; 2]>,
+}
+
+/// Parameters of one block of KF_orient (rad) or KF_coord (m).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct NoiseKeys {
+    /// Process noise per second.
+    pub q: f64,
+    /// Variance of the drift-corrected IMU's measurement.
+    pub r_imu: f64,
+    /// Variance of the bend sensors' measurement.
+    pub r_bend: f64,
+    /// H of the drift-corrected IMU.
+    #[serde(default = "one")]
+    pub h_imu: f64,
+    /// H of the bend sensors.
+    #[serde(default = "one")]
+    pub h_bend: f64,
+}
+
+fn one() -> f64 {
+    1.0
+}
+
+/// Why a file is no arm description or table.
+#[derive(Debug, thiserror::Error)]
+pub enum FileError {
+    /// The file cannot be read.
+    #[error("cannot be read: {0}")]
+    Read(#[from] std::io::Error),
+    /// It is not TOML, or a key is missing, unknown or of the wrong type. The text names line and column.
+    #[error("{}", .0.to_string().trim_end())]
+    Syntax(#[from] toml::de::Error),
+    /// The format number is from another time.
+    #[error("format = {0} is not known; this version reads format = {FORMAT}")]
+    Format(u32),
+    /// A value that the estimator cannot use.
+    #[error("{key} = {found}, expected {expected}")]
+    Value {
+        /// Where, such as `segment[2].bend[0].volts`, counted from 1.
+        key: String,
+        /// What stands there.
+        found: String,
+        /// What should.
+        expected: String,
+    },
+    /// A description where a table is needed.
+    #[error("segment[{0}] says nothing of its bend sensors: this is an arm description, not a table")]
+    NotCalibrated(usize),
+}
+
+impl ArmFile {
+    /// Reads and checks a file.
+    ///
+    /// # Errors
+    /// Any [`FileError`] but [`FileError::NotCalibrated`].
+    pub fn load(path: &Path) -> Result<Self, FileError> {
+        Self::parse(&std::fs::read_to_string(path)?)
+    }
+
+    /// Checks a file's text; a byte-order mark is accepted.
+    ///
+    /// # Errors
+    /// As [`ArmFile::load`].
+    pub fn parse(text: &str) -> Result<Self, FileError> {
+        let text = text.trim_start_matches('\u{feff}');
+        let version: Version = toml::from_str(text)?;
+        if version.format != FORMAT {
+            return Err(FileError::Format(version.format));
+        }
+        let file: Self = toml::from_str(text)?;
+        file.check()?;
+        Ok(file)
+    }
+
+    /// The file's text, from which [`ArmFile::parse`] gets the same values back to the last bit.
+    ///
+    /// # Panics
+    /// Never: every value of the format has a form in TOML.
+    #[must_use]
+    pub fn to_toml(&self) -> String {
+        toml::to_string(self).expect("every value of the format has a form in TOML")
+    }
+
+    /// Length of the straight arm, mm.
+    #[must_use]
+    pub fn length_mm(&self) -> f64 {
+        self.segments.iter().map(|segment| segment.length_mm + segment.offset_mm).sum()
+    }
+
+    /// Number of bend sensors on each segment.
+    ///
+    /// # Errors
+    /// [`FileError::NotCalibrated`] on an arm description.
+    pub fn bend_sensors(&self) -> Result<Vec<usize>, FileError> {
+        let sensors = |(i, segment): (usize, &SegmentKeys)| {
+            segment.bend.as_ref().map(Vec::len).ok_or(FileError::NotCalibrated(i + 1))
+        };
+        self.segments.iter().enumerate().map(sensors).collect()
+    }
+}
+
+/// The format number alone, so that a file of another format is told so and not that its keys are unknown.
+#[derive(Deserialize)]
+struct Version {
+    format: u32,
+}
