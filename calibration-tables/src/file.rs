@@ -165,6 +165,20 @@ pub enum FileError {
     NotCalibrated(usize),
 }
 
+impl FileError {
+    /// What to do about it.
+    #[must_use]
+    pub const fn remedy(&self) -> &'static str {
+        match self {
+            Self::Read(_) => "check the name and that you may read it; it must be a text file in UTF-8",
+            Self::Syntax(_) => "correct the line; the keys are listed in docs/FORMATS.md",
+            Self::Format(_) => "take a version of proprio that knows this format",
+            Self::Value { .. } => "correct the value, or make the table again with `proprio calibrate`",
+            Self::NotCalibrated(_) => "make a table of it with `proprio calibrate`, or write bend = [] if it has none",
+        }
+    }
+}
+
 impl ArmFile {
     /// Reads and checks a file.
     ///

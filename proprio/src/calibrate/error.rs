@@ -1,0 +1,163 @@
+//! Why no table can be made of a session, and what deserves a look although one can.
+
+/// Why no good table can be made of a session.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum CalibrationError {
+    /// The session has no bend sensor at all.
+    #[error("the session has no bend sensor")]
+    NoSensors,
+    /// A segment's sensor b is there without a.
+    #[error("column bend{segment}a_adc is missing, but bend{segment}b_adc is there")]
+    SensorBAlone {
+        /// The segment, from 1.
+        segment: usize,
+    },
+    /// Too few rows have truth, or a reading of one sensor.
+    #[error("{name} has {found} rows with both a reading and truth, expected at least {least}")]
+    TooFewRows {
+        /// The sensor or segment.
+        name: String,
+        /// Rows found.
+        found: usize,
+        /// Rows needed.
+        least: usize,
+    },
+    /// A segment hardly bends.
+    #[error("segment {segment} bends by only {range_deg:.1}° in all, expected at least {least_deg}°")]
+    SmallSweep {
+        /// The segment, from 1.
+        segment: usize,
+        /// From the smallest to the largest bend angle.
+        range_deg: f64,
+        /// Range needed.
+        least_deg: f64,
+    },
+    /// A bend sensor that does not move.
+    #[error("{name} is dead: its readings stay within {range} counts while the segment bends")]
+    Dead {
+        /// The sensor.
+        name: String,
+        /// From the lowest to the highest reading.
+        range: u16,
+    },
+    /// A bend sensor at the end of its range.
+    #[error("{name} is saturated: it reads {counts} in {percent:.1} % of the rows, over {span_deg:.0}° of bending")]
+    Saturated {
+        /// The sensor.
+        name: String,
+        /// The reading where it stays.
+        counts: u16,
+        /// Share of the rows.
+        percent: f64,
+        /// Range of the bend angles there.
+        span_deg: f64,
+    },
+    /// A bend sensor that follows another segment.
+    #[error("{name} follows segment {follows}, not its own: it is swapped with a sensor there")]
+    Swapped {
+        /// The sensor.
+        name: String,
+        /// The segment that it follows, from 1.
+        follows: usize,
+    },
+    /// A bend sensor that follows no segment.
+    #[error("{name} does not follow its segment: the map leaves {percent:.0} % of the bending unexplained")]
+    Unrelated {
+        /// The sensor.
+        name: String,
+        /// Share of the variance that is left.
+        percent: f64,
+    },
+    /// A map that turns back inside its own data.
+    #[error("{name} is not monotonic: its map turns back at {volts:.3} V, inside its data, by {back_deg:.1}°")]
+    NotMonotonic {
+        /// The sensor.
+        name: String,
+        /// Where it turns back.
+        volts: f64,
+        /// How far it goes back.
+        back_deg: f64,
+    },
+    /// An IMU that turns the wrong way.
+    #[error("imu{segment} is inverted: its heading falls when the arm turns clockwise")]
+    InvertedImu {
+        /// The segment, from 1.
+        segment: usize,
+    },
+    /// An IMU that follows another segment's end.
+    #[error("imu{segment} follows the end of segment {follows}, not its own: it is swapped with imu{follows}")]
+    SwappedImu {
+        /// The segment, from 1.
+        segment: usize,
+        /// The segment that it follows, from 1.
+        follows: usize,
+    },
+    /// An IMU that does not follow the arm.
+    #[error("imu{segment} does not follow the end of its segment")]
+    UnrelatedImu {
+        /// The segment, from 1.
+        segment: usize,
+    },
+}
+
+impl CalibrationError {
+    /// What to do about it.
+    #[must_use]
+    pub fn remedy(&self) -> String {
+        match self {
+            Self::NoSensors => {
+                "write bend = [] in each segment of the arm description: it is a table then, for imu_o".to_owned()
+            }
+            Self::SensorBAlone { .. } => "a segment's only sensor is called a: rename the column".to_owned(),
+            Self::TooFewRows { .. } => "record a longer sweep, with the camera seeing every segment".to_owned(),
+            Self::SmallSweep { .. } => "sweep every segment through its whole range, in both directions".to_owned(),
+            Self::Dead { name, .. } | Self::Unrelated { name, .. } => {
+                format!("check its wiring, or remove column {name}_adc to calibrate without it")
+            }
+            Self::Saturated { name, .. } | Self::NotMonotonic { name, .. } => {
+                format!("change its divider or bend the arm less, or remove column {name}_adc")
+            }
+            Self::Swapped { .. } => "exchange the two wires, or the two columns of the session".to_owned(),
+            Self::InvertedImu { .. } => "mount it with z up, or give the heading clockwise positive".to_owned(),
+            Self::SwappedImu { .. } => "exchange the two mux channels, or the two columns".to_owned(),
+            Self::UnrelatedImu { .. } => "check its mount, and that camera and IMUs share one clock".to_owned(),
+        }
+    }
+}
+
+/// What deserves a look although a table can be made.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum Warning {
+    /// A segment bends little.
+    #[error("segment {segment} bends by only {range_deg:.0}° in all; the maps say little beyond that")]
+    NarrowSweep {
+        /// The segment, from 1.
+        segment: usize,
+        /// From the smallest to the largest bend angle.
+        range_deg: f64,
+    },
+    /// A map that turns back at the edge of its data.
+    #[error("{name} turns back at {volts:.3} V, at the edge of its data, by {back_deg:.1}°; its range ends there")]
+    TurnsBack {
+        /// The sensor.
+        name: String,
+        /// Where it turns back.
+        volts: f64,
+        /// How far it goes back.
+        back_deg: f64,
+    },
+    /// A bend sensor that runs the other way than its like.
+    #[error(
+        "{name} is inverted: it runs against the sensors in its place on the other segments; its map allows for it"
+    )]
+    Inverted {
+        /// The sensor.
+        name: String,
+    },
+    /// An IMU without readings.
+    #[error("imu{segment} was not read; the sweep says nothing about it")]
+    ImuNotRead {
+        /// The segment, from 1.
+        segment: usize,
+    },
+}

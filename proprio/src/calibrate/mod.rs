@@ -1,0 +1,71 @@
+//! Calibration: an arm description and a session with camera truth become a table.
+//!
+//! 1. Each bend sensor's quadratic is fitted to the truth by least squares (paper, eq. 1), after checks that name a
+//!    sensor that is dead, saturated, swapped or bent back.
+//! 2. The session is replayed with these maps; what is left of the bend angles' and the anchored IMUs' errors gives the
+//!    filters' default parameters.
+
+mod error;
+mod fit;
+mod imus;
+mod residuals;
+mod sensors;
+mod sweep;
+
+use std::path::Path;
+
+use calibration_tables::{ArmFile, BendKeys};
+
+pub use error::{CalibrationError, Warning};
+
+use crate::error::Error;
+use crate::replay::NamedTable;
+use sweep::Sweep;
+
+/// What was found of one bend sensor.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SensorReport {
+    /// The sensor, such as `bend3b`.
+    pub name: String,
+    /// Rows that were fitted.
+    pub samples: usize,
+    /// Residual of the quadratic, degrees.
+    pub rmse_deg: f64,
+    /// Voltage range of the map, V.
+    pub volts: [f64; 2],
+    /// Range of the true bend angle, degrees.
+    pub range_deg: [f64; 2],
+}
+
+/// A table and how good it is.
+#[derive(Debug, Clone)]
+pub struct Calibration {
+    /// The table.
+    pub table: ArmFile,
+    /// One report for each bend sensor.
+    pub sensors: Vec<SensorReport>,
+    /// What deserves a look.
+    pub warnings: Vec<Warning>,
+}
+
+/// Calibrates `arm` on a session with truth.
+///
+/// # Errors
+/// [`Error::Session`] where the session cannot be used, [`Error::Calibration`] where no good table can be made of it.
+pub fn calibrate(session: &Path, arm: &NamedTable) -> Result<Calibration, Error> {
+    let refuse = |source| Error::Calibration { path: session.to_owned(), source };
+    let sweep = Sweep::read(session, &arm.file)?;
+    let mut warnings = sweep.check_range().map_err(refuse)?;
+    warnings.extend(imus::check(&sweep).map_err(refuse)?);
+    let sensors = sensors::fit(&sweep, &mut warnings).map_err(refuse)?;
+
+    let mut table = arm.file.clone();
+    for (i, segment) in table.segments.iter_mut().enumerate() {
+        let of_segment = sensors.iter().filter(|sensor| sensor.segment == i);
+        segment.bend = Some(of_segment.map(|sensor| sensor.map.clone()).collect::<Vec<BendKeys>>());
+        (segment.orient, segment.coord) = (None, None);
+    }
+    let mut table = NamedTable { file: table, path: arm.path };
+    residuals::set_filters(session, &mut table)?;
+    Ok(Calibration { table: table.file, sensors: sensors.into_iter().map(|sensor| sensor.report).collect(), warnings })
+}

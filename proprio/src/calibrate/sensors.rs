@@ -1,0 +1,136 @@
+//! The bend sensors: each fitted to its segment, and checked.
+
+use calibration_tables::BendKeys;
+
+use super::SensorReport;
+use super::error::{CalibrationError, Warning};
+use super::fit::{Fit, quadratic, volts};
+use super::sweep::{LEAST_ROWS, SensorColumn, Sweep, range};
+
+/// A sensor whose readings stay within this range is dead: ten times the noise of a good one.
+const DEAD_COUNTS: u16 = 20;
+/// Readings this close to the sensor's lowest or highest count as its end: the noise of a good one.
+const END_COUNTS: u16 = 2;
+/// Share of the rows at one end, and bending meanwhile, that make a sensor saturated.
+const SATURATED: (f64, f64) = (0.01, 15.0 * std::f64::consts::PI / 180.0);
+/// A map that leaves more of the variance than this follows nothing.
+const UNRELATED: f64 = 0.5;
+/// A sensor is swapped where another segment explains it this many times better, and its own does it worse than
+/// [`GOOD_ENOUGH`].
+const SWAPPED: f64 = 4.0;
+/// Share of the variance that even a poor sensor in its place leaves.
+const GOOD_ENOUGH: f64 = 0.1;
+
+/// One sensor's map.
+pub(super) struct Sensor {
+    pub segment: usize,
+    pub map: BendKeys,
+    pub report: SensorReport,
+    place: usize,
+}
+
+/// Fits all sensors of the sweep.
+pub(super) fn fit(sweep: &Sweep, warnings: &mut Vec<Warning>) -> Result<Vec<Sensor>, CalibrationError> {
+    let sensors = sweep.sensors.iter().map(|column| fit_one(sweep, column, warnings)).collect::<Result<Vec<_>, _>>()?;
+    let names = sensors.iter().filter(|sensor| runs_against_its_like(sensor, &sensors));
+    warnings.extend(names.map(|sensor| Warning::Inverted { name: sensor.report.name.clone() }));
+    Ok(sensors)
+}
+
+fn fit_one(sweep: &Sweep, column: &SensorColumn, warnings: &mut Vec<Warning>) -> Result<Sensor, CalibrationError> {
+    let name = column.name.clone();
+    let pairs = pairs(column, &sweep.theta[column.segment]);
+    if pairs.len() < LEAST_ROWS {
+        return Err(CalibrationError::TooFewRows { name, found: pairs.len(), least: LEAST_ROWS });
+    }
+    check_alive(&name, &pairs)?;
+    let mut fit =
+        quadratic(&pairs).ok_or_else(|| CalibrationError::Dead { name: name.clone(), range: count_range(&pairs) })?;
+    check_place(sweep, column, &fit)?;
+    check_monotonic(&name, &mut fit, warnings)?;
+    let report = SensorReport {
+        name,
+        samples: fit.samples,
+        rmse_deg: fit.rmse.to_degrees(),
+        volts: fit.map.volts.unwrap_or_default(),
+        range_deg: range(pairs.iter().map(|(_, theta)| *theta)).map(f64::to_degrees),
+    };
+    Ok(Sensor { segment: column.segment, map: fit.map, report, place: column.place })
+}
+
+/// Readings and true angles of the rows that have both.
+fn pairs(column: &SensorColumn, theta: &[Option<f64>]) -> Vec<(u16, f64)> {
+    column.counts.iter().zip(theta).filter_map(|(counts, theta)| Some(((*counts)?, (*theta)?))).collect()
+}
+
+fn ends(pairs: &[(u16, f64)]) -> [u16; 2] {
+    pairs.iter().fold([u16::MAX, 0], |[lo, hi], (counts, _)| [lo.min(*counts), hi.max(*counts)])
+}
+
+fn count_range(pairs: &[(u16, f64)]) -> u16 {
+    let [lo, hi] = ends(pairs);
+    hi - lo
+}
+
+/// A dead sensor, or one that stays at one end of its range while the segment bends on.
+fn check_alive(name: &str, pairs: &[(u16, f64)]) -> Result<(), CalibrationError> {
+    let range_counts = count_range(pairs);
+    if range_counts < DEAD_COUNTS {
+        return Err(CalibrationError::Dead { name: name.to_owned(), range: range_counts });
+    }
+    for end in ends(pairs) {
+        let at_end = || pairs.iter().filter(|(counts, _)| counts.abs_diff(end) <= END_COUNTS);
+        let share = at_end().count() as f64 / pairs.len() as f64;
+        let [lo, hi] = range(at_end().map(|(_, theta)| *theta));
+        if share > SATURATED.0 && hi - lo > SATURATED.1 {
+            let (percent, span_deg) = (share * 100.0, (hi - lo).to_degrees());
+            return Err(CalibrationError::Saturated { name: name.to_owned(), counts: end, percent, span_deg });
+        }
+    }
+    Ok(())
+}
+
+/// A sensor that follows another segment than its own, or none.
+fn check_place(sweep: &Sweep, column: &SensorColumn, fit: &Fit) -> Result<(), CalibrationError> {
+    let name = column.name.clone();
+    if fit.unexplained > GOOD_ENOUGH {
+        let others = (0..sweep.theta.len()).filter(|j| *j != column.segment);
+        let fits = others.filter_map(|j| Some((j, quadratic(&pairs(column, &sweep.theta[j]))?.unexplained)));
+        let best = fits.min_by(|a, b| a.1.total_cmp(&b.1));
+        if let Some((j, _)) = best.filter(|(_, unexplained)| unexplained * SWAPPED < fit.unexplained) {
+            return Err(CalibrationError::Swapped { name, follows: j + 1 });
+        }
+    }
+    if fit.unexplained > UNRELATED {
+        return Err(CalibrationError::Unrelated { name, percent: fit.unexplained * 100.0 });
+    }
+    Ok(())
+}
+
+/// A map may turn back at the edge of its data by less than its own residual; there its range ends.
+fn check_monotonic(name: &str, fit: &mut Fit, warnings: &mut Vec<Warning>) -> Result<(), CalibrationError> {
+    let Some([lo, hi]) = fit.map.volts.filter(|volts| !fit.map.is_monotonic_within(*volts)) else { return Ok(()) };
+    let turning_point = fit.map.turning_point();
+    let back = |end: f64| (fit.map.angle(end) - fit.map.angle(turning_point)).abs();
+    let (name, back_deg) = (name.to_owned(), back(lo).min(back(hi)).to_degrees());
+    if back_deg > fit.rmse.to_degrees() {
+        return Err(CalibrationError::NotMonotonic { name, volts: turning_point, back_deg });
+    }
+    // One count short of it, where the map still has a slope.
+    let margin = volts(1);
+    fit.map.volts = Some(if back(lo) < back(hi) { [turning_point + margin, hi] } else { [lo, turning_point - margin] });
+    warnings.push(Warning::TurnsBack { name, volts: turning_point, back_deg });
+    Ok(())
+}
+
+fn rises(map: &BendKeys) -> bool {
+    let [lo, hi] = map.volts.unwrap_or_default();
+    map.angle(hi) > map.angle(lo)
+}
+
+/// Whether most sensors in the same place on the segments run the other way.
+fn runs_against_its_like(sensor: &Sensor, all: &[Sensor]) -> bool {
+    let like = || all.iter().filter(|other| other.place == sensor.place);
+    let against = like().filter(|other| rises(&other.map) != rises(&sensor.map)).count();
+    2 * against > like().count() && like().count() > 2
+}

@@ -1,0 +1,116 @@
+//! The calibration session, column by column.
+
+use std::path::Path;
+
+use calibration_tables::{ArmFile, MAX_SEGMENTS};
+use estimator_core::{Heading, ImuReading, SENSORS_PER_SEGMENT, Turns};
+
+use super::error::{CalibrationError, Warning};
+use crate::error::Error;
+use crate::progress::Progress;
+use crate::session::{Needs, Row, SessionReader};
+
+/// Bending that a quadratic can be fitted to at all, degrees.
+const LEAST_RANGE_DEG: f64 = 10.0;
+/// Bending that a good sweep goes beyond, degrees.
+const GOOD_RANGE_DEG: f64 = 45.0;
+/// Rows that a fit needs at least.
+pub(super) const LEAST_ROWS: usize = 50;
+
+/// Readings of one bend sensor.
+pub(super) struct SensorColumn {
+    /// Such as `bend3b`.
+    pub name: String,
+    /// The segment, from 0.
+    pub segment: usize,
+    /// 0 for a, 1 for b.
+    pub place: usize,
+    pub counts: Vec<Option<u16>>,
+}
+
+/// Readings and truth of a session; all columns have one value a row.
+pub(super) struct Sweep {
+    pub rate_hz: f64,
+    /// True bend angle of each segment, rad.
+    pub theta: Vec<Vec<Option<f64>>>,
+    /// True heading of each segment's end, rad.
+    pub heading: Vec<Vec<Option<f64>>>,
+    /// Unwrapped heading of each IMU, rad.
+    pub imu: Vec<Vec<Option<f64>>>,
+    pub sensors: Vec<SensorColumn>,
+}
+
+impl Sweep {
+    pub fn read(session: &Path, arm: &ArmFile) -> Result<Self, Error> {
+        let mut reader = SessionReader::open(session, &Needs::of_calibration(arm))?;
+        let n = arm.segments.len();
+        let refuse = |source| Error::Calibration { path: session.to_owned(), source };
+        let mut sweep = Self {
+            rate_hz: reader.rate_hz().unwrap_or(arm.rate_hz),
+            theta: vec![Vec::new(); n],
+            heading: vec![Vec::new(); n],
+            imu: vec![Vec::new(); n],
+            sensors: sensor_columns(&reader).map_err(refuse)?,
+        };
+        let mut headings = [Heading::<f64>::new(0, Turns::ZERO); MAX_SEGMENTS];
+        let mut progress = Progress::new(format!("reading {}", session.display()), reader.progress().1);
+        while let Some(row) = reader.next_row()? {
+            sweep.push(&row, &mut headings);
+            if row.sample.time_us % 1_000_000 == 0 {
+                progress.set(reader.progress().0);
+            }
+        }
+        Ok(sweep)
+    }
+
+    fn push(&mut self, row: &Row, headings: &mut [Heading<f64>]) {
+        for (i, heading) in headings.iter_mut().enumerate().take(self.theta.len()) {
+            self.theta[i].push(row.true_theta(i));
+            self.heading[i].push(row.truth[i].map(|pose| pose.heading_rad));
+            self.imu[i].push(heading.read(row.sample.imu[i].and_then(ImuReading::heading)).map(Turns::rad));
+        }
+        for sensor in &mut self.sensors {
+            sensor.counts.push(row.sample.bend[sensor.segment][sensor.place]);
+        }
+    }
+
+    /// Whether every segment bends far enough.
+    pub fn check_range(&self) -> Result<Vec<Warning>, CalibrationError> {
+        let mut warnings = Vec::new();
+        for (i, theta) in self.theta.iter().enumerate() {
+            let known = theta.iter().flatten().count();
+            if known < LEAST_ROWS {
+                let name = format!("segment {}", i + 1);
+                return Err(CalibrationError::TooFewRows { name, found: known, least: LEAST_ROWS });
+            }
+            let [lo, hi] = range(theta.iter().flatten().copied());
+            let range_deg = (hi - lo).to_degrees();
+            if range_deg < LEAST_RANGE_DEG {
+                return Err(CalibrationError::SmallSweep { segment: i + 1, range_deg, least_deg: LEAST_RANGE_DEG });
+            }
+            if range_deg < GOOD_RANGE_DEG {
+                warnings.push(Warning::NarrowSweep { segment: i + 1, range_deg });
+            }
+        }
+        Ok(warnings)
+    }
+}
+
+fn sensor_columns(reader: &SessionReader) -> Result<Vec<SensorColumn>, CalibrationError> {
+    let mut columns = Vec::new();
+    for (segment, present) in reader.bend_sensors().enumerate() {
+        if present == [false, true] {
+            return Err(CalibrationError::SensorBAlone { segment: segment + 1 });
+        }
+        for place in (0..SENSORS_PER_SEGMENT).filter(|place| present[*place]) {
+            let name = format!("bend{}{}", segment + 1, ['a', 'b'][place]);
+            columns.push(SensorColumn { name, segment, place, counts: Vec::new() });
+        }
+    }
+    if columns.is_empty() { Err(CalibrationError::NoSensors) } else { Ok(columns) }
+}
+
+/// The smallest and the largest value.
+pub(super) fn range(values: impl Iterator<Item = f64>) -> [f64; 2] {
+    values.fold([f64::INFINITY, f64::NEG_INFINITY], |[lo, hi], value| [lo.min(value), hi.max(value)])
+}

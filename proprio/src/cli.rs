@@ -1,0 +1,106 @@
+//! What can be typed.
+
+use std::path::PathBuf;
+
+use clap::builder::Styles;
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap_complete::Shell;
+use proprio::session::ImuColumns;
+
+/// Colours of help and errors; off where stderr is no terminal or NO_COLOR is set.
+pub const STYLES: Styles = Styles::styled();
+
+/// The shape of a soft robot arm from its bend sensors and IMUs.
+#[derive(Debug, Parser)]
+#[command(version, styles = STYLES, max_term_width = 100)]
+#[command(after_help = "Exit status: 0 done, 2 the input or the command cannot be used, 1 a fault of proprio itself.")]
+pub struct Cli {
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Make a table of a session with camera truth
+    Calibrate(Calibrate),
+    /// Run sessions through the estimator and compare with truth
+    Replay(Replay),
+    /// Record a session of the simulated arm
+    Simulate(Simulate),
+    /// Print a completion script for a shell
+    Completions(Completions),
+}
+
+#[derive(Debug, Args)]
+pub struct Calibrate {
+    /// Session with truth: a slow sweep of every segment through its whole range
+    pub session: PathBuf,
+    /// Arm description: its geometry
+    #[arg(long, value_name = "ARM.toml")]
+    pub arm: PathBuf,
+    /// Table to write
+    #[arg(short, long, value_name = "TABLE.toml")]
+    pub output: PathBuf,
+}
+
+#[derive(Debug, Args)]
+pub struct Replay {
+    /// Sessions to replay, one after the other
+    #[arg(required = true, value_name = "SESSION.csv")]
+    pub sessions: Vec<PathBuf>,
+    /// Table of the arm
+    #[arg(long, value_name = "TABLE.toml")]
+    pub table: PathBuf,
+    /// Write the estimates of the session: bend angles and world points of all methods
+    #[arg(long, value_name = "EST.csv")]
+    pub out: Option<PathBuf>,
+    /// Print the figures as JSON
+    #[arg(long)]
+    pub json: bool,
+    /// Run the 64-bit float reference instead of the board's fixed point
+    #[arg(long)]
+    pub float: bool,
+}
+
+#[derive(Debug, Args)]
+pub struct Simulate {
+    /// What the arm does
+    #[arg(long, value_enum)]
+    pub scenario: ScenarioName,
+    /// Duration, s
+    #[arg(long, value_name = "S")]
+    pub seconds: f64,
+    /// Seed of the motion, the pushes and all noise; the arm is always the same
+    #[arg(long, value_name = "K")]
+    pub seed: u64,
+    /// Samples per second, 1 to 1000
+    #[arg(long, value_name = "HZ", default_value_t = 10.0)]
+    pub rate: f64,
+    /// Form of the IMU readings
+    #[arg(long, value_enum, default_value_t = ImuColumns::Deg)]
+    pub imu: ImuColumns,
+    /// Session to write
+    #[arg(short, long, value_name = "SESSION.csv")]
+    pub output: PathBuf,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum ScenarioName {
+    /// Free swings
+    #[value(name = "1")]
+    One,
+    /// A stick pushes at random times
+    #[value(name = "2")]
+    Two,
+    /// An obstacle that the arm wraps around
+    #[value(name = "3")]
+    Three,
+    /// A slow sweep of every module, for calibration
+    Sweep,
+}
+
+#[derive(Debug, Args)]
+pub struct Completions {
+    /// The shell
+    pub shell: Shell,
+}

@@ -1,0 +1,23 @@
+//! `proprio calibrate`.
+
+use std::io::Write;
+
+use proprio::calibrate::calibrate;
+use proprio::error::Error;
+use proprio::output::OutputFile;
+use proprio::replay::NamedTable;
+
+use crate::cli::Calibrate;
+use crate::tables;
+
+pub fn run(args: &Calibrate) -> Result<(), Error> {
+    let arm = NamedTable::load(&args.arm)?;
+    let calibration = calibrate(&args.session, &arm)?;
+    for warning in &calibration.warnings {
+        super::warn(&format_args!("{}: {warning}", args.session.display()));
+    }
+    let mut file = OutputFile::create(&args.output)?;
+    file.write_all(calibration.table.to_toml().as_bytes()).map_err(|error| file.error(error))?;
+    file.finish()?;
+    super::print(&tables::sensors(&calibration.sensors))
+}

@@ -1,0 +1,36 @@
+//! One file a command.
+
+mod calibrate;
+mod completions;
+mod replay;
+mod simulate;
+
+pub use replay::{Methods, Report};
+
+use std::io::{self, Write};
+
+use proprio::error::Error;
+
+use crate::cli::Command;
+
+impl Command {
+    pub fn run(self) -> Result<(), Error> {
+        match self {
+            Self::Calibrate(args) => calibrate::run(&args),
+            Self::Replay(args) => replay::run(&args),
+            Self::Simulate(args) => simulate::run(&args),
+            Self::Completions(args) => completions::run(&args),
+        }
+    }
+}
+
+/// Writes a whole text to standard output.
+fn print(text: &str) -> Result<(), Error> {
+    let mut stdout = io::stdout().lock();
+    stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()).map_err(Error::Stdout)
+}
+
+fn warn(warning: &impl std::fmt::Display) {
+    let yellow = anstyle::AnsiColor::Yellow.on_default().bold();
+    anstream::eprintln!("{yellow}warning:{yellow:#} {warning}");
+}

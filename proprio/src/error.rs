@@ -1,0 +1,69 @@
+//! Everything that can stop a command, each with what to do about it.
+
+use std::io;
+use std::path::PathBuf;
+
+use calibration_tables::FileError;
+
+use crate::calibrate::CalibrationError;
+use crate::session::SessionError;
+
+/// Why a command stopped.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    /// A session cannot be used.
+    #[error(transparent)]
+    Session(#[from] SessionError),
+    /// An arm description or table cannot be used.
+    #[error("{}: {source}", path.display())]
+    Table {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        source: FileError,
+    },
+    /// A calibration cannot be made of a session.
+    #[error("{}: {source}", path.display())]
+    Calibration {
+        /// The session.
+        path: PathBuf,
+        /// What is wrong with it.
+        source: CalibrationError,
+    },
+    /// A file cannot be written.
+    #[error("{}: cannot be written: {source}", path.display())]
+    Output {
+        /// The file.
+        path: PathBuf,
+        /// Why not.
+        source: io::Error,
+    },
+    /// Standard output cannot be written.
+    #[error("standard output cannot be written: {0}")]
+    Stdout(io::Error),
+    /// `--out` with several sessions.
+    #[error("--out takes the estimates of one session, found {0} sessions")]
+    OneSession(usize),
+    /// A rate that the twin cannot be sampled at.
+    #[error("--rate {0} Hz, expected 1 to 1000")]
+    Rate(f64),
+    /// A duration that cannot be simulated.
+    #[error("--seconds {0}, expected more than 0 and at most 10 million")]
+    Seconds(f64),
+}
+
+impl Error {
+    /// What to do about it.
+    #[must_use]
+    pub fn remedy(&self) -> String {
+        match self {
+            Self::Session(error) => error.problem.remedy().to_owned(),
+            Self::Table { source, .. } => source.remedy().to_owned(),
+            Self::Calibration { source, .. } => source.remedy(),
+            Self::Output { .. } => "choose a folder that exists, can be written to and has room".to_owned(),
+            Self::Stdout(_) => "write to a place that has room, or use --out".to_owned(),
+            Self::OneSession(_) => "replay the sessions one by one".to_owned(),
+            Self::Rate(_) | Self::Seconds(_) => "give a value in this range".to_owned(),
+        }
+    }
+}

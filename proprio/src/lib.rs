@@ -1,0 +1,30 @@
+//! The host side of `proprio`: sessions, calibration, replay and simulation.
+//!
+//! The command-line tool is a thin layer over these modules; the tests and benchmarks of the workspace use them as well.
+//!
+//! ```no_run
+//! use std::path::Path;
+//!
+//! use estimator_core::Q;
+//! use proprio::replay::{NamedTable, replay};
+//! use proprio::score::Score;
+//!
+//! let table = NamedTable::load(Path::new("table.toml"))?;
+//! let mut score = Score::new(table.file.length_mm());
+//! replay::<Q>(Path::new("session.csv"), &table, |row, outcome| {
+//!     score.add(row, outcome);
+//!     Ok(())
+//! })?;
+//! println!("{:?}", score.figures());
+//! # Ok::<(), proprio::error::Error>(())
+//! ```
+
+pub mod calibrate;
+pub mod error;
+pub mod estimates;
+pub mod output;
+pub mod progress;
+pub mod replay;
+pub mod score;
+pub mod session;
+pub mod simulate;

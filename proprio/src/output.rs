@@ -1,0 +1,94 @@
+//! Files that are there whole or not at all.
+
+use std::fs;
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+use tempfile::NamedTempFile;
+
+use crate::error::Error;
+
+/// A file that is written aside and takes its name when it is complete.
+///
+/// A pipe or device that has the name already is written to directly: it has no place aside.
+pub struct OutputFile {
+    path: PathBuf,
+    sink: Sink,
+}
+
+enum Sink {
+    Aside(BufWriter<NamedTempFile>),
+    Direct(BufWriter<fs::File>),
+}
+
+impl OutputFile {
+    /// Begins a file that is to be named `path`; what has that name stays until [`OutputFile::finish`].
+    ///
+    /// # Errors
+    /// [`Error::Output`] where the folder does not exist or cannot be written to.
+    pub fn create(path: &Path) -> Result<Self, Error> {
+        let sink = Sink::open(path).map_err(|source| Error::Output { path: path.to_owned(), source })?;
+        Ok(Self { path: path.to_owned(), sink })
+    }
+
+    /// Completes the file and gives it its name.
+    ///
+    /// # Errors
+    /// [`Error::Output`] where the disk is full or the name cannot be taken; nothing is left behind.
+    pub fn finish(self) -> Result<(), Error> {
+        let path = self.path;
+        self.sink.finish(&path).map_err(|source| Error::Output { path, source })
+    }
+
+    /// An [`Error::Output`] of this file.
+    #[must_use]
+    pub fn error(&self, source: io::Error) -> Error {
+        Error::Output { path: self.path.clone(), source }
+    }
+}
+
+impl Sink {
+    fn open(path: &Path) -> io::Result<Self> {
+        match fs::metadata(path) {
+            Ok(found) if found.is_dir() => return Err(io::ErrorKind::IsADirectory.into()),
+            Ok(found) if !found.is_file() => {
+                return Ok(Self::Direct(BufWriter::new(fs::OpenOptions::new().write(true).open(path)?)));
+            }
+            _ => {}
+        }
+        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        let mut builder = tempfile::Builder::new();
+        builder.prefix(".proprio-").suffix(".part");
+        #[cfg(unix)]
+        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+        Ok(Self::Aside(BufWriter::new(builder.tempfile_in(folder)?)))
+    }
+
+    fn finish(self, path: &Path) -> io::Result<()> {
+        match self {
+            Self::Direct(mut file) => file.flush(),
+            Self::Aside(file) => {
+                let file = file.into_inner().map_err(io::IntoInnerError::into_error)?;
+                file.as_file().sync_all()?;
+                file.persist(path).map_err(|error| error.error)?;
+                Ok(())
+            }
+        }
+    }
+}
+
+impl Write for OutputFile {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        match &mut self.sink {
+            Sink::Aside(file) => file.write(bytes),
+            Sink::Direct(file) => file.write(bytes),
+        }
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        match &mut self.sink {
+            Sink::Aside(file) => file.flush(),
+            Sink::Direct(file) => file.flush(),
+        }
+    }
+}

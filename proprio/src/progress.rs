@@ -1,0 +1,47 @@
+//! A bar on stderr for work that takes over a second, on a terminal only.
+
+use std::time::{Duration, Instant};
+
+use indicatif::{ProgressBar, ProgressStyle};
+
+/// Work is shown once it has taken this long.
+const PATIENCE: Duration = Duration::from_secs(1);
+
+/// Progress of one piece of work.
+pub struct Progress {
+    bar: ProgressBar,
+    hidden_since: Option<Instant>,
+    what: String,
+}
+
+impl Progress {
+    /// Work that is called `what` and has `total` parts.
+    #[must_use]
+    pub fn new(what: String, total: u64) -> Self {
+        let bar = ProgressBar::hidden();
+        bar.set_length(total);
+        Self { bar, hidden_since: Some(Instant::now()), what }
+    }
+
+    /// `done` parts are done.
+    pub fn set(&mut self, done: u64) {
+        if self.hidden_since.is_some_and(|since| since.elapsed() > PATIENCE) {
+            self.hidden_since = None;
+            self.show();
+        }
+        self.bar.set_position(done);
+    }
+
+    fn show(&self) {
+        let style = ProgressStyle::with_template("{msg} [{bar:40}] {percent} % {eta} left");
+        self.bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+        self.bar.set_message(self.what.clone());
+        self.bar.set_draw_target(indicatif::ProgressDrawTarget::stderr());
+    }
+}
+
+impl Drop for Progress {
+    fn drop(&mut self) {
+        self.bar.finish_and_clear();
+    }
+}

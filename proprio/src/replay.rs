@@ -1,0 +1,91 @@
+//! A session through the estimator, row by row.
+
+use std::path::Path;
+
+use calibration_tables::{ArmFile, MAX_SEGMENTS, MAX_WINDOW};
+use estimator_core::{Estimate, Estimator, Method, Scalar, Shape};
+
+use crate::error::Error;
+use crate::progress::Progress;
+use crate::session::{Needs, Row, SessionReader};
+
+/// The estimator with room for every arm.
+pub type HostEstimator<'t, S> = Estimator<'t, S, MAX_SEGMENTS, { MAX_WINDOW as usize }>;
+
+/// Rows between two looks at the progress.
+const PROGRESS_ROWS: u64 = 1024;
+
+/// A table and the file that it came from.
+#[derive(Debug, Clone)]
+pub struct NamedTable<'p> {
+    /// The table.
+    pub file: ArmFile,
+    /// Where it was read.
+    pub path: &'p Path,
+}
+
+impl<'p> NamedTable<'p> {
+    /// Reads and checks an arm description or table.
+    ///
+    /// # Errors
+    /// [`Error::Table`].
+    pub fn load(path: &'p Path) -> Result<Self, Error> {
+        let file = ArmFile::load(path).map_err(|source| Error::Table { path: path.to_owned(), source })?;
+        Ok(Self { file, path })
+    }
+
+    fn error(&self, source: calibration_tables::FileError) -> Error {
+        Error::Table { path: self.path.to_owned(), source }
+    }
+}
+
+/// What the estimator says of one row.
+#[derive(Debug, Clone)]
+pub struct Outcome<S> {
+    /// The estimate.
+    pub estimate: Estimate<S, MAX_SEGMENTS>,
+    /// The shape by each of [`Method::ALL`].
+    pub shapes: [Shape<S, MAX_SEGMENTS>; Method::ALL.len()],
+}
+
+/// The extent of a session.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Extent {
+    /// Number of rows.
+    pub samples: u64,
+    /// From the first row to the last.
+    pub seconds: f64,
+}
+
+/// Replays a session and shows every row and its outcome to `visit`.
+///
+/// # Errors
+/// What is wrong with the session or the table, and whatever `visit` returns.
+pub fn replay<S: Scalar>(
+    session: &Path,
+    table: &NamedTable,
+    mut visit: impl FnMut(&Row, &Outcome<S>) -> Result<(), Error>,
+) -> Result<Extent, Error> {
+    let needs = Needs::of_table(&table.file).map_err(|source| table.error(source))?;
+    let mut reader = SessionReader::open(session, &needs)?;
+    let rate_hz = reader.rate_hz().unwrap_or(table.file.rate_hz);
+    let baked = table.file.bake::<S>(rate_hz).map_err(|source| table.error(source))?;
+    let baked = baked.table();
+    let mut estimator: Box<HostEstimator<S>> =
+        Box::new(Estimator::new(&baked).expect("the checks of the file are at least as strict"));
+
+    let mut progress = Progress::new(format!("replaying {}", session.display()), reader.progress().1);
+    let (mut samples, mut first_us, mut last_us) = (0, None, 0);
+    while let Some(row) = reader.next_row()? {
+        let estimate = estimator.step(&row.sample);
+        let shapes = Method::ALL.map(|method| estimator.shape(&estimate, method));
+        visit(&row, &Outcome { estimate, shapes })?;
+        last_us = row.sample.time_us;
+        first_us.get_or_insert(last_us);
+        samples += 1;
+        if samples % PROGRESS_ROWS == 0 {
+            progress.set(reader.progress().0);
+        }
+    }
+    Ok(Extent { samples, seconds: (last_us - first_us.unwrap_or(last_us)) as f64 / 1e6 })
+}

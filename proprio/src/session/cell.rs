@@ -1,0 +1,74 @@
+//! One cell: text to a checked reading.
+
+use estimator_core::{ImuReading, Phase};
+
+use super::Problem;
+
+/// Units of 2⁻³⁰ in 1.
+const QUATERNION_ONE: f64 = 1_073_741_824.0;
+/// Latest time that a session may have, s.
+const MAX_TIME_S: f64 = 100.0 * 365.25 * 86_400.0;
+
+/// The number in a cell; `None` for an empty one.
+pub(super) fn number(cell: &str) -> Result<Option<f64>, Problem> {
+    let cell = cell.trim();
+    if cell.is_empty() {
+        return Ok(None);
+    }
+    match cell.parse::<f64>() {
+        Ok(value) if value.is_finite() => Ok(Some(value)),
+        Ok(_) => Err(Problem::NotFinite(cell.to_owned())),
+        Err(_) => Err(Problem::NotANumber(cell.to_owned())),
+    }
+}
+
+/// Raw ADC counts.
+pub(super) fn counts(cell: &str) -> Result<Option<u16>, Problem> {
+    match cell.parse::<u16>() {
+        Ok(counts) if counts <= 4095 => Ok(Some(counts)),
+        _ => number(cell)?.map(|value| whole_counts(value, cell)).transpose(),
+    }
+}
+
+/// Some programs write whole numbers as `512.0`.
+fn whole_counts(value: f64, cell: &str) -> Result<u16, Problem> {
+    if value.fract() == 0.0 && (0.0..=4095.0).contains(&value) {
+        Ok(value as u16)
+    } else {
+        Err(Problem::Counts(cell.trim().to_owned()))
+    }
+}
+
+/// A time, µs.
+pub(super) fn time_us(cell: &str) -> Result<u64, Problem> {
+    let seconds = number(cell)?.ok_or(Problem::NoTime)?;
+    if (0.0..=MAX_TIME_S).contains(&seconds) {
+        Ok((seconds * 1e6).round() as u64)
+    } else {
+        Err(Problem::Time(cell.trim().to_owned()))
+    }
+}
+
+/// A heading in units of `factor` rad. A whole turn is let pass: it is what 359.99999 is rounded to.
+pub(super) fn heading(cell: &str, factor: f64) -> Result<Option<ImuReading>, Problem> {
+    let Some(value) = number(cell)? else { return Ok(None) };
+    let rad = value * factor;
+    if !(0.0..=std::f64::consts::TAU + 1e-6).contains(&rad) {
+        return Err(Problem::Heading(cell.trim().to_owned()));
+    }
+    Ok(Some(ImuReading::Heading(Phase::from_rad(rad))))
+}
+
+/// A unit quaternion w, x, y, z, kept to 2⁻³⁰: a BNO055's 2⁻¹⁴ exactly.
+pub(super) fn quaternion(parts: [Option<f64>; 4]) -> Result<Option<ImuReading>, Problem> {
+    match parts {
+        [None, None, None, None] => Ok(None),
+        [Some(w), Some(x), Some(y), Some(z)] => {
+            let reading = ImuReading::Quaternion([w, x, y, z].map(|part| (part * QUATERNION_ONE).round() as i32));
+            let norm = (w * w + x * x + y * y + z * z).sqrt();
+            // Near 1, only a sensor on its side has no heading; that is a missing reading, not a broken file.
+            if (norm - 1.0).abs() > 0.01 { Err(Problem::NotUnit(norm)) } else { Ok(Some(reading)) }
+        }
+        _ => Err(Problem::PartialQuaternion),
+    }
+}

@@ -1,0 +1,138 @@
+//! What can be wrong with a session: the place, the problem and the remedy.
+
+use std::fmt;
+use std::path::PathBuf;
+
+/// A problem and where it is.
+#[derive(Debug)]
+pub struct SessionError {
+    /// The file.
+    pub path: PathBuf,
+    /// Line in it, from 1.
+    pub line: Option<u64>,
+    /// Name of the column.
+    pub column: Option<String>,
+    /// The problem.
+    pub problem: Problem,
+}
+
+/// What is wrong with a session.
+#[derive(Debug, thiserror::Error)]
+pub enum Problem {
+    /// It cannot be opened or read.
+    #[error("cannot be read: {0}")]
+    Read(std::io::Error),
+    /// It is a directory.
+    #[error("is a directory, expected a session file")]
+    Directory,
+    /// It has no header.
+    #[error("is empty, expected a header line")]
+    NoHeader,
+    /// It has a header and no more.
+    #[error("has no samples, expected a row a sample below the header")]
+    NoSamples,
+    /// It is not UTF-8 text.
+    #[error("is not UTF-8 text")]
+    NotText,
+    /// A column is missing.
+    #[error("column {0} is missing")]
+    MissingColumn(String),
+    /// A column is there twice.
+    #[error("column {0} is there twice")]
+    DuplicateColumn(String),
+    /// A column belongs to a segment that the table does not have.
+    #[error("column {column} is of segment {segment}, but the table has {segments}")]
+    OtherArm {
+        /// Name of the column.
+        column: String,
+        /// The column's segment.
+        segment: usize,
+        /// Segments of the table.
+        segments: usize,
+    },
+    /// A row has too few or too many cells.
+    #[error("the row has {found} cells, the header {expected}")]
+    RowLength {
+        /// Cells of the row.
+        found: u64,
+        /// Columns of the header.
+        expected: u64,
+    },
+    /// A cell that needs a value is empty.
+    #[error("the cell is empty, expected a time")]
+    NoTime,
+    /// A cell is not a number.
+    #[error("\"{0}\" is not a number")]
+    NotANumber(String),
+    /// A cell is NaN or infinite.
+    #[error("{0} is not finite; a missing reading is an empty cell")]
+    NotFinite(String),
+    /// ADC counts that a 12-bit converter cannot give.
+    #[error("{0} counts, expected a whole number from 0 to 4095")]
+    Counts(String),
+    /// A heading out of range.
+    #[error("heading {0}, expected at least 0 and less than a turn")]
+    Heading(String),
+    /// A time that does not fit.
+    #[error("time {0} s, expected 0 s to 100 years")]
+    Time(String),
+    /// Time goes backwards.
+    #[error("time goes backwards, from {from_s} s to {to_s} s")]
+    Backwards {
+        /// Time of the row before.
+        from_s: f64,
+        /// Time of this row.
+        to_s: f64,
+    },
+    /// A quaternion of which only some parts are there.
+    #[error("the quaternion has an empty part, expected all four or none")]
+    PartialQuaternion,
+    /// A quaternion that is no orientation.
+    #[error("the quaternion's norm is {0:.4}, expected 1 within 1 %")]
+    NotUnit(f64),
+    /// A pose of which only some parts are there.
+    #[error("the truth has an empty part, expected x, y and heading or none")]
+    PartialTruth,
+}
+
+impl Problem {
+    /// What to do about it.
+    #[must_use]
+    pub const fn remedy(&self) -> &'static str {
+        match self {
+            Self::Read(_) => "check the name and that you may read it",
+            Self::Directory => "name the .csv file in it",
+            Self::NoHeader | Self::NoSamples => "record the session again, or take another",
+            Self::NotText => "save it as CSV in UTF-8",
+            Self::MissingColumn(_) => "add the column, or take the arm or table that this session belongs to",
+            Self::DuplicateColumn(_) => "remove or rename one of them",
+            Self::OtherArm { .. } => "take the table of the arm that was recorded",
+            Self::RowLength { .. } => "the file was cut or edited: remove the row, or copy the file again",
+            Self::NoTime | Self::Time(_) => "give every row its time in seconds",
+            Self::NotANumber(_) => "write numbers with a decimal point, and leave the cell of a missing reading empty",
+            Self::NotFinite(_) => "leave the cell empty",
+            Self::Counts(_) => "write raw ADC counts, and leave the cell of a missing reading empty",
+            Self::Heading(_) => "write headings from 0 up to a full turn: 360 in _deg, 2π in _rad",
+            Self::Backwards { .. } => "sort the rows by time; two sessions in one file must be split",
+            Self::PartialQuaternion | Self::NotUnit(_) => {
+                "write unit quaternions w, x, y, z, and leave all four cells of a missing reading empty"
+            }
+            Self::PartialTruth => "leave all three cells empty where the camera did not see the segment",
+        }
+    }
+}
+
+impl fmt::Display for SessionError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", self.path.display())?;
+        if let Some(line) = self.line {
+            write!(f, ", line {line}")?;
+        }
+        if let Some(column) = &self.column {
+            write!(f, ", column {column}")?;
+        }
+        write!(f, ": {}", self.problem)
+    }
+}
+
+impl std::error::Error for SessionError {}

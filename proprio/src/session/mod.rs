@@ -1,0 +1,72 @@
+//! Recorded sessions: CSV, a row a sample, units in the column names, an empty cell for a missing reading.
+
+mod cell;
+mod columns;
+mod error;
+mod reader;
+mod writer;
+
+use calibration_tables::{ArmFile, FileError, MAX_SEGMENTS};
+use estimator_core::Sample;
+
+pub use error::{Problem, SessionError};
+pub use reader::SessionReader;
+pub use writer::{ImuColumns, SessionWriter};
+
+/// What the camera saw of one segment's end in {W}.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pose {
+    /// x, m.
+    pub x_m: f64,
+    /// y, m.
+    pub y_m: f64,
+    /// Heading of the tangent, rad.
+    pub heading_rad: f64,
+}
+
+/// One row: the readings of one tick, and the truth where there is any.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Row {
+    /// The readings.
+    pub sample: Sample<MAX_SEGMENTS>,
+    /// The pose of each segment's end; `None` where the camera did not see it.
+    pub truth: [Option<Pose>; MAX_SEGMENTS],
+}
+
+impl Row {
+    /// True bend angle of segment `i` (from 0), rad: the difference of neighbouring headings, within ±π.
+    #[must_use]
+    pub fn true_theta(&self, i: usize) -> Option<f64> {
+        let before = if i == 0 { 0.0 } else { self.truth.get(i - 1)?.as_ref()?.heading_rad };
+        let turn = self.truth.get(i)?.as_ref()?.heading_rad - before;
+        Some(turn - std::f64::consts::TAU * (turn / std::f64::consts::TAU).round())
+    }
+}
+
+/// The columns that a session must have.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Needs {
+    /// Bend sensors of each segment: 0, 1 (`a`) or 2 (`a` and `b`); `None`: as many as the session has.
+    pub bend: Vec<Option<usize>>,
+    /// Whether there must be truth.
+    pub truth: bool,
+}
+
+impl Needs {
+    /// What `table` needs of a session.
+    ///
+    /// # Errors
+    /// [`FileError::NotCalibrated`] on an arm description.
+    pub fn of_table(table: &ArmFile) -> Result<Self, FileError> {
+        let bend = table.bend_sensors()?.into_iter().map(Some).collect();
+        Ok(Self { bend, truth: false })
+    }
+
+    /// What a calibration of `arm` needs of a session: the bend sensors are those that the session has.
+    #[must_use]
+    pub fn of_calibration(arm: &ArmFile) -> Self {
+        let sensors = |bend: &Vec<_>| bend.is_empty().then_some(0);
+        let bend = arm.segments.iter().map(|segment| segment.bend.as_ref().and_then(sensors)).collect();
+        Self { bend, truth: true }
+    }
+}

@@ -1,0 +1,183 @@
+//! Reads a session row by row, in memory that does not grow with its length.
+
+use std::collections::VecDeque;
+use std::fs::File;
+use std::path::{Path, PathBuf};
+
+use calibration_tables::MAX_SEGMENTS;
+use csv::StringRecord;
+use estimator_core::{ImuReading, Sample};
+
+use super::columns::{Column, Columns, ImuColumn};
+use super::{Needs, Pose, Problem, Row, SessionError, cell};
+
+/// Rows at the start whose time stamps tell the sample rate.
+const RATE_ROWS: usize = 101;
+
+/// A session that is being read.
+pub struct SessionReader {
+    path: PathBuf,
+    size_bytes: u64,
+    names: Vec<String>,
+    columns: Columns,
+    csv: csv::Reader<File>,
+    record: StringRecord,
+    last_time_us: u64,
+    ahead: VecDeque<Row>,
+    rate_hz: Option<f64>,
+}
+
+impl SessionReader {
+    /// Opens a session, finds its columns and reads the first rows.
+    ///
+    /// # Errors
+    /// Any [`SessionError`] of the header and the first rows.
+    pub fn open(path: &Path, needs: &Needs) -> Result<Self, SessionError> {
+        let fail = |line, problem| SessionError { path: path.to_owned(), line, column: None, problem };
+        let file = File::open(path).map_err(|error| fail(None, Problem::Read(error)))?;
+        let metadata = file.metadata().map_err(|error| fail(None, Problem::Read(error)))?;
+        if metadata.is_dir() {
+            return Err(fail(None, Problem::Directory));
+        }
+        let mut csv = csv::ReaderBuilder::new().buffer_capacity(1 << 16).from_reader(file);
+        let header = csv.headers().map_err(|error| csv_error(path, error))?;
+        if header.iter().all(str::is_empty) {
+            return Err(fail(None, Problem::NoHeader));
+        }
+        let names: Vec<String> = header.iter().map(|name| name.trim().to_owned()).collect();
+        let columns = Columns::find(&names, needs).map_err(|problem| fail(Some(1), problem))?;
+        let mut reader = Self {
+            path: path.to_owned(),
+            size_bytes: metadata.len(),
+            names,
+            columns,
+            csv,
+            record: StringRecord::new(),
+            last_time_us: 0,
+            ahead: VecDeque::new(),
+            rate_hz: None,
+        };
+        reader.look_ahead()?;
+        Ok(reader)
+    }
+
+    fn look_ahead(&mut self) -> Result<(), SessionError> {
+        while self.ahead.len() < RATE_ROWS {
+            let Some(row) = self.read_row()? else { break };
+            self.ahead.push_back(row);
+        }
+        if self.ahead.is_empty() {
+            return Err(self.error(None, None, Problem::NoSamples));
+        }
+        let times = self.ahead.iter().map(|row| row.sample.time_us);
+        let mut steps: Vec<u64> = times.clone().zip(times.skip(1)).map(|(from, to)| to - from).collect();
+        steps.sort_unstable();
+        self.rate_hz = steps.get(steps.len() / 2).filter(|step| **step > 0).map(|step| 1e6 / *step as f64);
+        Ok(())
+    }
+
+    /// Sample rate, from the median step of the first rows; `None` where a single row does not tell.
+    #[must_use]
+    pub fn rate_hz(&self) -> Option<f64> {
+        self.rate_hz
+    }
+
+    /// Whether the session has truth.
+    #[must_use]
+    pub fn has_truth(&self) -> bool {
+        self.columns.segments.iter().all(|segment| segment.truth.is_some())
+    }
+
+    /// Which bend sensors of each segment the session has.
+    pub fn bend_sensors(&self) -> impl Iterator<Item = [bool; 2]> {
+        self.columns.segments.iter().map(|segment| segment.bend.map(|column| column.is_some()))
+    }
+
+    /// How far the file was read, and its size, in bytes.
+    #[must_use]
+    pub fn progress(&self) -> (u64, u64) {
+        (self.csv.position().byte(), self.size_bytes)
+    }
+
+    /// The next row, or `None` at the end.
+    ///
+    /// # Errors
+    /// Any [`SessionError`] of a row.
+    pub fn next_row(&mut self) -> Result<Option<Row>, SessionError> {
+        match self.ahead.pop_front() {
+            Some(row) => Ok(Some(row)),
+            None => self.read_row(),
+        }
+    }
+
+    fn read_row(&mut self) -> Result<Option<Row>, SessionError> {
+        if !self.csv.read_record(&mut self.record).map_err(|error| csv_error(&self.path, error))? {
+            return Ok(None);
+        }
+        let time_us = self.cell(self.columns.time, cell::time_us)?;
+        if time_us < self.last_time_us {
+            let (from_s, to_s) = (self.last_time_us as f64 / 1e6, time_us as f64 / 1e6);
+            return Err(self.cell_error(self.columns.time, Problem::Backwards { from_s, to_s }));
+        }
+        self.last_time_us = time_us;
+        let mut row = Row { sample: Sample::missing(time_us), truth: [None; MAX_SEGMENTS] };
+        let sample = row.sample.bend.iter_mut().zip(&mut row.sample.imu).zip(&mut row.truth);
+        for (segment, ((bend, imu), truth)) in self.columns.segments.iter().zip(sample) {
+            for (counts, column) in bend.iter_mut().zip(segment.bend) {
+                *counts = column.map_or(Ok(None), |column| self.cell(column, cell::counts))?;
+            }
+            *imu = self.imu(segment.imu)?;
+            *truth = segment.truth.map_or(Ok(None), |columns| self.pose(columns))?;
+        }
+        Ok(Some(row))
+    }
+
+    fn imu(&self, column: ImuColumn) -> Result<Option<ImuReading>, SessionError> {
+        match column {
+            ImuColumn::Heading(Column { index, factor }) => self.cell(index, |text| cell::heading(text, factor)),
+            ImuColumn::Quaternion(columns) => {
+                let [w, x, y, z] = columns.map(|index| self.cell(index, cell::number));
+                cell::quaternion([w?, x?, y?, z?]).map_err(|problem| self.cell_error(columns[0], problem))
+            }
+        }
+    }
+
+    fn pose(&self, columns: [Column; 3]) -> Result<Option<Pose>, SessionError> {
+        let value =
+            |Column { index, factor }| self.cell(index, |text| Ok(cell::number(text)?.map(|value| value * factor)));
+        let [x, y, heading] = columns.map(value);
+        match (x?, y?, heading?) {
+            (None, None, None) => Ok(None),
+            (Some(x_m), Some(y_m), Some(heading_rad)) => Ok(Some(Pose { x_m, y_m, heading_rad })),
+            _ => Err(self.cell_error(columns[0].index, Problem::PartialTruth)),
+        }
+    }
+
+    fn cell<T>(&self, index: usize, parse: impl Fn(&str) -> Result<T, Problem>) -> Result<T, SessionError> {
+        parse(self.record.get(index).unwrap_or_default()).map_err(|problem| self.cell_error(index, problem))
+    }
+
+    fn cell_error(&self, index: usize, problem: Problem) -> SessionError {
+        let line = self.record.position().map(csv::Position::line);
+        self.error(line, self.names.get(index).cloned(), problem)
+    }
+
+    fn error(&self, line: Option<u64>, column: Option<String>, problem: Problem) -> SessionError {
+        SessionError { path: self.path.clone(), line, column, problem }
+    }
+}
+
+fn csv_error(path: &Path, error: csv::Error) -> SessionError {
+    let mut line = error.position().map(csv::Position::line);
+    let problem = match error.into_kind() {
+        csv::ErrorKind::Io(error) => {
+            line = None;
+            Problem::Read(error)
+        }
+        csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
+            Problem::RowLength { found: len, expected: expected_len }
+        }
+        _ => Problem::NotText,
+    };
+    SessionError { path: path.to_owned(), line, column: None, problem }
+}

@@ -1,0 +1,89 @@
+//! Writes simulated samples as a session.
+
+use std::io::{self, Write};
+
+use estimator_core::ImuReading;
+use rig_twin::SEGMENTS;
+
+use super::columns::SENSOR_NAMES;
+use crate::simulate::Recorded;
+
+/// In which columns a session holds its IMU readings.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum ImuColumns {
+    /// The heading, imuK_deg.
+    Deg,
+    /// The quaternion as the BNO055 gives it, imuK_qw to imuK_qz.
+    Quaternion,
+}
+
+/// A session that is being written.
+pub struct SessionWriter<W> {
+    sink: W,
+    imu: ImuColumns,
+}
+
+impl<W: Write> SessionWriter<W> {
+    /// Begins a session with its header.
+    ///
+    /// # Errors
+    /// Those of `sink`.
+    pub fn new(mut sink: W, imu: ImuColumns) -> io::Result<Self> {
+        write!(sink, "time_s")?;
+        for i in 1..=SEGMENTS {
+            for sensor in SENSOR_NAMES {
+                write!(sink, ",bend{i}{sensor}_adc")?;
+            }
+        }
+        for i in 1..=SEGMENTS {
+            match imu {
+                ImuColumns::Deg => write!(sink, ",imu{i}_deg")?,
+                ImuColumns::Quaternion => write!(sink, ",imu{i}_qw,imu{i}_qx,imu{i}_qy,imu{i}_qz")?,
+            }
+        }
+        for i in 1..=SEGMENTS {
+            write!(sink, ",truth{i}_x_mm,truth{i}_y_mm,truth{i}_heading_deg")?;
+        }
+        writeln!(sink)?;
+        Ok(Self { sink, imu })
+    }
+
+    /// Writes one sample.
+    ///
+    /// # Errors
+    /// Those of the sink.
+    pub fn write(&mut self, sample: &Recorded) -> io::Result<()> {
+        write!(self.sink, "{}", sample.time_us as f64 / 1e6)?;
+        for counts in sample.counts {
+            write!(self.sink, ",{counts}")?;
+        }
+        for quaternion in sample.quaternions {
+            match self.imu {
+                ImuColumns::Deg => write!(self.sink, ",{}", heading_deg(quaternion))?,
+                ImuColumns::Quaternion => {
+                    // 2⁻¹⁴ has a finite decimal form, so that the reading comes back to the bit.
+                    for part in quaternion {
+                        write!(self.sink, ",{}", f64::from(part) / 16_384.0)?;
+                    }
+                }
+            }
+        }
+        for end in sample.truth {
+            let (x_mm, y_mm) = (end.x_m * 1e3, end.y_m * 1e3);
+            write!(self.sink, ",{x_mm:.4},{y_mm:.4},{:.4}", end.heading_rad.to_degrees())?;
+        }
+        writeln!(self.sink)
+    }
+
+    /// The sink, when all samples are written.
+    pub fn into_inner(self) -> W {
+        self.sink
+    }
+}
+
+/// The heading in [0, 360) with five decimals; empty where the quaternion is no orientation.
+fn heading_deg(quaternion: [i16; 4]) -> String {
+    let Some(heading) = ImuReading::from_bno055(quaternion).heading() else { return String::new() };
+    let text = format!("{:.5}", heading.rad().to_degrees().rem_euclid(360.0));
+    if text == "360.00000" { "0.00000".to_owned() } else { text }
+}

@@ -1,0 +1,88 @@
+//! The twin as a rig that is recorded: its own duty programme, sampled at a fixed rate.
+
+use rig_twin::{BEND_SENSORS, EndPose, Program, Rig, SEGMENTS, Scenario};
+
+use crate::error::Error;
+
+/// The regulators get a new duty at least this often, s: the firmware's tick.
+const TICK_S: f64 = 0.01;
+
+/// What is recorded in one sample.
+#[derive(Debug, Clone, Copy)]
+pub struct Recorded {
+    /// Time since the start, µs.
+    pub time_us: u64,
+    /// ADC counts of bend sensors 1a, 1b, … 6b.
+    pub counts: [u16; BEND_SENSORS],
+    /// Quaternion registers w, x, y, z of each IMU, units of 2⁻¹⁴.
+    pub quaternions: [[i16; 4]; SEGMENTS],
+    /// True pose of each segment's end.
+    pub truth: [EndPose; SEGMENTS],
+}
+
+/// A run of the twin, one [`Recorded`] after the other.
+pub struct Simulation {
+    rig: Rig,
+    program: Program,
+    rate_hz: f64,
+    samples: u64,
+    next: u64,
+}
+
+impl Simulation {
+    /// `seconds` of a scenario, sampled at `rate_hz`. The seed decides all that differs from run to run; the arm is
+    /// always the same.
+    ///
+    /// # Errors
+    /// [`Error::Rate`] and [`Error::Seconds`].
+    pub fn new(scenario: Scenario, seed: u64, seconds: f64, rate_hz: f64) -> Result<Self, Error> {
+        if !(1.0..=1000.0).contains(&rate_hz) {
+            return Err(Error::Rate(rate_hz));
+        }
+        if !(seconds > 0.0 && seconds <= 1e7) {
+            return Err(Error::Seconds(seconds));
+        }
+        let samples = (seconds * rate_hz).round().max(1.0) as u64;
+        Ok(Self { rig: Rig::new(scenario, seed), program: Program::new(scenario, seed), rate_hz, samples, next: 0 })
+    }
+
+    /// Number of samples of the whole run.
+    #[must_use]
+    pub fn samples(&self) -> u64 {
+        self.samples
+    }
+
+    fn time_s(&self, sample: u64) -> f64 {
+        sample as f64 / self.rate_hz
+    }
+
+    fn advance(&mut self, to_s: f64) {
+        let from_s = self.rig.time_s();
+        let ticks = ((to_s - from_s) / TICK_S - 1e-6).ceil().max(1.0);
+        for k in 0..ticks as u32 {
+            let dt_s = (to_s - from_s) / ticks;
+            self.rig.step(dt_s, self.program.duties(from_s + f64::from(k) * dt_s));
+        }
+    }
+}
+
+impl Iterator for Simulation {
+    type Item = Recorded;
+
+    fn next(&mut self) -> Option<Recorded> {
+        if self.next == self.samples {
+            return None;
+        }
+        let time_s = self.time_s(self.next);
+        if self.next > 0 {
+            self.advance(time_s);
+        }
+        self.next += 1;
+        Some(Recorded {
+            time_us: (time_s * 1e6).round() as u64,
+            counts: self.rig.adc_counts(),
+            quaternions: self.rig.imu_quaternions(),
+            truth: self.rig.truth(),
+        })
+    }
+}

@@ -1,0 +1,70 @@
+//! Tables for people.
+
+use comfy_table::presets::NOTHING;
+use comfy_table::{CellAlignment, Table};
+use estimator_core::Method;
+use proprio::calibrate::SensorReport;
+use proprio::score::Figures;
+
+use crate::commands::{Methods, Report};
+
+/// One line a bend sensor.
+pub fn sensors(sensors: &[SensorReport]) -> String {
+    let mut table = table(&["sensor", "samples", "RMSE deg", "range deg", "range V"]);
+    for sensor in sensors {
+        let [lo_deg, hi_deg] = sensor.range_deg;
+        let [lo_v, hi_v] = sensor.volts;
+        table.add_row([
+            sensor.name.clone(),
+            sensor.samples.to_string(),
+            format!("{:.2}", sensor.rmse_deg),
+            format!("{lo_deg:.1} to {hi_deg:.1}"),
+            format!("{lo_v:.3} to {hi_v:.3}"),
+        ]);
+    }
+    let mean = sensors.iter().map(|sensor| sensor.rmse_deg).sum::<f64>() / sensors.len() as f64;
+    format!("{}\nmean RMSE of the V–Orient maps: {mean:.2} deg\n", text(&mut table))
+}
+
+/// A table for each figure: a line a session, a column a method.
+pub fn replay(report: &Report) -> String {
+    let length = report.length_mm;
+    let parts: [(String, fn(&Figures) -> Option<f64>); 4] = [
+        ("Tip error, RMSE in mm".to_owned(), |figures| figures.tip_rmse_mm),
+        (format!("Tip error, RMSE in % of {length} mm"), |figures| figures.tip_rmse_percent),
+        ("Tip error, 75th percentile in mm".to_owned(), |figures| figures.tip_p75_mm),
+        ("Bend angles, RMSE in deg".to_owned(), |figures| figures.theta_rmse_deg),
+    ];
+    parts.map(|(title, figure)| format!("{title}\n{}\n", figures(report, figure))).join("\n")
+}
+
+fn figures(report: &Report, figure: fn(&Figures) -> Option<f64>) -> String {
+    let mut heads = vec!["session", "samples", "seconds"];
+    heads.extend(Method::ALL.map(Method::name));
+    let mut table = table(&heads);
+    let mut add = |name: String, samples: u64, seconds: f64, of: &Methods| {
+        let cells = of.methods.iter().map(|of| figure(of).map_or("–".to_owned(), |value| format!("{value:.2}")));
+        table.add_row([name, samples.to_string(), format!("{seconds:.1}")].into_iter().chain(cells));
+    };
+    for session in &report.sessions {
+        add(session.path.display().to_string(), session.samples, session.seconds, &session.figures);
+    }
+    let samples = report.sessions.iter().map(|session| session.samples).sum();
+    let seconds = report.sessions.iter().map(|session| session.seconds).sum();
+    add("all".to_owned(), samples, seconds, &report.all);
+    text(&mut table)
+}
+
+fn table(heads: &[&str]) -> Table {
+    let mut table = Table::new();
+    table.load_style(NOTHING).set_header(heads);
+    table
+}
+
+/// Names to the left, numbers to the right, no trailing space.
+fn text(table: &mut Table) -> String {
+    for column in table.column_iter_mut().skip(1) {
+        column.set_cell_alignment(CellAlignment::Right);
+    }
+    table.trim_fmt()
+}

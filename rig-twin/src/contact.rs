@@ -1,0 +1,201 @@
+//! Contacts: the sticks of scenario II and the obstacle of scenario III.
+//!
+//! Both are told by what they do to the curvature, not by forces: a touch adds a peak of curvature at one place of a segment.
+
+use crate::constants::{
+    CONNECTOR_LENGTH_M, CONTACT_HALF_WIDTH, CURVE_LENGTH_M, OBSTACLE_LEVER_M, OBSTACLE_NEXT_SHARE, OBSTACLE_PLACE,
+    OBSTACLE_SEGMENT, OBSTACLE_WRAP_SHARE, OBSTACLE_X_M, OBSTACLE_YIELD_RAD, PUSH_BEND_RAD, PUSH_DURATION_S,
+    PUSH_NEIGHBOUR_SHARE, PUSH_PAUSE_S, PUSH_PLACE, PUSH_RISE_S, REACTION_HALF_WIDTH, REST_S, SEGMENTS,
+};
+use crate::noise::{Noise, Source};
+use crate::program::{Scenario, smooth_step};
+
+/// What a contact adds to one segment's curve.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Touch {
+    pub(crate) bend_rad: f64,
+    place: f64,
+    half_width: f64,
+}
+
+impl Touch {
+    pub(crate) const NONE: Self = Self::reaction(0.0);
+
+    /// A peak of curvature where the arm is touched.
+    const fn contact(bend_rad: f64, place: f64) -> Self {
+        Self { bend_rad, place, half_width: CONTACT_HALF_WIDTH }
+    }
+
+    /// A bend that spreads over the curve of a segment that is not itself touched.
+    const fn reaction(bend_rad: f64) -> Self {
+        Self { bend_rad, place: 0.5, half_width: REACTION_HALF_WIDTH }
+    }
+
+    /// Its turning up to the share `along` of the curve, rad: the integral of a biweight kernel.
+    pub(crate) fn turned_rad(&self, along: f64) -> f64 {
+        let u = ((along - self.place) / self.half_width).clamp(-1.0, 1.0);
+        let u2 = u * u;
+        self.bend_rad * (0.5 + u * (15.0 + u2 * (3.0 * u2 - 10.0)) / 16.0)
+    }
+}
+
+/// One push of a stick in scenario II.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Push {
+    /// When the stick touches the arm, s.
+    pub start_s: f64,
+    /// How long it touches the arm, s.
+    pub duration_s: f64,
+    /// The segment it pushes, counted from 0.
+    pub segment: usize,
+    /// Where along the segment's curve, a share of its length.
+    pub place: f64,
+    /// The bend it adds to that segment at full strength, rad, clockwise positive.
+    pub bend_rad: f64,
+}
+
+impl Push {
+    /// Push `number` of the session, at the end of a pause that begins at `pause_s`.
+    fn new(seed: u64, number: usize, pause_s: f64) -> Self {
+        let mut noise = Noise::of_session(seed, Source::Contact, number);
+        Self {
+            start_s: pause_s + noise.between(PUSH_PAUSE_S),
+            duration_s: noise.between(PUSH_DURATION_S),
+            segment: noise.pick(SEGMENTS),
+            place: noise.between(PUSH_PLACE),
+            bend_rad: noise.sign() * noise.between(PUSH_BEND_RAD),
+        }
+    }
+
+    fn end_s(&self) -> f64 {
+        self.start_s + self.duration_s
+    }
+
+    fn touches(&self, time_s: f64) -> [Touch; SEGMENTS] {
+        let strength =
+            smooth_step((time_s - self.start_s) / PUSH_RISE_S) * smooth_step((self.end_s() - time_s) / PUSH_RISE_S);
+        let bend_rad = strength * self.bend_rad;
+        let mut touches = [Touch::NONE; SEGMENTS];
+        for (segment, touch) in touches.iter_mut().enumerate() {
+            match segment.abs_diff(self.segment) {
+                0 => *touch = Touch::contact(bend_rad, self.place),
+                1 => *touch = Touch::reaction(-PUSH_NEIGHBOUR_SHARE * bend_rad),
+                _ => {}
+            }
+        }
+        touches
+    }
+}
+
+/// The obstacle of scenario III: a post beside the arm that its fourth segment meets.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Obstacle {
+    /// 1 to the right of the arm, −1 to its left.
+    pub(crate) side: f64,
+    distance_m: f64,
+}
+
+impl Obstacle {
+    pub(crate) fn new(seed: u64) -> Self {
+        let mut noise = Noise::of_session(seed, Source::Contact, 0);
+        Self { side: noise.sign(), distance_m: noise.between(OBSTACLE_X_M) }
+    }
+
+    /// The arm below the contact is turned back until it is level with the post, or slides; the contact's segment and the next
+    /// wrap around it. `free_rad` are the bends without the obstacle.
+    fn touches(&self, free_rad: &[f64; SEGMENTS]) -> [Touch; SEGMENTS] {
+        let depth_m = (self.side * chord_x_m(&free_rad[..OBSTACLE_SEGMENT]) - self.distance_m).max(0.0);
+        let wanted_rad = depth_m / OBSTACLE_LEVER_M;
+        let back_rad = self.side * OBSTACLE_YIELD_RAD * wanted_rad / (OBSTACLE_YIELD_RAD + wanted_rad);
+        core::array::from_fn(|segment| {
+            if segment < OBSTACLE_SEGMENT {
+                Touch::reaction(-back_rad / OBSTACLE_SEGMENT as f64)
+            } else if segment == OBSTACLE_SEGMENT {
+                Touch::contact(OBSTACLE_WRAP_SHARE * back_rad, OBSTACLE_PLACE)
+            } else if segment == OBSTACLE_SEGMENT + 1 {
+                Touch::reaction(OBSTACLE_NEXT_SHARE * back_rad)
+            } else {
+                Touch::NONE
+            }
+        })
+    }
+}
+
+/// Roughly how far across the base's axis a chain of bends ends: each segment as long as its arc, at its mean heading.
+fn chord_x_m(bends_rad: &[f64]) -> f64 {
+    let mut heading_rad = 0.0;
+    let mut x_m = 0.0;
+    for bend_rad in bends_rad {
+        x_m += (CURVE_LENGTH_M + CONNECTOR_LENGTH_M) * libm::sin(heading_rad + bend_rad / 2.0);
+        heading_rad += bend_rad;
+    }
+    x_m
+}
+
+/// All that touches the arm in a session.
+#[derive(Clone, Debug)]
+pub(crate) enum Contacts {
+    None,
+    Sticks { seed: u64, begun: Vec<Push>, next: Push },
+    Obstacle(Obstacle),
+}
+
+impl Contacts {
+    pub(crate) fn new(scenario: Scenario, seed: u64) -> Self {
+        match scenario {
+            Scenario::Sweep | Scenario::One => Self::None,
+            Scenario::Two => Self::Sticks { seed, begun: Vec::new(), next: Push::new(seed, 0, REST_S) },
+            Scenario::Three => Self::Obstacle(Obstacle::new(seed)),
+        }
+    }
+
+    /// What touches each segment at `time_s`, for the bends that the arm would have if free.
+    pub(crate) fn touches(&mut self, time_s: f64, free_rad: &[f64; SEGMENTS]) -> [Touch; SEGMENTS] {
+        match self {
+            Self::None => [Touch::NONE; SEGMENTS],
+            Self::Sticks { seed, begun, next } => {
+                if time_s >= next.start_s {
+                    begun.push(*next);
+                    *next = Push::new(*seed, begun.len(), next.end_s());
+                }
+                begun.last().map_or([Touch::NONE; SEGMENTS], |push| push.touches(time_s))
+            }
+            Self::Obstacle(obstacle) => obstacle.touches(free_rad),
+        }
+    }
+
+    /// The pushes that have begun.
+    pub(crate) fn pushes(&self) -> &[Push] {
+        match self {
+            Self::Sticks { begun, .. } => begun,
+            Self::None | Self::Obstacle(_) => &[],
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Obstacle, Touch};
+    use crate::constants::SEGMENTS;
+
+    #[test]
+    fn touch_turns_by_its_bend_from_start_to_end() {
+        for touch in [Touch::contact(0.3, 0.3), Touch::contact(-0.3, 0.7), Touch::reaction(0.3)] {
+            assert!(touch.turned_rad(0.0).abs() < 1e-12);
+            assert!((touch.turned_rad(1.0) - touch.bend_rad).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn obstacle_leaves_an_arm_alone_that_bends_away() {
+        let obstacle = Obstacle { side: 1.0, distance_m: 0.05 };
+        assert!(obstacle.touches(&[-0.5; SEGMENTS]).iter().all(|touch| touch.bend_rad.abs() < f64::EPSILON));
+    }
+
+    #[test]
+    fn obstacle_turns_back_below_and_wraps_at_the_contact() {
+        let obstacle = Obstacle { side: -1.0, distance_m: 0.05 };
+        let touches = obstacle.touches(&[-0.5; SEGMENTS]);
+        assert!(touches[0].bend_rad > 0.05 && touches[3].bend_rad < -0.1, "{touches:?}");
+    }
+}

@@ -1,0 +1,104 @@
+//! Random numbers: one ChaCha stream for each source, so that no reading disturbs another.
+
+use crate::constants::{ARM_SEED, TOLERANCE_LIMIT_SIGMA};
+use core::f64::consts::TAU;
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{Rng, SeedableRng};
+
+/// What the numbers are for. Each source, and each of its devices, has a stream of its own.
+#[derive(Clone, Copy)]
+pub(crate) enum Source {
+    Actuator,
+    Curve,
+    BendSensor,
+    Converter,
+    Imu,
+    Motion,
+    Contact,
+}
+
+/// A stream of random numbers.
+#[derive(Clone, Debug)]
+pub(crate) struct Noise {
+    stream: ChaCha8Rng,
+    spare: Option<f64>,
+}
+
+impl Noise {
+    /// The arm's tolerances: the same in every session.
+    pub(crate) fn of_arm(source: Source, device: usize) -> Self {
+        Self::new(ARM_SEED, 1, source, device)
+    }
+
+    /// What differs between sessions.
+    pub(crate) fn of_session(seed: u64, source: Source, device: usize) -> Self {
+        Self::new(seed, 0, source, device)
+    }
+
+    fn new(seed: u64, domain: u8, source: Source, device: usize) -> Self {
+        let mut key = [0; 32];
+        key[..8].copy_from_slice(&seed.to_le_bytes());
+        key[8] = domain;
+        let mut stream = ChaCha8Rng::from_seed(key);
+        stream.set_stream(((source as u64) << 32) | device as u64);
+        Self { stream, spare: None }
+    }
+
+    /// Uniform in [0, 1), of 53 bits.
+    pub(crate) fn uniform(&mut self) -> f64 {
+        (self.stream.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    /// Uniform between two bounds.
+    pub(crate) fn between(&mut self, (low, high): (f64, f64)) -> f64 {
+        low + (high - low) * self.uniform()
+    }
+
+    /// One of 0 … `count` − 1.
+    pub(crate) fn pick(&mut self, count: usize) -> usize {
+        (self.uniform() * count as f64) as usize
+    }
+
+    /// −1 or 1.
+    pub(crate) fn sign(&mut self) -> f64 {
+        if self.uniform() < 0.5 { -1.0 } else { 1.0 }
+    }
+
+    /// Standard normal, by Box and Muller.
+    pub(crate) fn gaussian(&mut self) -> f64 {
+        if let Some(spare) = self.spare.take() {
+            return spare;
+        }
+        let radius = libm::sqrt(-2.0 * libm::log(1.0 - self.uniform()));
+        let (sin, cos) = libm::sincos(TAU * self.uniform());
+        self.spare = Some(radius * sin);
+        radius * cos
+    }
+
+    /// A tolerance: normal around a mean, its tails cut off.
+    pub(crate) fn tolerance(&mut self, (mean, sigma): (f64, f64)) -> f64 {
+        mean + sigma * self.gaussian().clamp(-TOLERANCE_LIMIT_SIGMA, TOLERANCE_LIMIT_SIGMA)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Noise, Source};
+
+    #[test]
+    fn gaussian_has_mean_zero_and_variance_one() {
+        let mut noise = Noise::of_session(1, Source::Converter, 0);
+        let draws: Vec<f64> = (0..20_000).map(|_| noise.gaussian()).collect();
+        let mean = draws.iter().sum::<f64>() / draws.len() as f64;
+        let variance = draws.iter().map(|x| x * x).sum::<f64>() / draws.len() as f64;
+        assert!(mean.abs() < 0.03, "mean {mean}");
+        assert!((variance - 1.0).abs() < 0.05, "variance {variance}");
+    }
+
+    #[test]
+    fn streams_of_two_devices_differ() {
+        let mut first = Noise::of_session(1, Source::Imu, 0);
+        let mut second = Noise::of_session(1, Source::Imu, 1);
+        assert!(first.uniform().to_bits() != second.uniform().to_bits());
+    }
+}

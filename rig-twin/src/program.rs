@@ -1,0 +1,120 @@
+//! Programs of motion: what a scenario commands of the regulators.
+
+use crate::constants::{
+    CONTACT_DRIVE, CONTACT_PERIODS_S, ENVELOPE, ENVELOPE_PERIODS, FADE_IN_S, FREE_DRIVE, FREE_PERIODS_S, FULL_BEND_RAD,
+    MODULES, OBSTACLE_LEAN_DRIVE, PACE_PERIODS, PACE_RAD, REGULATORS, REST_S, SEGMENTS, SWEEP_DRIVE, SWEEP_PERIODS_S,
+    TOTAL_HEADING_RAD,
+};
+use crate::contact::Obstacle;
+use crate::noise::{Noise, Source};
+use core::f64::consts::TAU;
+
+/// What happens in a session. Each begins with 5 s at rest, straight.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Scenario {
+    /// Calibration: every module swings slowly through its whole range, free.
+    Sweep,
+    /// I: free swings.
+    One,
+    /// II: swings, while a stick pushes the arm now and then.
+    Two,
+    /// III: swings against an obstacle that the arm wraps around.
+    Three,
+}
+
+/// The motion of a session: duties of the regulators over time.
+#[derive(Clone, Debug)]
+pub struct Program {
+    swings: [Swing; MODULES],
+    heading_limit_rad: f64,
+}
+
+impl Program {
+    /// The motion of `scenario` in the session of `seed`.
+    pub fn new(scenario: Scenario, seed: u64) -> Self {
+        let (drive, periods_s) = match scenario {
+            Scenario::Sweep => (SWEEP_DRIVE, SWEEP_PERIODS_S),
+            Scenario::One => (FREE_DRIVE, FREE_PERIODS_S),
+            Scenario::Two | Scenario::Three => (CONTACT_DRIVE, CONTACT_PERIODS_S),
+        };
+        let lean = match scenario {
+            Scenario::Three => OBSTACLE_LEAN_DRIVE * Obstacle::new(seed).side,
+            _ => 0.0,
+        };
+        let heading_limit_rad = if scenario == Scenario::Sweep { f64::INFINITY } else { TOTAL_HEADING_RAD };
+        let swings = core::array::from_fn(|module| {
+            let lean = if module + 1 < MODULES { lean } else { 0.0 };
+            Swing::new(drive, lean, periods_s, &mut Noise::of_session(seed, Source::Motion, module))
+        });
+        Self { swings, heading_limit_rad }
+    }
+
+    /// Duties of the regulators at `t_s` seconds, each 0 … 1: module 1 right, left, module 2 right, left, module 3 right, left.
+    pub fn duties(&self, t_s: f64) -> [f64; REGULATORS] {
+        if !t_s.is_finite() || t_s <= REST_S {
+            return [0.0; REGULATORS];
+        }
+        let fade = smooth_step((t_s - REST_S) / FADE_IN_S);
+        let drives: [f64; MODULES] = core::array::from_fn(|module| fade * self.swings[module].drive(t_s));
+        let heading_rad = drives.iter().sum::<f64>() * FULL_BEND_RAD * (SEGMENTS / MODULES) as f64;
+        let excess = heading_rad / self.heading_limit_rad;
+        let share = 1.0 / libm::sqrt(libm::sqrt(1.0 + excess * excess * excess * excess));
+        core::array::from_fn(|regulator| {
+            let drive = share * drives[regulator / 2];
+            if regulator % 2 == 0 { drive.max(0.0) } else { (-drive).max(0.0) }
+        })
+    }
+}
+
+/// A module's swing: a sine whose size and pace vary slowly, so that it visits its whole range from both sides.
+#[derive(Clone, Debug)]
+struct Swing {
+    drive: f64,
+    lean: f64,
+    carrier: Wave,
+    envelope: Wave,
+    pace: Wave,
+}
+
+impl Swing {
+    fn new(drive: f64, lean: f64, periods_s: (f64, f64), noise: &mut Noise) -> Self {
+        let period_s = noise.between(periods_s);
+        Self {
+            drive,
+            lean,
+            carrier: Wave::new(period_s, noise),
+            envelope: Wave::new(period_s * noise.between(ENVELOPE_PERIODS), noise),
+            pace: Wave::new(period_s * noise.between(PACE_PERIODS), noise),
+        }
+    }
+
+    /// Right minus left at `t_s`, a share of full pressure.
+    fn drive(&self, t_s: f64) -> f64 {
+        let (mean, swing) = ENVELOPE;
+        let envelope = mean + swing * libm::sin(self.envelope.phase_rad(t_s));
+        let pace_rad = PACE_RAD * libm::sin(self.pace.phase_rad(t_s));
+        self.lean + self.drive * envelope * libm::sin(self.carrier.phase_rad(t_s) + pace_rad)
+    }
+}
+
+#[derive(Clone, Debug)]
+struct Wave {
+    rate_rad_per_s: f64,
+    start_rad: f64,
+}
+
+impl Wave {
+    fn new(period_s: f64, noise: &mut Noise) -> Self {
+        Self { rate_rad_per_s: TAU / period_s, start_rad: noise.between((0.0, TAU)) }
+    }
+
+    fn phase_rad(&self, t_s: f64) -> f64 {
+        self.rate_rad_per_s * t_s + self.start_rad
+    }
+}
+
+/// From 0 at 0 to 1 at 1, level at both ends and beyond.
+pub(crate) fn smooth_step(share: f64) -> f64 {
+    let share = share.clamp(0.0, 1.0);
+    share * share * (3.0 - 2.0 * share)
+}

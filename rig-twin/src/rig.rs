@@ -1,0 +1,124 @@
+//! The rig: arm, contacts and sensors on one fixed grid of time.
+
+use crate::actuator::{Actuator, Regulator};
+use crate::bno055::Imu;
+use crate::constants::{
+    BEND_SENSORS, FULL_SCALE_PA, GRID_POINTS_PER_FUSION, GRID_S, GRID_SLACK_S, LONGEST_STEP_S, REGULATORS, SEGMENTS,
+    STRETCH_AT_FULL_PRESSURE,
+};
+use crate::contact::{Contacts, Push};
+use crate::flex::BendSensor;
+use crate::noise::{Noise, Source};
+use crate::program::Scenario;
+use crate::shape::{Curve, EndPose, poses};
+
+/// The simulated arm with its regulators, bend sensors and IMUs.
+///
+/// The arm is always the same one: tolerances do not depend on the seed, so a calibration from one session holds in another. The
+/// seed gives what differs between sessions: noise, contacts, power-up headings, and what the strips remember from their storage.
+#[derive(Clone, Debug)]
+pub struct Rig {
+    grid_points: u64,
+    pending_s: f64,
+    regulators: [Regulator; REGULATORS],
+    actuators: [Actuator; SEGMENTS],
+    contacts: Contacts,
+    curves: [Curve; SEGMENTS],
+    bend_sensors: [BendSensor; BEND_SENSORS],
+    imus: [Imu; SEGMENTS],
+    converter_noise: Noise,
+}
+
+impl Rig {
+    /// The rig at rest, vented and straight, in the session of `seed`. The scenario decides what touches the arm.
+    pub fn new(scenario: Scenario, seed: u64) -> Self {
+        let curves = core::array::from_fn(Curve::new);
+        let poses = poses(&curves);
+        Self {
+            grid_points: 0,
+            pending_s: 0.0,
+            regulators: core::array::from_fn(|_| Regulator::vented()),
+            actuators: core::array::from_fn(Actuator::new),
+            contacts: Contacts::new(scenario, seed),
+            curves,
+            bend_sensors: core::array::from_fn(|index| BendSensor::new(index, seed)),
+            imus: core::array::from_fn(|segment| Imu::new(segment, seed, poses[segment])),
+            converter_noise: Noise::of_session(seed, Source::Converter, 0),
+        }
+    }
+
+    /// Lets `dt_s` seconds pass at these duties, 0 … 1: module 1 right, left, module 2 right, left, module 3 right, left.
+    ///
+    /// The physics advances on a grid of 2 ms and the remainder is carried, so that the state does not depend on how time is
+    /// cut. A step that is not positive does nothing; one above an hour counts as an hour. A duty that is no number counts as 0.
+    pub fn step(&mut self, dt_s: f64, duties: [f64; REGULATORS]) {
+        if dt_s > 0.0 {
+            self.pending_s += dt_s.min(LONGEST_STEP_S);
+        }
+        while self.pending_s >= GRID_S - GRID_SLACK_S {
+            self.pending_s -= GRID_S;
+            self.advance(duties);
+        }
+    }
+
+    /// One grid step.
+    fn advance(&mut self, duties: [f64; REGULATORS]) {
+        self.grid_points += 1;
+        let pressures_pa: [f64; REGULATORS] = core::array::from_fn(|index| self.regulators[index].step(duties[index]));
+        let free_rad: [f64; SEGMENTS] = core::array::from_fn(|segment| {
+            let [right, left] = of_segment(&pressures_pa, segment);
+            self.actuators[segment].step(right - left)
+        });
+        let touches = self.contacts.touches(self.grid_points as f64 * GRID_S, &free_rad);
+        for (segment, curve) in self.curves.iter_mut().enumerate() {
+            let [right, left] = of_segment(&pressures_pa, segment);
+            curve.free_rad = free_rad[segment];
+            curve.touch = touches[segment];
+            curve.stretch = STRETCH_AT_FULL_PRESSURE * (right + left) / (2.0 * FULL_SCALE_PA);
+        }
+        for (index, sensor) in self.bend_sensors.iter_mut().enumerate() {
+            sensor.step(&self.curves[index / 2]);
+        }
+        if self.grid_points.is_multiple_of(GRID_POINTS_PER_FUSION) {
+            for (imu, pose) in self.imus.iter_mut().zip(poses(&self.curves)) {
+                imu.fuse(pose);
+            }
+        }
+    }
+
+    /// Time since the start, s.
+    pub fn time_s(&self) -> f64 {
+        self.grid_points as f64 * GRID_S + self.pending_s
+    }
+
+    /// True world pose of each segment's end, at the last grid point.
+    pub fn truth(&self) -> [EndPose; SEGMENTS] {
+        poses(&self.curves)
+    }
+
+    /// Fresh conversions of the bend sensors, 0 … 4095, in the order 1a, 1b, 2a, … 6b. Each call draws new noise.
+    pub fn adc_counts(&mut self) -> [u16; BEND_SENSORS] {
+        core::array::from_fn(|index| self.bend_sensors[index].convert(&mut self.converter_noise))
+    }
+
+    /// The IMUs' last fusion output, at most 10 ms old: w, x, y, z of each segment's unit, in steps of 1/16384.
+    pub fn imu_quaternions(&self) -> [[i16; 4]; SEGMENTS] {
+        core::array::from_fn(|segment| self.imus[segment].quaternion())
+    }
+
+    /// What contacts add to each segment's bend angle now, rad; 0 where the arm is free.
+    pub fn contact_bends_rad(&self) -> [f64; SEGMENTS] {
+        self.curves.map(|curve| curve.touch.bend_rad)
+    }
+
+    /// The pushes of scenario II that have begun, oldest first; none in the other scenarios.
+    pub fn pushes(&self) -> &[Push] {
+        self.contacts.pushes()
+    }
+}
+
+/// Right and left value of the module that a segment belongs to.
+fn of_segment(regulators: &[f64; REGULATORS], segment: usize) -> [f64; 2] {
+    let right = 2 * (segment / 2);
+    [regulators[right], regulators[right + 1]]
+}

@@ -1,0 +1,139 @@
+//! The arm's true centreline: curvature that is not constant along a segment, integrated.
+//!
+//! Along a curve of length L the heading rises by φ(ξ), ξ = s/L from 0 to 1:
+//!
+//! φ = θ (ξ + m₁ (ξ² − ξ) + m₂ (2ξ³ − 3ξ² + ξ)) + Σ touch · B((ξ − ξ_c)/w)
+//!
+//! m₁ and m₂ multiply the first two Legendre polynomials of the curvature; B is the integral of a biweight kernel.
+
+use crate::constants::{
+    BULGE_MEAN, BULGE_SIGMA, CONNECTOR_LENGTH_M, CURVE_LENGTH_M, SEGMENTS, SIMPSON_INTERVALS, SLOPE_MEAN, SLOPE_SIGMA,
+};
+use crate::contact::Touch;
+use crate::noise::{Noise, Source};
+
+/// World position and heading of a segment's end.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct EndPose {
+    /// Across the base's axis, to the right, m.
+    pub x_m: f64,
+    /// Along the base's axis, m.
+    pub y_m: f64,
+    /// Direction of the tangent, clockwise from the base's y axis, rad, not wrapped.
+    pub heading_rad: f64,
+}
+
+/// One segment's curve at one moment.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Curve {
+    slope: f64,
+    bulge: f64,
+    pub(crate) free_rad: f64,
+    pub(crate) touch: Touch,
+    pub(crate) stretch: f64,
+}
+
+impl Curve {
+    /// Segment `segment` of the arm, counted from 0, straight.
+    pub(crate) fn new(segment: usize) -> Self {
+        let mut arm = Noise::of_arm(Source::Curve, segment);
+        Self {
+            slope: arm.tolerance((SLOPE_MEAN, SLOPE_SIGMA)),
+            bulge: arm.tolerance((BULGE_MEAN, BULGE_SIGMA)),
+            free_rad: 0.0,
+            touch: Touch::NONE,
+            stretch: 0.0,
+        }
+    }
+
+    /// How far the tangent has turned at the share `along` of the curve, rad.
+    pub(crate) fn turned_rad(&self, along: f64) -> f64 {
+        let slope = along * (along - 1.0);
+        let bulge = along * (1.0 + along * (2.0 * along - 3.0));
+        self.free_rad * (along + self.slope * slope + self.bulge * bulge) + self.touch.turned_rad(along)
+    }
+
+    /// End of the segment that starts at `start`, its connector included.
+    fn end(&self, start: EndPose, connector_first: bool) -> EndPose {
+        let start = if connector_first { start.ahead(CONNECTOR_LENGTH_M) } else { start };
+        let (mut x, mut y) = (0.0, 0.0);
+        for node in 0..=SIMPSON_INTERVALS {
+            let weight = match node {
+                0 | SIMPSON_INTERVALS => 1.0,
+                n if n % 2 == 1 => 4.0,
+                _ => 2.0,
+            };
+            let along = node as f64 / SIMPSON_INTERVALS as f64;
+            let (sin, cos) = libm::sincos(start.heading_rad + self.turned_rad(along));
+            x += weight * sin;
+            y += weight * cos;
+        }
+        let scale = CURVE_LENGTH_M * (1.0 + self.stretch) / (3 * SIMPSON_INTERVALS) as f64;
+        let end = EndPose {
+            x_m: start.x_m + scale * x,
+            y_m: start.y_m + scale * y,
+            heading_rad: start.heading_rad + self.turned_rad(1.0),
+        };
+        if connector_first { end } else { end.ahead(CONNECTOR_LENGTH_M) }
+    }
+}
+
+impl EndPose {
+    /// This pose moved along its tangent.
+    fn ahead(self, distance_m: f64) -> Self {
+        let (sin, cos) = libm::sincos(self.heading_rad);
+        Self { x_m: self.x_m + distance_m * sin, y_m: self.y_m + distance_m * cos, ..self }
+    }
+}
+
+/// Poses of all segments' ends, the base at the origin. The connector follows the curve in segments 1, 3, 5 and precedes it in
+/// 2, 4, 6 (DESIGN.md §4).
+pub(crate) fn poses(curves: &[Curve; SEGMENTS]) -> [EndPose; SEGMENTS] {
+    let mut end = EndPose::default();
+    let mut poses = [end; SEGMENTS];
+    for (segment, (curve, pose)) in curves.iter().zip(&mut poses).enumerate() {
+        end = curve.end(end, segment % 2 == 1);
+        *pose = end;
+    }
+    poses
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Curve, EndPose, poses};
+    use crate::constants::{CONNECTOR_LENGTH_M, CURVE_LENGTH_M, SEGMENTS};
+    use crate::contact::Touch;
+
+    fn uniform(bend_rad: f64) -> Curve {
+        Curve { slope: 0.0, bulge: 0.0, free_rad: bend_rad, touch: Touch::NONE, stretch: 0.0 }
+    }
+
+    #[test]
+    fn constant_curvature_ends_on_its_circle() {
+        let bend = 1.2_f64;
+        let end = uniform(bend).end(EndPose::default(), false);
+        let x = CURVE_LENGTH_M / bend * (1.0 - bend.cos()) + CONNECTOR_LENGTH_M * bend.sin();
+        let y = CURVE_LENGTH_M / bend * bend.sin() + CONNECTOR_LENGTH_M * bend.cos();
+        assert!((end.x_m - x).abs() < 1e-6 && (end.y_m - y).abs() < 1e-6, "{end:?} instead of {x}, {y}");
+    }
+
+    #[test]
+    fn connector_that_precedes_the_curve_does_not_turn() {
+        let bend = 1.2_f64;
+        let end = uniform(bend).end(EndPose::default(), true);
+        let y = CURVE_LENGTH_M / bend * bend.sin() + CONNECTOR_LENGTH_M;
+        assert!((end.y_m - y).abs() < 1e-6, "{} m instead of {y} m", end.y_m);
+    }
+
+    #[test]
+    fn straight_arm_has_its_full_length() {
+        let tip = poses(&[uniform(0.0); SEGMENTS])[SEGMENTS - 1];
+        assert!((tip.y_m - 0.582).abs() < 1e-12 && tip.x_m.abs() < 1e-12, "{tip:?}");
+    }
+
+    #[test]
+    fn clockwise_bend_goes_right() {
+        let tip = poses(&[uniform(0.1); SEGMENTS])[SEGMENTS - 1];
+        assert!(tip.x_m > 0.1 && (tip.heading_rad - 0.6).abs() < 1e-12, "{tip:?}");
+    }
+}

@@ -1,0 +1,9 @@
+//! What the twin promises to those who build on it: the same bits, a believable arm, sensors with the paper's flaws.
+
+mod calibration;
+mod determinism;
+mod kinematics;
+mod motion;
+mod recording;
+mod robustness;
+mod sensors;

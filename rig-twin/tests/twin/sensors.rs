@@ -1,0 +1,123 @@
+//! Raw readings: bend sensors that never saturate, IMUs that drift and hold.
+
+use crate::recording::{bends_rad, heading_rad, record, tared_headings_rad};
+use rig_twin::{BEND_SENSORS, Rig, SEGMENTS, Scenario};
+
+#[test]
+fn bend_sensors_do_not_saturate() {
+    for scenario in [Scenario::Sweep, Scenario::One, Scenario::Two, Scenario::Three] {
+        for sample in record(scenario, 2, 300) {
+            assert!(sample.counts.iter().all(|count| (400..3700).contains(count)), "{:?}", sample.counts);
+        }
+    }
+}
+
+/// Bends in degrees and mean counts at rising drives from full left to full right, arm and strips settled at each.
+fn staircase() -> Vec<([f64; SEGMENTS], [f64; BEND_SENSORS])> {
+    let duties = |step: i32| {
+        let drive = f64::from(step) / 20.0;
+        let (right, left) = (drive.max(0.0), (-drive).max(0.0));
+        [right, left, right, left, right, left]
+    };
+    let mut rig = Rig::new(Scenario::Sweep, 1);
+    rig.step(200.0, duties(-20));
+    let stair = |step| {
+        rig.step(20.0, duties(step));
+        let mut means = [0.0; BEND_SENSORS];
+        for _ in 0..100 {
+            means.iter_mut().zip(rig.adc_counts()).for_each(|(mean, count)| *mean += f64::from(count) / 100.0);
+        }
+        (bends_rad(&rig.truth()).map(f64::to_degrees), means)
+    };
+    (-20..=20).map(stair).collect()
+}
+
+#[test]
+fn bend_sensors_are_monotonic_over_the_whole_range() {
+    let stairs = staircase();
+    for sensor in 0..BEND_SENSORS {
+        let direction = if sensor % 2 == 0 { 1.0 } else { -1.0 };
+        for pair in stairs.windows(2) {
+            let [(before_deg, before), (after_deg, after)] = [pair[0], pair[1]];
+            let (from, to) = (before_deg[sensor / 2], after_deg[sensor / 2]);
+            let rise = direction * (after[sensor] - before[sensor]);
+            // The first stair only takes up the actuator's play.
+            assert!(to - from < 1.0 || rise > 1.0, "sensor {sensor}: {rise} counts from {from}° to {to}°");
+        }
+    }
+}
+
+#[test]
+fn converter_noise_is_two_counts() {
+    let mut rig = Rig::new(Scenario::One, 1);
+    rig.step(1.0, [0.0; 6]);
+    let counts: Vec<f64> = (0..5000).map(|_| f64::from(rig.adc_counts()[0])).collect();
+    let mean = counts.iter().sum::<f64>() / 5000.0;
+    let variance = counts.iter().map(|count| (count - mean).powi(2)).sum::<f64>() / 5000.0;
+    assert!((1.7..2.4).contains(&variance.sqrt()), "{} counts", variance.sqrt());
+}
+
+#[test]
+fn worst_imu_drifts_45_degrees_in_900_seconds() {
+    for seed in 1..=3 {
+        let mut rig = Rig::new(Scenario::One, seed);
+        let mut turned = [0.0; SEGMENTS];
+        let mut last = rig.imu_quaternions().map(heading_rad);
+        for _ in 0..900 {
+            rig.step(1.0, [0.0; 6]);
+            let next = rig.imu_quaternions().map(heading_rad);
+            for segment in 0..SEGMENTS {
+                let turn = next[segment] - last[segment];
+                turned[segment] += turn.sin().atan2(turn.cos());
+            }
+            last = next;
+        }
+        let worst = turned.iter().fold(0.0_f64, |worst, turn| worst.max(turn.abs())).to_degrees();
+        assert!((worst - 45.0).abs() < 4.5, "seed {seed}: {worst}°");
+    }
+}
+
+#[test]
+fn others_drift_less_and_both_ways() {
+    let samples = record(Scenario::One, 2, 900);
+    let headings = tared_headings_rad(&samples);
+    let (measured, truth) = (headings[headings.len() - 1], samples[samples.len() - 1].truth);
+    let drifts: Vec<f64> = (0..SEGMENTS - 1).map(|i| (measured[i] - truth[i].heading_rad).to_degrees()).collect();
+    assert!(drifts.iter().all(|drift| drift.abs() < 20.0), "{drifts:?}");
+    assert!(drifts.iter().any(|&drift| drift > 2.0) && drifts.iter().any(|&drift| drift < -2.0), "{drifts:?}");
+}
+
+#[test]
+fn swings_disturb_the_heading_by_a_degree_or_two() {
+    let samples = record(Scenario::One, 2, 300);
+    let headings = tared_headings_rad(&samples);
+    let truths = samples.iter().map(|sample| sample.truth[SEGMENTS - 1].heading_rad);
+    let errors: Vec<f64> =
+        headings.iter().zip(truths).map(|(row, truth)| (row[SEGMENTS - 1] - truth).to_degrees()).collect();
+    // Drift is the same over 10 s as its mean; white noise alone peaks below 0.5°.
+    let peak =
+        errors.windows(101).map(|window| (window[50] - window.iter().sum::<f64>() / 101.0).abs()).fold(0.0, f64::max);
+    assert!((0.8..3.0).contains(&peak), "{peak}°");
+}
+
+#[test]
+fn quaternions_are_unit_and_not_a_pure_yaw() {
+    for sample in record(Scenario::One, 2, 60) {
+        for quaternion in sample.quaternions {
+            let [w, x, y, z] = quaternion.map(|step| f64::from(step) / 16384.0);
+            assert!((w * w + x * x + y * y + z * z - 1.0).abs() < 3e-4, "{quaternion:?}");
+            assert!(x.hypot(y) > 1e-3, "{quaternion:?}");
+        }
+    }
+}
+
+#[test]
+fn fusion_output_holds_for_ten_milliseconds() {
+    let mut rig = Rig::new(Scenario::One, 1);
+    rig.step(0.01, [1.0; 6]);
+    let fused = rig.imu_quaternions();
+    rig.step(0.008, [1.0; 6]);
+    assert_eq!(rig.imu_quaternions(), fused);
+    rig.step(0.002, [1.0; 6]);
+    assert_ne!(rig.imu_quaternions(), fused);
+}
