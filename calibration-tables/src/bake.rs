@@ -71,11 +71,13 @@ impl SegmentKeys {
 }
 
 impl NoiseKeys {
-    /// Covariances as ratios to R_bend, which is all that the gains depend on.
+    /// Covariances as ratios to the larger R, as the estimator takes them.
     fn bake<S: Scalar>(&self, rate_hz: f64) -> Noise<S> {
+        let unit = self.r_imu.max(self.r_bend);
         Noise {
-            q: S::from_f64((self.q / rate_hz / self.r_bend).min(COVARIANCE_LIMIT)),
-            r_imu: S::from_f64(self.r_imu / self.r_bend),
+            q: S::from_f64((self.q / rate_hz / unit).min(COVARIANCE_LIMIT)),
+            r_imu: S::from_f64(self.r_imu / unit),
+            r_bend: S::from_f64(self.r_bend / unit),
             h_imu: S::from_f64(self.h_imu),
             h_bend: S::from_f64(self.h_bend),
         }

@@ -2,7 +2,7 @@
 
 use std::ops::RangeInclusive;
 
-use estimator_core::{COVARIANCE_LIMIT, SENSORS_PER_SEGMENT};
+use estimator_core::{H_LIMIT, SENSORS_PER_SEGMENT};
 
 use crate::file::{ArmFile, BendKeys, FileError, MAX_SEGMENTS, MAX_WINDOW, NoiseKeys, SegmentKeys};
 
@@ -10,8 +10,10 @@ use crate::file::{ArmFile, BendKeys, FileError, MAX_SEGMENTS, MAX_WINDOW, NoiseK
 const MAX_ARM_MM: f64 = 16_000.0;
 /// No segment bends further, rad; fixed point ends at ±32.
 const MAX_ANGLE: f64 = 10.0;
-/// r_imu over r_bend: below it fixed point has no digits left, above it the covariance has no room.
-const VARIANCE_RATIO: RangeInclusive<f64> = 1e-5..=COVARIANCE_LIMIT;
+/// r_imu over r_bend: beyond it fixed point has no digits left for the smaller one.
+const VARIANCE_RATIO: RangeInclusive<f64> = 1e-5..=1e5;
+/// A measurement that is a multiple of the state, but not another one.
+const H: RangeInclusive<f64> = 0.5..=H_LIMIT;
 /// Voltages that the ADC can read, with some room for rounding.
 const ADC_VOLTS: RangeInclusive<f64> = -0.001..=3.301;
 
@@ -99,8 +101,8 @@ impl NoiseKeys {
         within(&format!("{key}.r_bend"), self.r_bend, 1e-12..=1e6)?;
         within(&format!("{key}.r_imu"), self.r_imu, 1e-12..=1e6)?;
         within(&format!("{key}.r_imu / r_bend"), self.r_imu / self.r_bend, VARIANCE_RATIO)?;
-        within(&format!("{key}.h_imu"), self.h_imu, 0.1..=4.0)?;
-        within(&format!("{key}.h_bend"), self.h_bend, 0.1..=4.0)
+        within(&format!("{key}.h_imu"), self.h_imu, H)?;
+        within(&format!("{key}.h_bend"), self.h_bend, H)
     }
 }
 

@@ -7,7 +7,7 @@ use crate::file::{NoiseKeys, SegmentKeys};
 /// A random-walk filter follows motion late by about R/Q, with R the variance of both measurements together. The errors
 /// of bend sensors and anchored IMUs are slow (hysteresis, creep), so that memory does not average them: the default is
 /// a filter that weighs well and remembers little.
-pub const LAG_S: f64 = 0.005;
+pub const LAG_S: f64 = 0.001;
 
 /// Residual of a V–Orient map that does not state its own: the paper's mean.
 pub const RMSE_DEG_UNKNOWN: f64 = 4.72;

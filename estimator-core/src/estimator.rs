@@ -63,9 +63,9 @@ pub struct SegmentEstimate<S> {
 pub struct Fused<S> {
     /// θ_i of KF_orient and P_i of KF_coord.
     pub link: Link<S>,
-    /// Variance of θ_i, as a ratio to KF_orient's R_bend.
+    /// Variance of θ_i, as a ratio to the larger R of KF_orient.
     pub theta_variance: S,
-    /// Variance of each of P_i's two coordinates, as a ratio to KF_coord's R_bend.
+    /// Variance of each of P_i's two coordinates, as a ratio to the larger R of KF_coord.
     pub end_variance: S,
 }
 
@@ -225,8 +225,8 @@ impl<S: Scalar, const W: usize> State<S, W> {
             self.coord.update(link.end, coord.h_imu, coord.r_imu);
         }
         if let Some(link) = bend {
-            self.orient.update(SVector::from([link.theta.value()]), orient.h_bend, S::one());
-            self.coord.update(link.end, coord.h_bend, S::one());
+            self.orient.update(SVector::from([link.theta.value()]), orient.h_bend, orient.r_bend);
+            self.coord.update(link.end, coord.h_bend, coord.r_bend);
         }
         let ((theta, theta_variance), (end, end_variance)) = self.orient.state().zip(self.coord.state())?;
         let link = Link { end, ..Link::new(Angle::from(theta.x), segment) };

@@ -8,22 +8,28 @@ use nalgebra::SVector;
 
 use crate::scalar::{Constant, Scalar};
 
-/// Parameters of one block. Covariances are ratios to R_bend, on which alone the gains depend; R_bend itself is 1.
+/// Parameters of one block. Only the ratios of covariances act on the gains, so all are given as ratios to the larger of
+/// R_imu and R_bend, which keeps them within [`Q`](crate::Q)'s range.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Noise<S> {
     /// Q: growth of the covariance from one sample to the next.
     pub q: S,
     /// R of the drift-corrected IMU's measurement.
     pub r_imu: S,
+    /// R of the bend sensors' measurement.
+    pub r_bend: S,
     /// H of the drift-corrected IMU's measurement.
     pub h_imu: S,
     /// H of the bend sensors' measurement.
     pub h_bend: S,
 }
 
-/// The covariance of a block grows no further than this, as a ratio to R_bend: beyond it nothing is known anyway, and
-/// [`Q`](crate::Q) ends at 32.
-pub const COVARIANCE_LIMIT: f64 = 31.0;
+/// The covariance of a block grows no further than this, as a ratio to the larger R: beyond it a measurement is taken for
+/// what it says anyway, and with H up to [`H_LIMIT`] the sum H² P + R stays below 32, where [`Q`](crate::Q) ends.
+pub const COVARIANCE_LIMIT: f64 = 16.0;
+
+/// The largest H.
+pub const H_LIMIT: f64 = 1.25;
 
 /// State x (`D` coordinates) and their common covariance P, once there was a measurement.
 ///
@@ -50,7 +56,7 @@ impl<S: Scalar, const D: usize> Block<S, D> {
         Self { state: None }
     }
 
-    /// x and P (ratio to R_bend), or `None` before the first measurement.
+    /// x and P (ratio to the larger R), or `None` before the first measurement.
     #[must_use]
     pub const fn state(&self) -> Option<(SVector<S, D>, S)> {
         self.state

@@ -53,7 +53,7 @@ pub use anchor::{Anchor, AnchorRule};
 pub use angle::{Angle, Phase, Turns};
 pub use bend::{BendMap, VOLTS_PER_COUNT};
 pub use estimator::{Estimate, Estimator, Fused, Method, SegmentEstimate, SegmentShape, Shape};
-pub use filter::{Block, COVARIANCE_LIMIT, Noise};
+pub use filter::{Block, COVARIANCE_LIMIT, H_LIMIT, Noise};
 pub use imu::Heading;
 pub use overflow::saturations;
 pub use pcc::{Arc, Link, chain};

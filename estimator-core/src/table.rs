@@ -39,7 +39,7 @@ impl<S: Scalar> Segment<S> {
     /// A segment without bend sensors: `length` and `offset` in m, connector at the end, straight at rest.
     #[must_use]
     pub fn bare(length: f64, offset: f64) -> Self {
-        let noise = Noise { q: S::one(), r_imu: S::one(), h_imu: S::one(), h_bend: S::one() };
+        let noise = Noise { q: S::one(), r_imu: S::one(), r_bend: S::one(), h_imu: S::one(), h_bend: S::one() };
         Self {
             length: S::from_f64(length),
             offset: S::from_f64(offset),

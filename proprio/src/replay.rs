@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use calibration_tables::{ArmFile, MAX_SEGMENTS, MAX_WINDOW};
+use calibration_tables::{ArmFile, Baked, FileError, MAX_SEGMENTS, MAX_WINDOW};
 use estimator_core::{Estimate, Estimator, Method, Scalar, Shape};
 
 use crate::error::Error;
@@ -34,7 +34,23 @@ impl<'p> NamedTable<'p> {
         Ok(Self { file, path })
     }
 
-    fn error(&self, source: calibration_tables::FileError) -> Error {
+    /// The columns that it needs of a session.
+    ///
+    /// # Errors
+    /// [`Error::Table`] on an arm description.
+    pub fn needs(&self) -> Result<Needs, Error> {
+        Needs::of_table(&self.file).map_err(|source| self.error(source))
+    }
+
+    /// The estimator's parameters for one sample rate.
+    ///
+    /// # Errors
+    /// [`Error::Table`] on an arm description.
+    pub fn bake<S: Scalar>(&self, rate_hz: f64) -> Result<Baked<S>, Error> {
+        self.file.bake(rate_hz).map_err(|source| self.error(source))
+    }
+
+    fn error(&self, source: FileError) -> Error {
         Error::Table { path: self.path.to_owned(), source }
     }
 }
@@ -66,10 +82,9 @@ pub fn replay<S: Scalar>(
     table: &NamedTable,
     mut visit: impl FnMut(&Row, &Outcome<S>) -> Result<(), Error>,
 ) -> Result<Extent, Error> {
-    let needs = Needs::of_table(&table.file).map_err(|source| table.error(source))?;
-    let mut reader = SessionReader::open(session, &needs)?;
+    let mut reader = SessionReader::open(session, &table.needs()?)?;
     let rate_hz = reader.rate_hz().unwrap_or(table.file.rate_hz);
-    let baked = table.file.bake::<S>(rate_hz).map_err(|source| table.error(source))?;
+    let baked = table.bake::<S>(rate_hz)?;
     let baked = baked.table();
     let mut estimator: Box<HostEstimator<S>> =
         Box::new(Estimator::new(&baked).expect("the checks of the file are at least as strict"));

@@ -3,8 +3,8 @@
 use crate::actuator::Lag;
 use crate::constants::{
     ACCELERATION_LAG_S, DRIFT_RAD_PER_S, DRIFT_SESSION_SIGMA, DRIFT_WALK_RAD_PER_S,
-    ERROR_PER_ACCELERATION_RAD_S2_PER_M, ERROR_PER_SPIN_S2, FUSION_S, HEADING_NOISE_RAD, QUATERNION_UNIT_STEPS,
-    TILT_SIGMA_RAD,
+    ERROR_PER_ACCELERATION_RAD_S2_PER_M, ERROR_PER_SPIN_S2, FUSION_S, GYRO_SENSITIVITY_SIGMA, HEADING_NOISE_RAD,
+    QUATERNION_UNIT_STEPS, TILT_SIGMA_RAD,
 };
 use crate::noise::{Noise, Source};
 use crate::shape::EndPose;
@@ -14,6 +14,7 @@ use core::f64::consts::PI;
 #[derive(Clone, Debug)]
 pub(crate) struct Imu {
     mount_rad: f64,
+    sensitivity: f64,
     pitch_rad: f64,
     roll_rad: f64,
     rate_rad_per_s: f64,
@@ -51,6 +52,7 @@ impl Imu {
         let mut noise = Noise::of_session(seed, Source::Imu, segment);
         let mut imu = Self {
             mount_rad: noise.between((-PI, PI)),
+            sensitivity: arm.tolerance((1.0, GYRO_SENSITIVITY_SIGMA)),
             pitch_rad: arm.tolerance((0.0, TILT_SIGMA_RAD)),
             roll_rad: arm.tolerance((0.0, TILT_SIGMA_RAD)),
             rate_rad_per_s: DRIFT_RAD_PER_S[segment] * noise.tolerance((1.0, DRIFT_SESSION_SIGMA)),
@@ -72,7 +74,7 @@ impl Imu {
         self.rate_rad_per_s += self.walk_rad_per_s * self.noise.gaussian();
         self.drift_rad += self.rate_rad_per_s * FUSION_S;
         let noise = HEADING_NOISE_RAD * self.noise.gaussian();
-        let heading = self.mount_rad + pose.heading_rad + self.drift_rad + error + noise;
+        let heading = self.mount_rad + self.sensitivity * pose.heading_rad + self.drift_rad + error + noise;
         self.quaternion = quaternion(-heading, self.pitch_rad, self.roll_rad);
     }
 

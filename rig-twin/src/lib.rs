@@ -11,14 +11,15 @@
 //! - Segments do not bend with constant curvature, least of all where something touches them, and they stretch a little: exact
 //!   bend angles put through constant-curvature kinematics miss the true tip by 2 to 5 mm.
 //! - Bend sensors have a tolerance each, a memory of direction, an overshoot that relaxes, creep, a ripple that no quadratic
-//!   follows, and 2 counts of noise: the best quadratic misses by 4.2° on average. Sensor b is mounted the other way round, so
+//!   follows, and 2 counts of noise: the best quadratic misses by 4.1° on average. Sensor b is mounted the other way round, so
 //!   its counts fall where those of a rise.
 //! - IMU headings start anywhere and drift: units 1 to 6 by 0.010, −0.008, 0.014, 0.011, −0.011 and 0.050 °/s, of which the last
-//!   is 45° in 900 s. Each session varies these by some percent and lets them wander; acceleration adds a degree or two.
+//!   is 45° in 900 s. Each session varies these by some percent and lets them wander; acceleration adds a degree or two, and the
+//!   gyroscopes' sensitivities differ by 1 %.
 //!
 //! Tolerances belong to the arm and are the same in every session, so a calibration on [`Scenario::Sweep`] holds for all seeds.
-//! The flaws' sizes, and the arm among several random ones, were chosen to come near the paper's figures: that results on the
-//! twin resemble the paper's is no evidence for either.
+//! The flaws' sizes were chosen to come near the paper's figures for maps and drift: that results on the twin resemble the
+//! paper's is no evidence for either.
 //!
 //! Contacts are told by what they do to the curvature; there are no forces.
 //!

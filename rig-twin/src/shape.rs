@@ -87,7 +87,7 @@ impl EndPose {
 }
 
 /// Poses of all segments' ends, the base at the origin. The connector follows the curve in segments 1, 3, 5 and precedes it in
-/// 2, 4, 6 (DESIGN.md §4).
+/// 2, 4, 6 (the reference arm).
 pub(crate) fn poses(curves: &[Curve; SEGMENTS]) -> [EndPose; SEGMENTS] {
     let mut end = EndPose::default();
     let mut poses = [end; SEGMENTS];

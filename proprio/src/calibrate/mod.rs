@@ -2,8 +2,8 @@
 //!
 //! 1. Each bend sensor's quadratic is fitted to the truth by least squares (paper, eq. 1), after checks that name a
 //!    sensor that is dead, saturated, swapped or bent back.
-//! 2. The session is replayed with these maps; what is left of the bend angles' and the anchored IMUs' errors gives the
-//!    filters' default parameters.
+//! 2. The session is replayed with these maps; the errors that bend sensors and IMUs make give the filters' default
+//!    parameters.
 
 mod error;
 mod fit;
@@ -66,6 +66,6 @@ pub fn calibrate(session: &Path, arm: &NamedTable) -> Result<Calibration, Error>
         (segment.orient, segment.coord) = (None, None);
     }
     let mut table = NamedTable { file: table, path: arm.path };
-    residuals::set_filters(session, &mut table)?;
+    residuals::set_filters(session, &mut table, sweep.rate_hz)?;
     Ok(Calibration { table: table.file, sensors: sensors.into_iter().map(|sensor| sensor.report).collect(), warnings })
 }

@@ -3,7 +3,7 @@
 use crate::recording::{Sample, bends_rad, differences, record, rms, tared_headings_rad};
 use rig_twin::{SEGMENTS, Scenario};
 
-/// Tip of a chain of constant curvatures (DESIGN.md §4), m.
+/// Tip of a chain of constant curvatures, m.
 fn pcc_tip_m(bends_rad: [f64; SEGMENTS]) -> (f64, f64) {
     let (mut x, mut y, mut heading) = (0.0, 0.0, 0.0_f64);
     for (segment, bend) in bends_rad.into_iter().enumerate() {

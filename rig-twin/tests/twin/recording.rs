@@ -38,7 +38,7 @@ pub fn differences(headings_rad: [f64; SEGMENTS]) -> [f64; SEGMENTS] {
     std::array::from_fn(|i| headings_rad[i] - if i > 0 { headings_rad[i - 1] } else { 0.0 })
 }
 
-/// Heading of a quaternion, clockwise positive (DESIGN.md §4).
+/// Heading of a quaternion, clockwise positive.
 pub fn heading_rad(quaternion: [i16; 4]) -> f64 {
     let [w, x, y, z] = quaternion.map(|step| f64::from(step) / 16384.0);
     -(2.0 * (w * z + x * y)).atan2(1.0 - 2.0 * (y * y + z * z))
