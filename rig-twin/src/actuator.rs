@@ -10,7 +10,7 @@ use crate::noise::{Noise, Source};
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Lag {
     pub(crate) value: f64,
-    share: f64,
+    pub(crate) share: f64,
 }
 
 impl Lag {

@@ -15,6 +15,7 @@ pub(crate) enum Source {
     Imu,
     Motion,
     Contact,
+    CommonMode,
 }
 
 /// A stream of random numbers.

@@ -3,11 +3,11 @@
 use crate::actuator::{Actuator, Regulator};
 use crate::bno055::Imu;
 use crate::constants::{
-    BEND_SENSORS, FULL_SCALE_PA, GRID_POINTS_PER_FUSION, GRID_S, GRID_SLACK_S, LONGEST_STEP_S, REGULATORS, SEGMENTS,
-    STRETCH_AT_FULL_PRESSURE,
+    BEND_SENSORS, FULL_SCALE_PA, FUSION_S, GRID_POINTS_PER_FUSION, GRID_S, GRID_SLACK_S, LONGEST_STEP_S, REGULATORS,
+    SEGMENTS, STRETCH_AT_FULL_PRESSURE,
 };
 use crate::contact::{Contacts, Push};
-use crate::flex::BendSensor;
+use crate::flex::{BendSensor, CommonMode};
 use crate::noise::{Noise, Source};
 use crate::program::Scenario;
 use crate::shape::{Curve, EndPose, poses};
@@ -25,6 +25,8 @@ pub struct Rig {
     contacts: Contacts,
     curves: [Curve; SEGMENTS],
     bend_sensors: [BendSensor; BEND_SENSORS],
+    common_modes: [CommonMode; SEGMENTS],
+    common_rad: [f64; SEGMENTS],
     imus: [Imu; SEGMENTS],
     converter_noise: Noise,
 }
@@ -42,6 +44,8 @@ impl Rig {
             contacts: Contacts::new(scenario, seed),
             curves,
             bend_sensors: core::array::from_fn(|index| BendSensor::new(index, seed)),
+            common_modes: core::array::from_fn(|segment| CommonMode::new(segment, seed, FUSION_S)),
+            common_rad: [0.0; SEGMENTS],
             imus: core::array::from_fn(|segment| Imu::new(segment, seed, poses[segment])),
             converter_noise: Noise::of_session(seed, Source::Converter, 0),
         }
@@ -77,9 +81,10 @@ impl Rig {
             curve.stretch = STRETCH_AT_FULL_PRESSURE * (right + left) / (2.0 * FULL_SCALE_PA);
         }
         for (index, sensor) in self.bend_sensors.iter_mut().enumerate() {
-            sensor.step(&self.curves[index / 2]);
+            sensor.step(&self.curves[index / 2], self.common_rad[index / 2]);
         }
         if self.grid_points.is_multiple_of(GRID_POINTS_PER_FUSION) {
+            self.common_rad = core::array::from_fn(|segment| self.common_modes[segment].step());
             for (imu, pose) in self.imus.iter_mut().zip(poses(&self.curves)) {
                 imu.fuse(pose);
             }

@@ -61,15 +61,31 @@ fn calibration_holds_in_sessions_of_other_seeds() {
     }
 }
 
+/// Errors of the mean of both sensors of a segment, degrees.
+fn segment_errors_deg(sweep: &[Sample], session: &[Sample], segment: usize) -> Vec<f64> {
+    let [a, b] = [2 * segment, 2 * segment + 1].map(|sensor| errors_deg(session, sensor, fit(sweep, sensor)));
+    a.into_iter().zip(b).map(|(a, b)| f64::midpoint(a, b)).collect()
+}
+
 #[test]
-fn ten_second_mean_of_the_error_is_smaller_than_the_error() {
+fn ten_second_mean_of_a_segments_error_is_smaller_than_the_error() {
     let sweep = record(Scenario::Sweep, 1, 600);
     let swings = record(Scenario::One, 2, 300);
-    for sensor in 0..BEND_SENSORS {
-        let errors = errors_deg(&swings, sensor, fit(&sweep, sensor));
+    for segment in 0..BEND_SENSORS / 2 {
+        let errors = segment_errors_deg(&sweep, &swings, segment);
         let means = errors.windows(100).map(|window| window.iter().sum::<f64>() / 100.0);
         let (instant, mean) = (rms(errors.iter().copied()), rms(means));
-        assert!(mean < 0.85 * instant, "sensor {sensor}: {mean}° of {instant}°");
+        assert!(mean < 0.85 * instant, "segment {}: {mean}° of {instant}°", segment + 1);
+    }
+}
+
+#[test]
+fn two_sensors_of_a_segment_know_more_than_one() {
+    let sweep = record(Scenario::Sweep, 1, 600);
+    for segment in 0..BEND_SENSORS / 2 {
+        let both = rms(segment_errors_deg(&sweep, &sweep, segment).into_iter());
+        let one = rms(errors_deg(&sweep, 2 * segment, fit(&sweep, 2 * segment)).into_iter());
+        assert!(both < 0.85 * one, "segment {}: {both}° of {one}°", segment + 1);
     }
 }
 
