@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
+use toml_edit::Item;
 
 /// The `format` that this crate reads and writes.
 const FORMAT: u32 = 1;
@@ -146,7 +147,7 @@ pub enum FileError {
     Read(#[from] std::io::Error),
     /// It is not TOML, or a key is missing, unknown or of the wrong type. The text names line and column.
     #[error("{}", .0.to_string().trim_end())]
-    Syntax(#[from] toml::de::Error),
+    Syntax(#[from] toml_edit::de::Error),
     /// The format number is from another time.
     #[error("format = {0} is not known; this version reads format = {FORMAT}")]
     Format(u32),
@@ -194,11 +195,11 @@ impl ArmFile {
     /// As [`ArmFile::load`].
     pub fn parse(text: &str) -> Result<Self, FileError> {
         let text = text.trim_start_matches('\u{feff}');
-        let version: Version = toml::from_str(text)?;
+        let version: Version = toml_edit::de::from_str(text)?;
         if version.format != FORMAT {
             return Err(FileError::Format(version.format));
         }
-        let file: Self = toml::from_str(text)?;
+        let file: Self = toml_edit::de::from_str(text)?;
         file.check()?;
         Ok(file)
     }
@@ -209,7 +210,15 @@ impl ArmFile {
     /// Never: every value of the format has a form in TOML.
     #[must_use]
     pub fn to_toml(&self) -> String {
-        toml::to_string(self).expect("every value of the format has a form in TOML")
+        let mut document = toml_edit::ser::to_document(self).expect("every value of the format has a form in TOML");
+        // Tables of their own for the outermost keys, one line each for sensors and filters within.
+        for (_, item) in document.iter_mut() {
+            *item = match std::mem::take(item).into_array_of_tables() {
+                Ok(tables) => Item::ArrayOfTables(tables),
+                Err(other) => other.into_table().map_or_else(std::convert::identity, Item::Table),
+            };
+        }
+        document.to_string()
     }
 
     /// Length of the straight arm, mm.

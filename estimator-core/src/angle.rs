@@ -55,7 +55,7 @@ impl Phase {
     }
 
     /// The direction of the vector (`x`, `y`), counter-clockwise from the x axis in the sense of `atan2(y, x)`, to
-    /// 1 nrad; `None` for the zero vector. Constant time but for two branches, without 64-bit division.
+    /// 3 nrad, two units; `None` for the zero vector. Constant time but for two branches, without 64-bit division.
     #[must_use]
     pub fn atan2(y: i64, x: i64) -> Option<Self> {
         let longest = x.unsigned_abs().max(y.unsigned_abs());
@@ -219,7 +219,7 @@ fn round_to_i64(value: f64) -> i64 {
 
 /// A bend angle θ = `rest` + 2π·`turns`, rad, clockwise positive: whole turns beside the remainder.
 ///
-/// Only raw IMU angles ever have turns, once they have drifted past 180°; every other method leaves them 0.
+/// Only IMU angles ever have turns, once they have drifted past 180° and no bend sensor anchors them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Angle<S> {
     /// The angle without the turns, rad.

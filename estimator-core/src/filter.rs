@@ -33,6 +33,9 @@ pub const H_LIMIT: f64 = 1.25;
 
 /// State x (`D` coordinates) and their common covariance P, once there was a measurement.
 ///
+/// [`Q`](crate::Q) stays within 1e-6 rad or m of `f64` while Q is at least 1/1000 of the larger R a sample, a memory of
+/// some thirty samples; a slower filter has too few digits in P (2·10⁻⁵ at 1/10 000).
+///
 /// ```
 /// use estimator_core::Block;
 /// use nalgebra::SVector;

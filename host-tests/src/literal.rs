@@ -133,7 +133,10 @@ pub fn replay(arm: &Arm, rows: &[Row]) -> Vec<Answer> {
                 bend: pcc_shape(arm, bend[t].clone()),
                 imu_o: pcc_shape(arm, imu_o),
                 imu_c: pcc_shape(arm, imu_c),
-                fusion: Shape { end: world(&fused), theta: fused.iter().map(|link| link.map(|(theta, _)| theta)).collect() },
+                fusion: Shape {
+                    end: world(&fused),
+                    theta: fused.iter().map(|link| link.map(|(theta, _)| theta)).collect(),
+                },
                 offsets: offsets[t].clone(),
             }
         })
@@ -155,7 +158,8 @@ fn bend_angles(arm: &Arm, rows: &[Row]) -> Rows {
         let segments = arm.segments.iter().zip(&row.counts);
         segments
             .map(|(segment, counts)| {
-                let read = segment.bend.iter().zip(counts).filter_map(|(sensor, counts)| Some(angle(sensor, (*counts)?)));
+                let read =
+                    segment.bend.iter().zip(counts).filter_map(|(sensor, counts)| Some(angle(sensor, (*counts)?)));
                 mean(&read.collect::<Vec<_>>())
             })
             .collect()
@@ -241,10 +245,7 @@ pub fn pcc(segment: &Segment, theta: f64) -> [f64; 2] {
         ((1.0 - theta.cos()) / theta, theta.sin() / theta)
     };
     let connector = if segment.offset_at_end { [theta.sin(), theta.cos()] } else { [0.0, 1.0] };
-    [
-        segment.length * lateral + segment.offset * connector[0],
-        segment.length * axial + segment.offset * connector[1],
-    ]
+    [segment.length * lateral + segment.offset * connector[0], segment.length * axial + segment.offset * connector[1]]
 }
 
 fn pcc_shape(arm: &Arm, theta: Vec<Option<f64>>) -> Shape {
@@ -295,8 +296,8 @@ impl<'a> Fusion<'a> {
 
 /// One step of a filter with the measurements that there are, stacked.
 fn measure(filter: &mut Option<Filter>, rate: f64, noise: &Noise, imu: Option<Vec<f64>>, bend: Option<Vec<f64>>) {
-    /// The estimator ends here, in units of R_bend.
-    const LIMIT: f64 = 31.0;
+    /// The covariance ends here, in units of the larger R.
+    const LIMIT: f64 = 16.0;
     let stacked = [(imu, noise.h_imu, noise.r_imu), (bend, noise.h_bend, noise.r_bend)];
     let (mut z, mut h, mut r) = (Vec::new(), Vec::new(), Vec::new());
     for (measured, gain, variance) in stacked {
@@ -315,7 +316,7 @@ fn measure(filter: &mut Option<Filter>, rate: f64, noise: &Noise, imu: Option<Ve
     let r = Matrix::new(r.len(), r.len(), |i, j| if i == j { r[i] } else { 0.0 });
     match filter {
         Some(filter) => {
-            filter.predict(noise.q / rate, LIMIT * noise.r_bend);
+            filter.predict(noise.q / rate, LIMIT * noise.r_imu.max(noise.r_bend));
             filter.update(&z, &h, &r);
         }
         None if z.rows() > 0 => *filter = Some(Filter::start(&z, &h, &r)),

@@ -77,6 +77,9 @@ pub struct Extent {
 ///
 /// # Errors
 /// What is wrong with the session or the table, and whatever `visit` returns.
+///
+/// # Panics
+/// Never: the checks of the table's file are at least as strict as the estimator's.
 pub fn replay<S: Scalar>(
     session: &Path,
     table: &NamedTable,
@@ -86,8 +89,7 @@ pub fn replay<S: Scalar>(
     let rate_hz = reader.rate_hz().unwrap_or(table.file.rate_hz);
     let baked = table.bake::<S>(rate_hz)?;
     let baked = baked.table();
-    let mut estimator: Box<HostEstimator<S>> =
-        Box::new(Estimator::new(&baked).expect("the checks of the file are at least as strict"));
+    let mut estimator: Box<HostEstimator<S>> = Box::new(Estimator::new(&baked).expect("the file was checked"));
 
     let mut progress = Progress::new(format!("replaying {}", session.display()), reader.progress().1);
     let (mut samples, mut first_us, mut last_us) = (0, None, 0);

@@ -26,10 +26,13 @@ pub fn sensors(sensors: &[SensorReport]) -> String {
     format!("{}\nmean RMSE of the V–Orient maps: {mean:.2} deg\n", text(&mut table))
 }
 
+/// Picks one figure of a method.
+type Pick = fn(&Figures) -> Option<f64>;
+
 /// A table for each figure: a line a session, a column a method.
 pub fn replay(report: &Report) -> String {
     let length = report.length_mm;
-    let parts: [(String, fn(&Figures) -> Option<f64>); 4] = [
+    let parts: [(String, Pick); 4] = [
         ("Tip error, RMSE in mm".to_owned(), |figures| figures.tip_rmse_mm),
         (format!("Tip error, RMSE in % of {length} mm"), |figures| figures.tip_rmse_percent),
         ("Tip error, 75th percentile in mm".to_owned(), |figures| figures.tip_p75_mm),
@@ -38,7 +41,7 @@ pub fn replay(report: &Report) -> String {
     parts.map(|(title, figure)| format!("{title}\n{}\n", figures(report, figure))).join("\n")
 }
 
-fn figures(report: &Report, figure: fn(&Figures) -> Option<f64>) -> String {
+fn figures(report: &Report, figure: Pick) -> String {
     let mut heads = vec!["session", "samples", "seconds"];
     heads.extend(Method::ALL.map(Method::name));
     let mut table = table(&heads);

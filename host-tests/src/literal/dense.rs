@@ -53,7 +53,9 @@ impl Matrix {
             let scale = left[k][k];
             assert!(scale != 0.0, "a singular matrix");
             for row in [&mut left[k], &mut right[k]] {
-                row.iter_mut().for_each(|cell| *cell /= scale);
+                for cell in row.iter_mut() {
+                    *cell /= scale;
+                }
             }
             for i in (0..n).filter(|&i| i != k) {
                 let factor = left[i][k];
@@ -85,7 +87,8 @@ impl Filter {
     pub(super) fn predict(&mut self, q: f64, limit: f64) {
         let n = self.x.rows();
         let a = Matrix::identity(n);
-        let grown = a.times(&self.p).times(&a.transposed()).plus(&Matrix::new(n, n, |i, j| if i == j { q } else { 0.0 }));
+        let grown =
+            a.times(&self.p).times(&a.transposed()).plus(&Matrix::new(n, n, |i, j| if i == j { q } else { 0.0 }));
         self.x = a.times(&self.x);
         self.p = Matrix::new(n, n, |i, j| grown.at(i, j).min(limit));
     }

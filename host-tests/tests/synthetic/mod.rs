@@ -58,7 +58,7 @@ pub struct Kind {
     pub noise: NoiseRanges,
 }
 
-/// Least and greatest filter parameters, with covariances as ratios to R_bend and Q per row.
+/// Least and greatest filter parameters, with Q per row, and Q and R_imu as ratios to R_bend.
 #[derive(Debug, Clone, Copy)]
 pub struct NoiseRanges {
     pub q: [f64; 2],
@@ -215,13 +215,17 @@ fn board_reading(kind: &Kind, heading: f64, random: &mut Random) -> estimator_co
     estimator_core::ImuReading::Quaternion(quaternion.map(|part| (part * f64::from(1 << 30)).round() as i32))
 }
 
-/// The arm's segments as the estimator takes them: process noise per sample, covariances as ratios to R_bend.
+/// The arm's segments as the estimator takes them: process noise per sample, covariances as ratios to the larger R.
 pub fn segments<S: Scalar>(arm: &literal::Arm) -> Vec<Segment<S>> {
-    let noise = |noise: &literal::Noise| Noise {
-        q: S::from_f64(noise.q / arm.rate / noise.r_bend),
-        r_imu: S::from_f64(noise.r_imu / noise.r_bend),
-        h_imu: S::from_f64(noise.h_imu),
-        h_bend: S::from_f64(noise.h_bend),
+    let noise = |noise: &literal::Noise| {
+        let unit = noise.r_imu.max(noise.r_bend);
+        Noise {
+            q: S::from_f64(noise.q / arm.rate / unit),
+            r_imu: S::from_f64(noise.r_imu / unit),
+            r_bend: S::from_f64(noise.r_bend / unit),
+            h_imu: S::from_f64(noise.h_imu),
+            h_bend: S::from_f64(noise.h_bend),
+        }
     };
     let segment = |segment: &literal::Segment| {
         let map = |k: usize| segment.bend.get(k).map(|s| BendMap::from_volts(s.c2, s.c1, s.c0, VOLTS));

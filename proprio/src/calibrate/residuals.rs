@@ -72,7 +72,7 @@ pub(super) fn set_filters(session: &Path, table: &mut NamedTable, rate_hz: f64) 
 impl Gatherer<'_> {
     fn add_row(&mut self, i: usize, row: &Row, outcome: &Outcome<f64>, rule: &AnchorRule) {
         let Some(estimate) = outcome.estimate.segments.get(i) else { return };
-        let imu = estimate.imu_o.map(|theta| theta.rad());
+        let imu = estimate.imu_o.map(Angle::rad);
         let truth = row.true_theta(i);
         self.anchor.push(rule, imu.zip(truth).map(|(imu, truth)| Turns::from_rad(imu - truth)));
         let imu_c = imu.zip(self.anchor.offset()).map(|(imu, offset)| imu - offset.rad());

@@ -1,0 +1,23 @@
+//! Developer commands that cargo alone cannot do; `.cargo/config.toml` names them.
+
+mod accept;
+mod demo;
+mod tool;
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    let command = std::env::args().nth(1);
+    let done = match command.as_deref() {
+        Some("demo") => demo::run(),
+        Some("accept") => accept::run(),
+        _ => Err("usage: cargo xtask demo | accept".to_owned()),
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}

@@ -1,0 +1,66 @@
+//! Runs the `proprio` that was built from this workspace.
+
+use std::env;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// The tool, and the folder that it works in.
+pub struct Tool {
+    binary: PathBuf,
+    folder: PathBuf,
+}
+
+/// The workspace's folder.
+pub fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).parent().map(Path::to_owned).unwrap_or_default()
+}
+
+impl Tool {
+    /// Builds the tool, and makes its folder `name` below `target`.
+    pub fn build(name: &str) -> Result<Self, String> {
+        cargo(&["build", "--release", "--package", "proprio"], &[])?;
+        let target = env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), |path| root().join(path));
+        let tool = Self {
+            binary: target.join("release").join(format!("proprio{}", env::consts::EXE_SUFFIX)),
+            folder: target.join(name),
+        };
+        fs::create_dir_all(&tool.folder).map_err(|error| format!("{}: {error}", tool.folder.display()))?;
+        Ok(tool)
+    }
+
+    /// Runs the tool with arguments as they are typed, and shows them.
+    pub fn run(&self, arguments: &str) -> Result<(), String> {
+        println!("\n$ proprio {arguments}");
+        check(Command::new(&self.binary).current_dir(&self.folder).args(arguments.split_whitespace()))
+    }
+
+    /// Copies a file of the workspace into the folder.
+    pub fn take(&self, from: &str, to: &str) -> Result<(), String> {
+        copy(&root().join(from), &self.folder.join(to))
+    }
+
+    /// Copies a file of the folder into the workspace.
+    pub fn give(&self, from: &str, to: &str) -> Result<(), String> {
+        copy(&self.folder.join(from), &root().join(to))
+    }
+}
+
+/// Runs cargo in the workspace, with additional variables.
+pub fn cargo(arguments: &[&str], variables: &[(&str, &str)]) -> Result<(), String> {
+    let cargo = env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    check(Command::new(cargo).current_dir(root()).args(arguments).envs(variables.iter().copied()))
+}
+
+fn copy(from: &Path, to: &Path) -> Result<(), String> {
+    let done = to.parent().map_or(Ok(()), fs::create_dir_all).and_then(|()| fs::copy(from, to));
+    done.map(|_| ()).map_err(|error| format!("{} to {}: {error}", from.display(), to.display()))
+}
+
+fn check(command: &mut Command) -> Result<(), String> {
+    match command.status() {
+        Ok(status) if status.success() => Ok(()),
+        Ok(status) => Err(format!("{}: {status}", command.get_program().display())),
+        Err(error) => Err(format!("{}: {error}", command.get_program().display())),
+    }
+}
