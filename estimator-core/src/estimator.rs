@@ -169,6 +169,7 @@ impl<'t, S: Scalar, const N: usize, const W: usize> Estimator<'t, S, N, W> {
 
             let bend = theta_bend.map(|theta| Link::new(Angle::from(theta), segment));
             let imu_c = theta_corrected.map(|theta| Link::new(Angle::from(theta), segment));
+            // There is room for all segments: `new` has checked.
             let _ = segments.push(SegmentEstimate {
                 bend,
                 imu_o: theta_imu.map(Angle::from),
@@ -191,7 +192,11 @@ impl<'t, S: Scalar, const N: usize, const W: usize> Estimator<'t, S, N, W> {
             Method::Fusion => of.fusion.map(|fused| fused.link),
         });
         let thetas = links.clone().map(|link| link.map(|link| link.theta));
-        thetas.zip(chain(links)).map(|(theta, end)| SegmentShape { theta, end }).collect()
+        let mut shape = Vec::new();
+        for (theta, end) in thetas.zip(chain(links)) {
+            let _ = shape.push(SegmentShape { theta, end }); // There is room for all that the estimate has.
+        }
+        shape
     }
 }
 

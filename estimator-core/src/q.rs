@@ -58,6 +58,8 @@ impl Q {
         f64::from(self.0) / f64::from(1_u32 << Self::FRACTION_BITS)
     }
 
+    /// Saturates a result that was computed in 64 bits.
+    #[inline]
     fn fit(bits: i64) -> Self {
         i32::try_from(bits).map_or_else(|_| Self::overflowed(bits < 0), Self)
     }
@@ -72,6 +74,7 @@ impl Q {
 impl Add for Q {
     type Output = Self;
 
+    #[inline]
     fn add(self, other: Self) -> Self {
         self.0.checked_add(other.0).map_or_else(|| Self::overflowed(self.0 < 0), Self)
     }
@@ -80,6 +83,7 @@ impl Add for Q {
 impl Sub for Q {
     type Output = Self;
 
+    #[inline]
     fn sub(self, other: Self) -> Self {
         self.0.checked_sub(other.0).map_or_else(|| Self::overflowed(self.0 < 0), Self)
     }
@@ -88,6 +92,7 @@ impl Sub for Q {
 impl Mul for Q {
     type Output = Self;
 
+    #[inline]
     fn mul(self, other: Self) -> Self {
         const HALF: i64 = 1 << (Q::FRACTION_BITS - 1);
         Self::fit((i64::from(self.0) * i64::from(other.0) + HALF) >> Self::FRACTION_BITS)
@@ -97,6 +102,7 @@ impl Mul for Q {
 impl Div for Q {
     type Output = Self;
 
+    #[inline]
     fn div(self, other: Self) -> Self {
         let quotient = i64::from(divide(self.0.unsigned_abs(), other.0.unsigned_abs(), Self::FRACTION_BITS));
         Self::fit(if (self.0 < 0) == (other.0 < 0) { quotient } else { -quotient })
@@ -106,46 +112,54 @@ impl Div for Q {
 impl Neg for Q {
     type Output = Self;
 
+    #[inline]
     fn neg(self) -> Self {
         self.0.checked_neg().map_or_else(|| Self::overflowed(false), Self)
     }
 }
 
 impl AddAssign for Q {
+    #[inline]
     fn add_assign(&mut self, other: Self) {
         *self = *self + other;
     }
 }
 
 impl SubAssign for Q {
+    #[inline]
     fn sub_assign(&mut self, other: Self) {
         *self = *self - other;
     }
 }
 
 impl MulAssign for Q {
+    #[inline]
     fn mul_assign(&mut self, other: Self) {
         *self = *self * other;
     }
 }
 
 impl Zero for Q {
+    #[inline]
     fn zero() -> Self {
         Self(0)
     }
 
+    #[inline]
     fn is_zero(&self) -> bool {
         self.0 == 0
     }
 }
 
 impl One for Q {
+    #[inline]
     fn one() -> Self {
         Self(1 << Self::FRACTION_BITS)
     }
 }
 
 impl Scalar for Q {
+    #[inline]
     fn constant(constant: Constant) -> Self {
         constant.q
     }
@@ -158,28 +172,34 @@ impl Scalar for Q {
         self.to_f64()
     }
 
+    #[inline]
     fn from_int(value: i32) -> Self {
         Self::fit(i64::from(value) << Self::FRACTION_BITS)
     }
 
+    #[inline]
     fn from_fraction(value: i32, shift: u32) -> Self {
         Self::fit(i64::from(value) << (Self::FRACTION_BITS - shift.min(16)))
     }
 
+    #[inline]
     fn round(self) -> i32 {
         ((i64::from(self.0) + (1 << (Self::FRACTION_BITS - 1))) >> Self::FRACTION_BITS) as i32
     }
 
+    #[inline]
     fn from_phase(phase: Phase) -> Self {
         const RAD: i64 = 1_686_629_713; // 2π/64 in units of 2⁻³⁴
         Self(((i64::from(phase.bits()) * RAD + (1 << 33)) >> 34) as i32)
     }
 
+    #[inline]
     fn to_turns(self) -> Turns {
         const TURNS: i64 = 1_367_130_551; // 64/2π in units of 2⁻²⁷
         Turns::from_bits((i64::from(self.0) * TURNS + (1 << 26)) >> 27)
     }
 
+    #[inline]
     fn share_of_unwrapped(rest: Self, turns: i32) -> Self {
         let total = i64::from(rest.0) + i64::from(TWO_PI.q.0) * i64::from(turns);
         let excess = 33_u32.saturating_sub(total.unsigned_abs().leading_zeros());

@@ -1,0 +1,52 @@
+//! Time of one estimator step, all of fusion's path: `cargo bench --package estimator-core`.
+
+use divan::{Bencher, black_box};
+use estimator_core::{AnchorRule, BendMap, Estimator, ImuReading, Phase, Q, Sample, Scalar, Segment, Table, Turns};
+
+const SEGMENTS: [usize; 3] = [6, 12, 16];
+/// Longer than the anchor's window, so that its sums run as they do for hours.
+const SAMPLES: usize = 1000;
+
+fn main() {
+    divan::main();
+}
+
+fn segments<S: Scalar>(count: usize) -> Vec<Segment<S>> {
+    let map = BendMap::from_volts(0.1, 1.2, -2.0, [0.5, 2.5]);
+    (0..count).map(|_| Segment { bend: [Some(map); 2], ..Segment::bare(0.080, 0.017) }).collect()
+}
+
+/// An arm that swings, with drift; no two samples are the same.
+fn samples(count: usize) -> Vec<Sample<16>> {
+    let sample = |k: usize| {
+        let swing = (k as f64 / 50.0).sin();
+        let mut sample = Sample::missing(k as u64 * 10_000);
+        for i in 0..count {
+            sample.bend[i] = [Some((2000.0 + 300.0 * swing) as u16), Some((2010.0 + 290.0 * swing) as u16)];
+            let heading = 20.0 * swing * (i + 1) as f64 + 0.0005 * k as f64;
+            sample.imu[i] = Some(ImuReading::Heading(Phase::from_degrees(heading)));
+        }
+        sample
+    };
+    (0..SAMPLES).map(sample).collect()
+}
+
+fn steps<S: Scalar>(bencher: Bencher, count: usize) {
+    let segments = segments::<S>(count);
+    let anchor = AnchorRule { window: 100, decimation: 10, threshold: Turns::from_bits(5_965_232) };
+    let table = Table { segments: &segments, tare_samples: 100, anchor };
+    let samples = samples(count);
+    let mut estimator = Estimator::<S, 16, 100>::new(&table).expect("a valid table");
+    let mut next = samples.iter().cycle();
+    bencher.bench_local(|| next.next().map(|sample| estimator.step(black_box(sample))));
+}
+
+#[divan::bench(args = SEGMENTS)]
+fn fixed_point(bencher: Bencher, segments: usize) {
+    steps::<Q>(bencher, segments);
+}
+
+#[divan::bench(args = SEGMENTS)]
+fn float(bencher: Bencher, segments: usize) {
+    steps::<f64>(bencher, segments);
+}
