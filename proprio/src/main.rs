@@ -4,20 +4,27 @@ mod cli;
 mod commands;
 mod tables;
 
+use std::panic::catch_unwind;
 use std::process::ExitCode;
 
 use clap::Parser;
 use proprio::error::Error;
 
 fn main() -> ExitCode {
-    match cli::Cli::parse().command.run() {
-        Ok(()) => ExitCode::SUCCESS,
+    let command = cli::Cli::parse().command;
+    match catch_unwind(|| command.run()) {
+        Ok(Ok(())) => ExitCode::SUCCESS,
         // A reader that has seen enough, such as `head`, is no failure.
-        Err(Error::Stdout(error)) if error.kind() == std::io::ErrorKind::BrokenPipe => ExitCode::SUCCESS,
-        Err(error) => {
-            let bold = cli::STYLES.get_error();
-            anstream::eprintln!("{bold}error:{bold:#} {error}\n{bold:#}  help: {}", error.remedy());
+        Ok(Err(Error::Stdout(error))) if error.kind() == std::io::ErrorKind::BrokenPipe => ExitCode::SUCCESS,
+        Ok(Err(error)) => {
+            let (error_style, help_style) = (cli::STYLES.get_error(), cli::STYLES.get_valid());
+            let remedy = error.remedy();
+            anstream::eprintln!("{error_style}error:{error_style:#} {error}\n{help_style}  help:{help_style:#} {remedy}");
             ExitCode::from(2)
+        }
+        Err(_) => {
+            anstream::eprintln!("This is a fault of proprio. Please report it, with the message above and the command.");
+            ExitCode::from(1)
         }
     }
 }
