@@ -31,13 +31,16 @@ pub struct AnchorRule {
 /// ```
 #[derive(Debug, Clone, Copy)]
 pub struct Anchor<const W: usize> {
-    window: [Option<Turns>; W],
+    window: [Turns; W],
     oldest: usize,
     mean: Mean,
     group: Mean,
     group_ticks: u16,
     offset: Option<Turns>,
 }
+
+/// Stands in the window for a value that was missing, at half the memory of an `Option`: no arm turns so far.
+const MISSING: Turns = Turns::from_bits(i64::MIN);
 
 #[derive(Debug, Clone, Copy)]
 struct Mean {
@@ -48,15 +51,15 @@ struct Mean {
 impl Mean {
     const EMPTY: Self = Self { sum: Turns::ZERO, count: 0 };
 
-    fn add(&mut self, value: Option<Turns>) {
-        if let Some(value) = value {
+    fn add(&mut self, value: Turns) {
+        if value != MISSING {
             self.sum = self.sum + value;
             self.count += 1;
         }
     }
 
-    fn remove(&mut self, value: Option<Turns>) {
-        if let Some(value) = value {
+    fn remove(&mut self, value: Turns) {
+        if value != MISSING {
             self.sum = self.sum - value;
             self.count -= 1;
         }
@@ -71,17 +74,17 @@ impl<const W: usize> Anchor<W> {
     /// An anchor that has seen nothing.
     #[must_use]
     pub const fn new() -> Self {
-        Self { window: [None; W], oldest: 0, mean: Mean::EMPTY, group: Mean::EMPTY, group_ticks: 0, offset: None }
+        Self { window: [MISSING; W], oldest: 0, mean: Mean::EMPTY, group: Mean::EMPTY, group_ticks: 0, offset: None }
     }
 
     /// Takes this sample's difference θ_imu,i − θ_bend,i, or `None` where one of the two is unknown.
     pub fn push(&mut self, rule: &AnchorRule, difference: Option<Turns>) {
-        self.group.add(difference);
+        self.group.add(difference.unwrap_or(MISSING));
         self.group_ticks += 1;
         if self.group_ticks < rule.decimation {
             return;
         }
-        let newest = self.group.value();
+        let newest = self.group.value().unwrap_or(MISSING);
         (self.group, self.group_ticks) = (Mean::EMPTY, 0);
         if let Some(place) = self.window.get_mut(self.oldest) {
             self.mean.remove(*place);

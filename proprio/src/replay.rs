@@ -71,6 +71,8 @@ pub struct Extent {
     pub samples: u64,
     /// From the first row to the last.
     pub seconds: f64,
+    /// Whether the file's last line is ended; if not, its last number may have been cut.
+    pub ends_with_line: bool,
 }
 
 /// Replays a session and shows every row and its outcome to `visit`.
@@ -104,5 +106,6 @@ pub fn replay<S: Scalar>(
             progress.set(reader.progress().0);
         }
     }
-    Ok(Extent { samples, seconds: (last_us - first_us.unwrap_or(last_us)) as f64 / 1e6 })
+    let seconds = (last_us - first_us.unwrap_or(last_us)) as f64 / 1e6;
+    Ok(Extent { samples, seconds, ends_with_line: reader.ends_with_line() })
 }

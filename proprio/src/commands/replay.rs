@@ -87,7 +87,10 @@ fn replay_all<S: Scalar>(sessions: &[PathBuf], table: &NamedTable, out: Option<&
             })?,
         };
         all.append(&score);
-        let Extent { samples, seconds } = extent;
+        let Extent { samples, seconds, ends_with_line } = extent;
+        if !ends_with_line {
+            super::warn(&format_args!("{}: the last line has no end; its last number may be cut", path.display()));
+        }
         let figures = Methods { methods: score.figures() };
         reports.push(SessionReport { path: path.clone(), samples, seconds, figures });
     }

@@ -2,6 +2,7 @@
 
 use std::collections::VecDeque;
 use std::fs::File;
+use std::io::{self, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
 use calibration_tables::MAX_SEGMENTS;
@@ -25,6 +26,7 @@ pub struct SessionReader {
     last_time_us: u64,
     ahead: VecDeque<Row>,
     rate_hz: Option<f64>,
+    ends_with_line: bool,
 }
 
 impl SessionReader {
@@ -34,11 +36,12 @@ impl SessionReader {
     /// Any [`SessionError`] of the header and the first rows.
     pub fn open(path: &Path, needs: &Needs) -> Result<Self, SessionError> {
         let fail = |line, problem| SessionError { path: path.to_owned(), line, column: None, problem };
-        let file = File::open(path).map_err(|error| fail(None, Problem::Read(error)))?;
+        let mut file = File::open(path).map_err(|error| fail(None, Problem::Read(error)))?;
         let metadata = file.metadata().map_err(|error| fail(None, Problem::Read(error)))?;
         if metadata.is_dir() {
             return Err(fail(None, Problem::Directory));
         }
+        let ends_with_line = ends_with_line(&mut file).map_err(|error| fail(None, Problem::Read(error)))?;
         let mut csv = csv::ReaderBuilder::new().buffer_capacity(1 << 16).from_reader(file);
         let header = csv.headers().map_err(|error| csv_error(path, error))?;
         if header.iter().all(str::is_empty) {
@@ -56,6 +59,7 @@ impl SessionReader {
             last_time_us: 0,
             ahead: VecDeque::new(),
             rate_hz: None,
+            ends_with_line,
         };
         reader.look_ahead()?;
         Ok(reader)
@@ -91,6 +95,12 @@ impl SessionReader {
     /// Which bend sensors of each segment the session has.
     pub fn bend_sensors(&self) -> impl Iterator<Item = [bool; 2]> {
         self.columns.segments.iter().map(|segment| segment.bend.map(|column| column.is_some()))
+    }
+
+    /// Whether the last line is ended; if not, its last number may have been cut.
+    #[must_use]
+    pub fn ends_with_line(&self) -> bool {
+        self.ends_with_line
     }
 
     /// How far the file was read, and its size, in bytes.
@@ -165,6 +175,16 @@ impl SessionReader {
     fn error(&self, line: Option<u64>, column: Option<String>, problem: Problem) -> SessionError {
         SessionError { path: self.path.clone(), line, column, problem }
     }
+}
+
+/// Looks at the last byte, and goes back to the first. What cannot be wound, such as a pipe, is taken for whole.
+fn ends_with_line(file: &mut File) -> io::Result<bool> {
+    let mut last = [b'\n'];
+    if file.seek(SeekFrom::End(-1)).is_ok() {
+        file.read_exact(&mut last)?;
+        file.rewind()?;
+    }
+    Ok(last == [b'\n'])
 }
 
 fn csv_error(path: &Path, error: csv::Error) -> SessionError {
