@@ -32,7 +32,7 @@ fn main() {
 fn session() -> PathBuf {
     let folder = FOLDER.get_or_init(|| {
         let folder = tempfile::tempdir().expect("a temporary folder");
-        let file = OutputFile::create(&folder.path().join("session.csv")).expect("a session file");
+        let file = OutputFile::create(&folder.path().join("session.csv"), &[]).expect("a session file");
         let mut writer = SessionWriter::new(file, ImuColumns::Deg).expect("room on the disk");
         for sample in Simulation::new(Scenario::One, 1, SECONDS, RATE_HZ).expect("a valid run") {
             writer.write(&sample).expect("room on the disk");

@@ -22,11 +22,17 @@ enum Sink {
 }
 
 impl OutputFile {
-    /// Begins a file that is to be named `path`; what has that name stays until [`OutputFile::finish`].
+    /// Begins a file that is to be named `path`; what has that name stays until [`OutputFile::finish`]. It must not be
+    /// one of the `inputs` that it is made of: a recording cannot be had again.
     ///
     /// # Errors
-    /// [`Error::Output`] where the folder does not exist or cannot be written to.
-    pub fn create(path: &Path) -> Result<Self, Error> {
+    /// [`Error::Overwrite`], and [`Error::Output`] where the folder does not exist or cannot be written to.
+    pub fn create(path: &Path, inputs: &[&Path]) -> Result<Self, Error> {
+        let same =
+            |input: &&Path| fs::canonicalize(input).is_ok_and(|input| fs::canonicalize(path).is_ok_and(|p| p == input));
+        if inputs.iter().any(same) {
+            return Err(Error::Overwrite(path.to_owned()));
+        }
         let sink = Sink::open(path).map_err(|source| Error::Output { path: path.to_owned(), source })?;
         Ok(Self { path: path.to_owned(), sink })
     }
@@ -57,6 +63,7 @@ impl Sink {
             _ => {}
         }
         let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        fs::metadata(folder)?;
         let mut builder = tempfile::Builder::new();
         builder.prefix(".proprio-").suffix(".part");
         #[cfg(unix)]

@@ -79,11 +79,15 @@ fn check_alive(name: &str, pairs: &[(u16, f64)]) -> Result<(), CalibrationError>
         return Err(CalibrationError::Dead { name: name.to_owned(), range: range_counts });
     }
     for end in ends(pairs) {
-        let at_end = || pairs.iter().filter(|(counts, _)| counts.abs_diff(end) <= END_COUNTS);
-        let share = at_end().count() as f64 / pairs.len() as f64;
-        let [lo, hi] = range(at_end().map(|(_, theta)| *theta));
-        if share > SATURATED.0 && hi - lo > SATURATED.1 {
-            let (percent, span_deg) = (share * 100.0, (hi - lo).to_degrees());
+        let at_end = pairs.iter().filter(|(counts, _)| counts.abs_diff(end) <= END_COUNTS);
+        let mut thetas: Vec<f64> = at_end.map(|(_, theta)| *theta).collect();
+        thetas.sort_unstable_by(f64::total_cmp);
+        let share = thetas.len() as f64 / pairs.len() as f64;
+        // Without a tenth at either side: a noisy sensor gets to its end now and then.
+        let tenth = thetas.len() / 10;
+        let span = thetas[thetas.len() - 1 - tenth] - thetas[tenth];
+        if share > SATURATED.0 && span > SATURATED.1 {
+            let (percent, span_deg) = (share * 100.0, span.to_degrees());
             return Err(CalibrationError::Saturated { name: name.to_owned(), counts: end, percent, span_deg });
         }
     }

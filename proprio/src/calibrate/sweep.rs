@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use calibration_tables::{ArmFile, MAX_SEGMENTS};
-use estimator_core::{Heading, ImuReading, SENSORS_PER_SEGMENT, Turns};
+use estimator_core::{Heading, ImuReading, Phase, SENSORS_PER_SEGMENT, Turns};
 
 use super::error::{CalibrationError, Warning};
 use crate::error::Error;
@@ -33,11 +33,17 @@ pub(super) struct Sweep {
     pub rate_hz: f64,
     /// True bend angle of each segment, rad.
     pub theta: Vec<Vec<Option<f64>>>,
-    /// True heading of each segment's end, rad.
+    /// True heading of each segment's end, unwrapped, rad.
     pub heading: Vec<Vec<Option<f64>>>,
     /// Unwrapped heading of each IMU, rad.
     pub imu: Vec<Vec<Option<f64>>>,
     pub sensors: Vec<SensorColumn>,
+}
+
+/// Headings come within one turn, from cameras as from IMUs.
+struct Unwrap {
+    imu: [Heading<f64>; MAX_SEGMENTS],
+    truth: [Heading<f64>; MAX_SEGMENTS],
 }
 
 impl Sweep {
@@ -52,10 +58,11 @@ impl Sweep {
             imu: vec![Vec::new(); n],
             sensors: sensor_columns(&reader).map_err(refuse)?,
         };
-        let mut headings = [Heading::<f64>::new(0, Turns::ZERO); MAX_SEGMENTS];
+        let unread = [Heading::new(0, Turns::ZERO); MAX_SEGMENTS];
+        let mut unwrap = Unwrap { imu: unread, truth: unread };
         let mut progress = Progress::new(format!("reading {}", session.display()), reader.progress().1);
         while let Some(row) = reader.next_row()? {
-            sweep.push(&row, &mut headings);
+            sweep.push(&row, &mut unwrap);
             if row.sample.time_us % 1_000_000 == 0 {
                 progress.set(reader.progress().0);
             }
@@ -63,11 +70,13 @@ impl Sweep {
         Ok(sweep)
     }
 
-    fn push(&mut self, row: &Row, headings: &mut [Heading<f64>]) {
-        for (i, heading) in headings.iter_mut().enumerate().take(self.theta.len()) {
+    fn push(&mut self, row: &Row, unwrap: &mut Unwrap) {
+        for i in 0..self.theta.len() {
             self.theta[i].push(row.true_theta(i));
-            self.heading[i].push(row.truth[i].map(|pose| pose.heading_rad));
-            self.imu[i].push(heading.read(row.sample.imu[i].and_then(ImuReading::heading)).map(Turns::rad));
+            let truth = row.truth[i].map(|pose| Phase::from_rad(pose.heading_rad));
+            self.heading[i].push(unwrap.truth[i].read(truth).map(Turns::rad));
+            let imu = row.sample.imu[i].and_then(ImuReading::heading);
+            self.imu[i].push(unwrap.imu[i].read(imu).map(Turns::rad));
         }
         for sensor in &mut self.sensors {
             sensor.counts.push(row.sample.bend[sensor.segment][sensor.place]);

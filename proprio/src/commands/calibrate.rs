@@ -16,7 +16,7 @@ pub fn run(args: &Calibrate) -> Result<(), Error> {
     for warning in &calibration.warnings {
         super::warn(&format_args!("{}: {warning}", args.session.display()));
     }
-    let mut file = OutputFile::create(&args.output)?;
+    let mut file = OutputFile::create(&args.output, &[&args.session, &args.arm])?;
     file.write_all(calibration.table.to_toml().as_bytes()).map_err(|error| file.error(error))?;
     file.finish()?;
     super::print(&tables::sensors(&calibration.sensors))

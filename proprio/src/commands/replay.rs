@@ -99,7 +99,8 @@ fn replay_all<S: Scalar>(sessions: &[PathBuf], table: &NamedTable, out: Option<&
 
 fn replay_to_file<S: Scalar>(path: &Path, table: &NamedTable, score: &mut Score, out: &Path) -> Result<Extent, Error> {
     let output = |source| Error::Output { path: out.to_owned(), source };
-    let mut writer = EstimateWriter::new(OutputFile::create(out)?, table.file.segments.len()).map_err(output)?;
+    let mut writer = EstimateWriter::new(OutputFile::create(out, &[path, table.path])?, table.file.segments.len())
+        .map_err(output)?;
     let extent = replay::<S>(path, table, |row, outcome| {
         score.add(row, outcome);
         writer.write(outcome).map_err(output)

@@ -11,7 +11,7 @@ use crate::cli::{ScenarioName, Simulate};
 
 pub fn run(args: &Simulate) -> Result<(), Error> {
     let simulation = Simulation::new(args.scenario.into(), args.seed, args.seconds, args.rate)?;
-    let mut file = OutputFile::create(&args.output)?;
+    let mut file = OutputFile::create(&args.output, &[])?;
     let mut progress = Progress::new("simulating".to_owned(), simulation.samples());
     write(&mut file, args, simulation, &mut progress).map_err(|error| file.error(error))?;
     file.finish()
