@@ -25,6 +25,7 @@ pub mod estimates;
 pub mod output;
 pub mod progress;
 pub mod replay;
+pub mod report;
 pub mod score;
 pub mod session;
 pub mod simulate;

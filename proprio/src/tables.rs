@@ -4,9 +4,8 @@ use comfy_table::presets::NOTHING;
 use comfy_table::{CellAlignment, Table};
 use estimator_core::Method;
 use proprio::calibrate::SensorReport;
+use proprio::report::{Methods, Report};
 use proprio::score::Figures;
-
-use crate::commands::{Methods, Report};
 
 /// One line a bend sensor.
 pub fn sensors(sensors: &[SensorReport]) -> String {

@@ -5,8 +5,6 @@ mod completions;
 mod replay;
 mod simulate;
 
-pub use replay::{Methods, Report};
-
 use std::io::{self, Write};
 
 use proprio::error::Error;

@@ -2,51 +2,16 @@
 
 use std::path::{Path, PathBuf};
 
-use estimator_core::{Method, Q, Scalar, saturations};
+use estimator_core::{Q, Scalar, saturations};
 use proprio::error::Error;
 use proprio::estimates::EstimateWriter;
 use proprio::output::OutputFile;
 use proprio::replay::{Extent, NamedTable, replay};
-use proprio::score::{Figures, Score};
-use serde::Serialize;
-use serde::ser::{SerializeMap, Serializer};
+use proprio::report::{Methods, Report, SessionReport};
+use proprio::score::Score;
 
 use crate::cli::Replay;
 use crate::tables;
-
-/// What `--json` prints.
-#[derive(Debug, Serialize)]
-pub struct Report {
-    pub sessions: Vec<SessionReport>,
-    pub all: Methods,
-    #[serde(skip)]
-    pub length_mm: f64,
-}
-
-/// One session of it.
-#[derive(Debug, Serialize)]
-pub struct SessionReport {
-    pub path: PathBuf,
-    pub samples: u64,
-    pub seconds: f64,
-    #[serde(flatten)]
-    pub figures: Methods,
-}
-
-/// Figures by method.
-#[derive(Debug, Serialize)]
-pub struct Methods {
-    #[serde(serialize_with = "by_name")]
-    pub methods: [Figures; Method::ALL.len()],
-}
-
-fn by_name<S: Serializer>(figures: &[Figures; Method::ALL.len()], serializer: S) -> Result<S::Ok, S::Error> {
-    let mut map = serializer.serialize_map(Some(figures.len()))?;
-    for (method, figures) in Method::ALL.iter().zip(figures) {
-        map.serialize_entry(method.name(), figures)?;
-    }
-    map.end()
-}
 
 pub fn run(args: &Replay) -> Result<(), Error> {
     if args.out.is_some() && args.sessions.len() != 1 {

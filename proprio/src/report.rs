@@ -1,0 +1,51 @@
+//! The figures of sessions, as `replay` prints them.
+
+use std::path::PathBuf;
+
+use estimator_core::Method;
+use serde::Serialize;
+use serde::ser::{SerializeMap, Serializer};
+
+use crate::score::Figures;
+
+/// The figures of one or more sessions, in the form of `replay --json`.
+#[derive(Debug, Serialize)]
+pub struct Report {
+    /// Each session by itself.
+    pub sessions: Vec<SessionReport>,
+    /// All of them together.
+    pub all: Methods,
+    /// Length of the arm, mm.
+    #[serde(skip)]
+    pub length_mm: f64,
+}
+
+/// The figures of one session.
+#[derive(Debug, Serialize)]
+pub struct SessionReport {
+    /// The file.
+    pub path: PathBuf,
+    /// Number of samples.
+    pub samples: u64,
+    /// From the first sample to the last.
+    pub seconds: f64,
+    /// Its figures.
+    #[serde(flatten)]
+    pub figures: Methods,
+}
+
+/// Figures by method.
+#[derive(Debug, Serialize)]
+pub struct Methods {
+    /// Those of each of [`Method::ALL`].
+    #[serde(serialize_with = "by_name")]
+    pub methods: [Figures; Method::ALL.len()],
+}
+
+fn by_name<S: Serializer>(figures: &[Figures; Method::ALL.len()], serializer: S) -> Result<S::Ok, S::Error> {
+    let mut map = serializer.serialize_map(Some(figures.len()))?;
+    for (method, figures) in Method::ALL.iter().zip(figures) {
+        map.serialize_entry(method.name(), figures)?;
+    }
+    map.end()
+}
