@@ -133,7 +133,7 @@ pub(crate) const OBSTACLE_SEGMENT: usize = 3;
 /// Lever from the bending base to the contact (assumed: half the arm below it).
 pub(crate) const OBSTACLE_LEVER_M: f64 = 0.16;
 /// Most that the obstacle turns the arm back (assumed: then it slides).
-pub(crate) const OBSTACLE_YIELD_RAD: f64 = 30.0 * DEGREE_RAD;
+pub(crate) const OBSTACLE_YIELD_RAD: f64 = 22.0 * DEGREE_RAD;
 /// Wrapping around the contact, a share of the turning back below it (assumed).
 pub(crate) const OBSTACLE_WRAP_SHARE: f64 = 0.70;
 /// Wrapping of the next segment, a share of the turning back (assumed).

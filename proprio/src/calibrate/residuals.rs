@@ -16,7 +16,7 @@ use crate::replay::{NamedTable, Outcome, replay};
 use crate::session::Row;
 
 /// Bounds of R_imu : R_bend: the session is only a sample, and neither measurement is beyond doubt.
-const RATIO: [f64; 2] = [0.1, 10.0];
+const RATIO: [f64; 2] = [0.05, 10.0];
 
 /// Mean squares of one filter's measurement errors on one segment.
 #[derive(Debug, Clone, Copy, Default)]
