@@ -180,7 +180,7 @@ pub(crate) const RIPPLE_PERIOD_RAD: (f64, f64) = (56.0 * DEGREE_RAD, 74.0 * DEGR
 /// Bend that both strips of a segment mistake for something they feel alike, one on each side: warmth, squeeze, stretch;
 /// RMS. It is in each map's residual and cancels in their mean (assumed: errors of 4.72° that did not cancel would make
 /// the paper's bend sensors miss the tip by twice the 24.6 mm that it gives).
-pub(crate) const COMMON_MODE_RAD: f64 = 3.3 * DEGREE_RAD;
+pub(crate) const COMMON_MODE_RAD: f64 = 4.0 * DEGREE_RAD;
 /// Time constant of that error (assumed).
 pub(crate) const COMMON_MODE_S: f64 = 40.0;
 /// Resistance of a flat strip (Spectra Symbol datasheet: 25 kΩ), of which a sensor keeps a factor.

@@ -11,7 +11,7 @@
 //! - Segments do not bend with constant curvature, least of all where something touches them, and they stretch a little: exact
 //!   bend angles put through constant-curvature kinematics miss the true tip by 2 to 5 mm.
 //! - Bend sensors have a tolerance each, a memory of direction, an overshoot that relaxes, creep, a ripple that no quadratic
-//!   follows, something that both of a segment feel alike, and 2 counts of noise: the best quadratic misses by 4.2° on average.
+//!   follows, something that both of a segment feel alike, and 2 counts of noise: the best quadratic misses by 4.7° on average.
 //!   Sensor b is mounted the other way round, so its counts fall where those of a rise, and what both feel alike cancels.
 //! - IMU headings start anywhere and drift: units 1 to 6 by 0.010, −0.008, 0.014, 0.011, −0.011 and 0.050 °/s, of which the last
 //!   is 45° in 900 s. Each session varies these by some percent and lets them wander; acceleration adds a degree or two, and the

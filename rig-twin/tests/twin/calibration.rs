@@ -55,9 +55,11 @@ fn quadratic_misses_the_sweep_by_the_papers_degrees() {
 #[test]
 fn calibration_holds_in_sessions_of_other_seeds() {
     let sweep = record(Scenario::Sweep, 1, 600);
+    let at_home = mean_rmse_deg(&sweep, &sweep);
     for (scenario, seed) in [(Scenario::One, 2), (Scenario::Two, 3), (Scenario::Three, 4)] {
         let rmse = mean_rmse_deg(&sweep, &record(scenario, seed, 300));
-        assert!(rmse < 5.5, "{scenario:?}: {rmse}°");
+        // Another arm's maps, with other resistances, are off by tens of degrees.
+        assert!(rmse < 1.5 * at_home, "{scenario:?}: {rmse}° after {at_home}°");
     }
 }
 
