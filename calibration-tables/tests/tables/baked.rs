@@ -1,0 +1,179 @@
+//! From a table to the estimator's parameters.
+
+use calibration_tables::{ArmFile, FileError};
+use estimator_core::{Estimator, Method, OffsetAt, Q, SENSORS_PER_SEGMENT, Sample, Segment};
+
+use super::common::{DESCRIPTION, TABLE, edited, parse};
+
+/// The first segment, baked in floats.
+fn first(text: &str, rate_hz: f64) -> Segment<f64> {
+    parse(text).bake::<f64>(rate_hz).expect("it is a table").table().segments[0]
+}
+
+fn near(found: f64, expected: f64) {
+    // Floats through one conversion of units and back.
+    assert!((found - expected).abs() <= 1e-12 * expected.abs(), "{found}, expected {expected}");
+}
+
+#[test]
+fn an_arm_description_refuses_to_bake_and_names_the_segment() {
+    let error = parse(DESCRIPTION).bake::<Q>(10.0).expect_err("it is no table");
+    assert!(matches!(error, FileError::NotCalibrated(1)), "{error}");
+    assert!(error.remedy().contains("proprio calibrate"), "{}", error.remedy());
+}
+
+#[test]
+fn a_table_of_which_one_segment_is_missing_names_that_segment() {
+    let error = parse(&edited("bend = []\n", "")).bake::<Q>(10.0).expect_err("it is no table");
+    assert!(matches!(error, FileError::NotCalibrated(2)), "{error}");
+}
+
+#[test]
+fn an_arm_without_bend_sensors_bakes() {
+    let file = parse(&format!("{DESCRIPTION}bend = []\n"));
+    let baked = file.bake::<Q>(10.0).expect("it is a table");
+    let table = baked.table();
+    assert_eq!(table.segments[0].bend, [None; SENSORS_PER_SEGMENT]);
+    assert!(Estimator::<Q, 1, 100>::new(&table).is_ok());
+}
+
+#[test]
+fn geometry_is_in_metres() {
+    let segment = first(TABLE, 10.0);
+    near(segment.length, 0.080);
+    near(segment.offset, 0.017);
+    assert_eq!(segment.offset_at, OffsetAt::End);
+    assert_eq!(parse(TABLE).bake::<f64>(10.0).expect("a table").table().segments[1].offset_at, OffsetAt::Start);
+}
+
+#[test]
+fn reference_headings_are_baked() {
+    let baked = parse(TABLE).bake::<f64>(10.0).expect("a table");
+    let found: Vec<f64> = baked.table().segments.iter().map(|segment| segment.reference.rad().to_degrees()).collect();
+    // Turns are whole units of 2⁻³² turns.
+    assert!((found[0] - 5.0).abs() < 1e-7 && (found[1] + 5.0).abs() < 1e-7, "{found:?}");
+}
+
+#[test]
+fn the_reference_pose_is_straight_where_none_is_given() {
+    let segment = first(&edited("heading_deg = [5.0, -5.0]\n", ""), 10.0);
+    assert_eq!(segment.reference.bits(), 0);
+}
+
+/// θ = c2 V² + c1 V + c0, V = counts · 3.3 / 4095, within the sensor's voltages.
+#[test]
+fn the_baked_map_is_that_of_the_file() {
+    let map = first(TABLE, 10.0).bend[0].expect("the segment has a sensor");
+    for counts in [500_u16, 1000, 2000, 3000, 3200] {
+        let volts = f64::from(counts) * 3.3 / 4095.0;
+        let (found, expected) = (map.angle(counts), 0.1 * volts * volts + 0.8 * volts - 1.5);
+        assert!((found - expected).abs() < 1e-9, "{counts} counts: {found}, expected {expected}");
+    }
+}
+
+#[test]
+fn a_sensor_of_which_only_the_map_is_known_bakes_with_defaults() {
+    let text = format!("{DESCRIPTION}bend = [{{ c0 = -1.5, c1 = 0.8, c2 = 0.1 }}]\n");
+    let segment = first(&text, 10.0);
+    let map = segment.bend[0].expect("the segment has a sensor");
+    for counts in [1_u16, 4095] {
+        let volts = f64::from(counts) * 3.3 / 4095.0;
+        let expected = 0.1 * volts * volts + 0.8 * volts - 1.5;
+        assert!((map.angle(counts) - expected).abs() < 1e-9, "the whole range of the converter: {counts} counts");
+    }
+    for noise in [segment.orient, segment.coord] {
+        assert!(noise.q > 0.0 && noise.r_imu > 0.0 && noise.r_bend > 0.0, "{noise:?}");
+        near(noise.h_imu, 1.0);
+        near(noise.h_bend, 1.0);
+    }
+}
+
+#[test]
+fn the_tare_takes_the_samples_of_its_seconds() {
+    let samples = |text: &str, rate_hz| parse(text).bake::<Q>(rate_hz).expect("a table").table().tare_samples;
+    assert_eq!((samples(TABLE, 10.0), samples(TABLE, 100.0)), (10, 100));
+    let long = edited("seconds = 1.0", "seconds = 2.5");
+    assert_eq!((samples(&long, 10.0), samples(&long, 100.0)), (25, 250));
+    assert_eq!(samples(&edited("seconds = 1.0", "seconds = 0.0"), 100.0), 0);
+    assert_eq!(samples(&edited("seconds = 1.0", "seconds = 0.001"), 10.0), 1, "a short tare is still one");
+}
+
+#[test]
+fn the_anchor_is_averaged_down_to_its_own_rate() {
+    let decimation = |rate_hz| parse(TABLE).bake::<Q>(rate_hz).expect("a table").table().anchor.decimation;
+    assert_eq!((decimation(10.0), decimation(100.0)), (1, 10));
+    assert_eq!(decimation(5.0), 1, "a slower session is not averaged");
+}
+
+#[test]
+fn window_and_threshold_are_those_of_the_file_at_any_rate() {
+    for rate_hz in [10.0, 100.0] {
+        let anchor = parse(TABLE).bake::<Q>(rate_hz).expect("a table").table().anchor;
+        assert_eq!(anchor.window, 100);
+        // Units of 2⁻³² turns.
+        assert!((anchor.threshold.rad().to_degrees() - 0.5).abs() < 1e-7);
+    }
+}
+
+/// A file whose process noise is small enough not to meet the filters' limit.
+fn slow() -> String {
+    edited("q = 0.16", "q = 0.01").replacen("q = 0.0002", "q = 1e-5", 1)
+}
+
+#[test]
+fn process_noise_is_per_second() {
+    let (slow_rate, fast_rate) = (first(&slow(), 10.0), first(&slow(), 100.0));
+    for (ten, hundred) in [(slow_rate.orient, fast_rate.orient), (slow_rate.coord, fast_rate.coord)] {
+        assert!(ten.q > 0.0);
+        near(hundred.q * 10.0, ten.q);
+    }
+}
+
+#[test]
+fn measurement_noise_does_not_depend_on_the_rate() {
+    let (ten, hundred) = (first(&slow(), 10.0), first(&slow(), 100.0));
+    near(hundred.orient.r_imu, ten.orient.r_imu);
+    near(hundred.orient.r_bend, ten.orient.r_bend);
+}
+
+/// On the ratios alone the gains depend.
+#[test]
+fn covariances_keep_their_ratios() {
+    let noise = first(&slow(), 10.0).orient;
+    near(noise.r_bend / noise.r_imu, 0.002 / 0.0002);
+    near(noise.q / noise.r_bend, 0.01 / 10.0 / 0.002);
+}
+
+#[test]
+fn fixed_point_and_floats_bake_alike() {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("planar-6.toml");
+    let file = ArmFile::load(&path).expect("the reference table is committed");
+    let (fixed, float) = (file.bake::<Q>(100.0).expect("a table"), file.bake::<f64>(100.0).expect("a table"));
+    for (fixed, float) in fixed.table().segments.iter().zip(float.table().segments) {
+        // One unit of fixed point is 2⁻²⁶ at the most.
+        let same = |fixed: Q, float: f64| assert!((fixed.to_f64() - float).abs() < 2e-8, "{float}");
+        same(fixed.length, float.length);
+        same(fixed.orient.r_imu, float.orient.r_imu);
+        same(fixed.coord.r_bend, float.coord.r_bend);
+        for (fixed, float) in fixed.bend.iter().flatten().zip(float.bend.iter().flatten()) {
+            for counts in (1800..2700_u16).step_by(50) {
+                let error = fixed.angle(counts).to_f64() - float.angle(counts);
+                assert!(error.abs() < 1e-6, "{error} rad at {counts} counts");
+            }
+        }
+    }
+}
+
+#[test]
+fn the_reference_table_runs() {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("planar-6.toml");
+    let file = ArmFile::load(&path).expect("the reference table is committed");
+    let baked = file.bake::<Q>(100.0).expect("a table");
+    let table = baked.table();
+    let mut estimator = Estimator::<Q, 6, 100>::new(&table).expect("it has six segments");
+    let mut sample = Sample::missing(0);
+    sample.bend = [[Some(2300); SENSORS_PER_SEGMENT]; 6];
+    let estimate = estimator.step(&sample);
+    let tip = estimator.shape(&estimate, Method::Fusion)[5].end.expect("every bend sensor was read");
+    assert!(tip.x.to_f64().hypot(tip.y.to_f64()) < 0.5821, "no farther than the straight arm is long");
+}

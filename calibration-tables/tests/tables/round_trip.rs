@@ -1,0 +1,111 @@
+//! A file is written and read without loss: every number to its last bit, every name to its last character.
+
+use calibration_tables::{AnchorKeys, ArmFile, BendKeys, NoiseKeys, SegmentKeys, Side, TareKeys};
+use proptest::option;
+use proptest::prelude::*;
+
+/// Numbers of every magnitude between the two powers of ten.
+fn magnitude(powers: std::ops::Range<f64>) -> impl Strategy<Value = f64> {
+    powers.prop_map(|power| 10.0_f64.powf(power))
+}
+
+/// A map that only rises or only falls: its angles at both ends, and a curvature that leaves a slope at both.
+fn monotonic_map() -> impl Strategy<Value = BendKeys> {
+    let volts = (0.0..3.0_f64, 0.2..3.3_f64).prop_map(|(lo, width)| [lo, (lo + width).min(3.3)]);
+    let angles = (-3.0..3.0_f64, prop_oneof![-3.0..-0.05_f64, 0.05..3.0_f64]);
+    let curve = -0.9..0.9_f64;
+    (volts, angles, curve, option::of(0.0..360.0_f64)).prop_map(|([lo, hi], (at_lo, rise), curve, rmse_deg)| {
+        let width = hi - lo;
+        let c2 = curve * rise / (width * width);
+        let c1 = rise / width - c2 * (lo + hi);
+        BendKeys { c0: at_lo - (c2 * lo + c1) * lo, c1, c2, rmse_deg, volts: Some([lo, hi]) }
+    })
+}
+
+/// A map without voltages, which may be anything.
+fn any_map() -> impl Strategy<Value = BendKeys> {
+    let number = || -1e4..1e4_f64;
+    let map = |(c0, c1, c2, rmse_deg)| BendKeys { c0, c1, c2, rmse_deg, volts: None };
+    (number(), number(), number(), option::of(0.0..360.0_f64)).prop_map(map)
+}
+
+fn noise() -> impl Strategy<Value = NoiseKeys> {
+    let q = prop_oneof![Just(0.0), magnitude(-300.0..6.0)];
+    let h = || 0.5..1.25_f64;
+    (q, magnitude(-7.0..1.0), magnitude(-4.9..4.9), h(), h()).prop_map(|(q, r_bend, ratio, h_imu, h_bend)| NoiseKeys {
+        q,
+        r_imu: r_bend * ratio,
+        r_bend,
+        h_imu,
+        h_bend,
+    })
+}
+
+fn segment() -> impl Strategy<Value = SegmentKeys> {
+    let lengths = (0.1..500.0_f64, prop_oneof![Just(0.0), Just(-0.0), 0.0..500.0_f64]);
+    let bend = option::of(prop::collection::vec(prop_oneof![monotonic_map(), any_map()], 0..=2));
+    let side = prop_oneof![Just(Side::Start), Just(Side::End)];
+    (lengths, side, bend, option::of(noise()), option::of(noise())).prop_map(
+        |((length_mm, offset_mm), offset_at, bend, orient, coord)| SegmentKeys {
+            length_mm,
+            offset_mm,
+            offset_at,
+            bend,
+            orient,
+            coord,
+        },
+    )
+}
+
+fn file() -> impl Strategy<Value = ArmFile> {
+    let segments = prop::collection::vec(segment(), 1..=16);
+    let tare = (0.0..3600.0_f64, prop_oneof![Just(None), Just(Some(-0.0)), (-3600.0..3600.0_f64).prop_map(Some)]);
+    let anchor = (1..=1000_u16, 0.0..360.0_f64, magnitude(-2.0..4.0));
+    (any::<String>(), magnitude(-2.0..4.0), tare, anchor, segments).prop_map(
+        |(arm, rate_hz, (seconds, heading), (window, threshold_deg, anchor_hz), segments)| ArmFile {
+            format: 1,
+            arm,
+            rate_hz,
+            tare: TareKeys { seconds, heading_deg: heading.map_or_else(Vec::new, |deg| vec![deg; segments.len()]) },
+            anchor: AnchorKeys { window, threshold_deg, rate_hz: anchor_hz },
+            segments,
+        },
+    )
+}
+
+proptest! {
+    #[test]
+    fn what_is_written_is_read_to_the_last_bit(file in file()) {
+        let text = file.to_toml();
+        let read = ArmFile::parse(&text).map_err(|error| TestCaseError::fail(format!("{error}\n{text}")))?;
+        prop_assert_eq!(&read, &file);
+        // Debug writes each float so that it comes back, and −0 apart from 0, which == does not.
+        prop_assert_eq!(format!("{read:?}"), format!("{file:?}"));
+    }
+
+    #[test]
+    fn writing_is_stable(file in file()) {
+        let text = file.to_toml();
+        let again = ArmFile::parse(&text).map_err(|error| TestCaseError::fail(error.to_string()))?.to_toml();
+        prop_assert_eq!(again, text);
+    }
+}
+
+#[test]
+fn names_with_every_kind_of_character_come_back() {
+    for name in
+        ["", "planar \"6\"", "a\\b", "line\nbreak\r\n", "'''", "\"\"\"", "arm № 6 🦾", "\u{7f}\u{1}\t", "\u{feff}"]
+    {
+        let text = super::common::DESCRIPTION;
+        let file = ArmFile { arm: name.to_owned(), ..super::common::parse(text) };
+        assert_eq!(ArmFile::parse(&file.to_toml()).expect("it was written by us").arm, name);
+    }
+}
+
+#[test]
+fn a_written_table_has_a_line_a_sensor_list_and_a_filter() {
+    let text = super::common::parse(super::common::TABLE).to_toml();
+    for start in ["bend = [{ c0 = ", "orient = { q = ", "coord = { q = ", "[[segment]]", "[tare]", "[anchor]"] {
+        assert!(text.lines().any(|line| line.starts_with(start)), "no line begins with {start}: {text}");
+    }
+}

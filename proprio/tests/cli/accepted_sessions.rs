@@ -1,0 +1,207 @@
+//! Sessions that other programs wrote: the same readings in another form give the same estimates.
+
+use std::f64::consts::PI;
+
+use super::common::{Csv, Folder, Run, estimates, figure, json, quaternion_session, report, session, table};
+
+/// The session in another form must give the very same estimates.
+fn same_estimates(other: &impl ToString) {
+    assert!(estimates(session()) == estimates(other.to_string()));
+}
+
+/// Figures of all methods must be as those of the session itself, within `tolerance`.
+fn same_figures(other: &Csv, tolerance: f64) {
+    let (expected, found) = (report(session()), report(other));
+    for method in ["bend", "imu_o", "imu_c", "fusion"] {
+        for name in ["tip_rmse_mm", "tip_rmse_percent", "tip_p75_mm", "theta_rmse_deg"] {
+            let (expected, found) = (figure(&expected, method, name), figure(&found, method, name));
+            assert!((expected - found).abs() < tolerance, "{method} {name}: {found}, expected {expected}");
+        }
+    }
+}
+
+fn replay(session: impl AsRef<[u8]>, args: &[&str]) -> Run {
+    let folder = Folder::with("session.csv", session);
+    let mut all = vec!["replay", "session.csv", "--table", table()];
+    all.extend(args);
+    folder.done(&all)
+}
+
+#[test]
+fn a_byte_order_mark_is_accepted() {
+    same_estimates(&format!("\u{feff}{}", session()));
+}
+
+#[test]
+fn line_ends_of_windows_are_accepted() {
+    same_estimates(&session().to_string().replace('\n', "\r\n"));
+}
+
+#[test]
+fn a_last_line_without_its_end_is_accepted() {
+    same_estimates(&session().to_string().trim_end());
+}
+
+/// A recording that was cut within its last number looks like this.
+#[test]
+fn a_last_line_without_its_end_is_warned_about() {
+    let run = replay(session().to_string().trim_end(), &[]);
+    assert!(run.stderr.starts_with("warning: session.csv: ") && run.stderr.lines().count() == 1, "{}", run.stderr);
+}
+
+#[test]
+fn spaces_around_names_and_cells_are_accepted() {
+    same_estimates(&session().to_string().replace(',', " , "));
+}
+
+#[test]
+fn quoted_names_and_cells_are_accepted() {
+    let quoted = session().to_string().replace(',', "\",\"").replace('\n', "\"\n\"");
+    same_estimates(&format!("\"{}", quoted.trim_end_matches('"')));
+}
+
+#[test]
+fn columns_in_another_order_are_accepted() {
+    let mut other = session();
+    for row in std::iter::once(&mut other.names).chain(&mut other.rows) {
+        row.reverse();
+    }
+    same_estimates(&other);
+}
+
+#[test]
+fn unknown_columns_are_ignored() {
+    let mut other = session();
+    for (name, value) in [("note", "blue arm"), ("imu1_temp", "warm"), ("bend1c_adc", "x"), ("pressure1_kpa", "")] {
+        other.push(name, value);
+    }
+    same_estimates(&other);
+}
+
+#[test]
+fn unknown_columns_of_one_name_are_ignored() {
+    let mut other = session();
+    other.push("note", "a");
+    other.push("note", "b");
+    same_estimates(&other);
+}
+
+#[test]
+fn whole_counts_with_a_decimal_point_are_accepted() {
+    let mut other = session();
+    other.map("bend1a_adc", |_, counts| format!("{counts}.0"));
+    same_estimates(&other);
+}
+
+#[test]
+fn a_heading_that_was_rounded_up_to_a_turn_is_north() {
+    let (mut north, mut turn) = (session(), session());
+    north.set(120, "imu1_deg", "0");
+    turn.set(120, "imu1_deg", "360");
+    assert!(estimates(north) == estimates(turn));
+}
+
+/// A factor of π/180 more or less changes the last of an f64's 16 digits; the report's figures are below 1000.
+#[test]
+fn headings_in_rad_give_the_same_figures() {
+    let mut other = session();
+    let names: Vec<String> = other.names.iter().filter(|name| name.ends_with("_deg")).cloned().collect();
+    assert_eq!(names.len(), 12, "headings of IMUs and truth");
+    for name in names {
+        other.map(&name, |_, deg| (deg.parse::<f64>().expect("a number") * PI / 180.0).to_string());
+        other.rename(&name, &name.replace("_deg", "_rad"));
+    }
+    same_figures(&other, 1e-6);
+}
+
+#[test]
+fn points_in_metres_give_the_same_figures() {
+    let mut other = session();
+    let names: Vec<String> = other.names.iter().filter(|name| name.ends_with("_mm")).cloned().collect();
+    assert_eq!(names.len(), 12, "x and y of the truth");
+    for name in names {
+        other.map(&name, |_, mm| (mm.parse::<f64>().expect("a number") / 1e3).to_string());
+        other.rename(&name, &name.replace("_mm", "_m"));
+    }
+    same_figures(&other, 1e-9);
+}
+
+/// Headings have five decimals, so that each is up to 5e-6° beside its quaternion: six of them move the tip, half a
+/// metre away, by less than 3e-4 mm. The anchored methods may step at its threshold a sample apart.
+#[test]
+fn quaternions_give_the_figures_of_their_headings() {
+    let (expected, found) = (report(session()), report(quaternion_session()));
+    for name in ["tip_rmse_mm", "theta_rmse_deg"] {
+        let (expected, found) = (figure(&expected, "imu_o", name), figure(&found, "imu_o", name));
+        assert!((expected - found).abs() < 3e-4, "{name}: {found}, expected {expected}");
+    }
+}
+
+#[test]
+fn quaternions_come_before_headings() {
+    let mut both = quaternion_session();
+    for i in 1..=6 {
+        both.push(&format!("imu{i}_deg"), "1");
+    }
+    assert!(estimates(quaternion_session()) == estimates(both));
+}
+
+#[test]
+fn a_quaternion_and_its_negative_are_the_same_orientation() {
+    let mut negative = quaternion_session();
+    for part in ["w", "x", "y", "z"] {
+        negative.map(&format!("imu3_q{part}"), |row, text| {
+            let value: f64 = text.parse().expect("a number");
+            if row % 2 == 0 { (-value).to_string() } else { text.to_owned() }
+        });
+    }
+    assert!(estimates(quaternion_session()) == estimates(negative));
+}
+
+#[test]
+fn a_session_of_one_row_is_accepted() {
+    let mut one = session();
+    one.rows.truncate(1);
+    let report = json(&replay(one.to_string(), &["--json"]));
+    assert_eq!((&report["sessions"][0]["samples"], &report["sessions"][0]["seconds"]), (&1.into(), &0.0.into()));
+    assert!(figure(&report, "bend", "tip_rmse_mm").is_finite());
+}
+
+#[test]
+fn rows_of_the_same_time_are_accepted() {
+    let mut other = session();
+    other.map("time_s", |_, _| "1".to_owned());
+    assert_eq!(estimates(other).rows.len(), 150);
+}
+
+#[test]
+fn figures_without_truth_are_null_in_json() {
+    let mut blind = session();
+    blind.remove("truth");
+    let report = json(&replay(blind.to_string(), &["--json"]));
+    for methods in [&report["all"]["methods"], &report["sessions"][0]["methods"]] {
+        for method in ["bend", "imu_o", "imu_c", "fusion"] {
+            let figures = methods[method].as_object().expect("an object a method");
+            assert!(figures.len() == 4 && figures.values().all(serde_json::Value::is_null), "{figures:?}");
+        }
+    }
+}
+
+#[test]
+fn figures_without_truth_are_dashes_in_the_table() {
+    let mut blind = session();
+    blind.remove("truth");
+    let run = replay(blind.to_string(), &[]);
+    let rows: Vec<&str> = run.stdout.lines().filter(|line| line.contains("session.csv")).collect();
+    assert_eq!(rows.len(), 4, "one for each figure: {}", run.stdout);
+    for row in rows {
+        assert_eq!(row.matches('–').count(), 4, "one for each method: {row}");
+    }
+}
+
+#[test]
+fn a_session_without_truth_gives_the_same_estimates() {
+    let mut blind = session();
+    blind.remove("truth");
+    same_estimates(&blind);
+}

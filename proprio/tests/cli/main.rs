@@ -1,0 +1,15 @@
+//! The command-line tool as its users meet it: what it accepts, what it refuses and how, and what it writes.
+
+mod accepted_sessions;
+mod bad_cells;
+mod bad_sessions;
+mod calibrate;
+mod calibrate_faults;
+mod calibrate_gaps;
+mod common;
+mod estimates;
+mod figures;
+mod missing_readings;
+mod output_files;
+mod simulate;
+mod streams;

@@ -1,0 +1,172 @@
+//! Files that are written whole or not at all, and never over something else than what was named.
+
+use super::common::{Folder, arm, session, sweep, table};
+
+fn with_session() -> Folder {
+    Folder::with("session.csv", session().to_string())
+}
+
+fn replay_to(out: &str) -> [&str; 6] {
+    ["replay", "session.csv", "--table", table(), "--out", out]
+}
+
+#[test]
+fn a_complete_file_leaves_no_part_behind() {
+    let folder = with_session();
+    folder.done(&replay_to("est.csv"));
+    let entries = std::fs::read_dir(folder.path("")).expect("the folder is there");
+    let mut names: Vec<_> = entries.map(|entry| entry.expect("it can be listed").file_name()).collect();
+    names.sort();
+    assert_eq!(names, ["est.csv", "session.csv"]);
+}
+
+#[test]
+fn an_older_file_is_replaced() {
+    let folder = with_session();
+    folder.write("est.csv", "old");
+    folder.done(&replay_to("est.csv"));
+    assert!(folder.read("est.csv").starts_with("time_s,"));
+}
+
+#[test]
+fn an_older_file_stays_when_the_replay_fails() {
+    let mut bad = session();
+    bad.set(120, "bend1a_adc", "high");
+    let folder = Folder::with("session.csv", bad.to_string());
+    folder.write("est.csv", "old");
+    folder.refused(&replay_to("est.csv"));
+    assert_eq!(folder.read("est.csv"), "old");
+}
+
+#[test]
+fn an_older_table_stays_when_the_calibration_fails() {
+    let mut still = session();
+    still.rows.truncate(40);
+    let folder = Folder::with("session.csv", still.to_string());
+    folder.write("table.toml", "old");
+    folder.refused(&["calibrate", "session.csv", "--arm", arm(), "-o", "table.toml"]);
+    assert_eq!(folder.read("table.toml"), "old");
+}
+
+#[test]
+fn a_folder_that_does_not_exist_is_refused_by_the_name_that_was_typed() {
+    let error = with_session().refused(&replay_to("none/est.csv"));
+    assert!(error.starts_with("none/est.csv: cannot be written"), "{error}");
+    assert!(!error.contains(".part"), "the name aside means nothing to the user: {error}");
+}
+
+#[test]
+fn calibrate_refuses_a_folder_that_does_not_exist() {
+    let folder = Folder::with("sweep.csv", sweep().to_string());
+    let error = folder.refused(&["calibrate", "sweep.csv", "--arm", arm(), "-o", "none/table.toml"]);
+    assert!(error.starts_with("none/table.toml: cannot be written"), "{error}");
+}
+
+#[test]
+fn simulate_refuses_a_folder_that_does_not_exist() {
+    let args = ["simulate", "--scenario", "1", "--seconds", "1", "--seed", "1", "-o", "none/session.csv"];
+    let error = Folder::new().refused(&args);
+    assert!(error.starts_with("none/session.csv: cannot be written"), "{error}");
+}
+
+#[test]
+fn a_directory_as_output_is_refused() {
+    let folder = with_session();
+    std::fs::create_dir(folder.path("est")).expect("a temporary folder can be written to");
+    let error = folder.refused(&replay_to("est"));
+    assert!(error.starts_with("est: cannot be written"), "{error}");
+}
+
+#[test]
+fn out_takes_one_session() {
+    let folder = with_session();
+    let error = folder.refused(&["replay", "session.csv", "session.csv", "--table", table(), "--out", "est.csv"]);
+    assert!(error.contains("--out") && error.contains('2'), "{error}");
+}
+
+/// A slip of the hand must not cost a recording.
+#[test]
+fn the_session_itself_is_no_place_for_the_estimates() {
+    with_session().refused(&replay_to("session.csv"));
+}
+
+#[test]
+fn the_session_by_another_name_is_no_place_for_the_estimates() {
+    let folder = with_session();
+    std::fs::create_dir(folder.path("sub")).expect("a temporary folder can be written to");
+    folder.refused(&replay_to("sub/../session.csv"));
+}
+
+#[cfg(unix)]
+#[test]
+fn a_link_to_the_session_is_no_place_for_the_estimates() {
+    let folder = with_session();
+    std::os::unix::fs::symlink("session.csv", folder.path("link.csv")).expect("a temporary folder can have links");
+    folder.refused(&replay_to("link.csv"));
+}
+
+#[test]
+fn the_session_itself_is_no_place_for_the_table() {
+    let folder = Folder::with("sweep.csv", sweep().to_string());
+    folder.refused(&["calibrate", "sweep.csv", "--arm", arm(), "-o", "sweep.csv"]);
+}
+
+#[test]
+fn the_table_itself_is_no_place_for_the_estimates() {
+    let folder = with_session();
+    std::fs::copy(table(), folder.path("table.toml")).expect("the reference table is committed");
+    folder.refused(&["replay", "session.csv", "--table", "table.toml", "--out", "table.toml"]);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_device_is_refused_and_stays_a_device() {
+    use std::os::unix::fs::FileTypeExt;
+
+    let is_device =
+        || std::fs::symlink_metadata("/dev/full").is_ok_and(|metadata| metadata.file_type().is_char_device());
+    assert!(is_device(), "Linux has /dev/full");
+    let error = with_session().refused(&replay_to("/dev/full"));
+    assert!(error.starts_with("/dev/full: cannot be written"), "{error}");
+    assert!(is_device());
+}
+
+#[cfg(unix)]
+#[test]
+fn a_link_stays_a_link() {
+    let folder = with_session();
+    folder.write("real.csv", "old");
+    std::os::unix::fs::symlink("real.csv", folder.path("link.csv")).expect("a temporary folder can have links");
+    folder.done(&replay_to("link.csv"));
+    assert!(folder.path("link.csv").is_symlink());
+    assert!(folder.read("real.csv").starts_with("time_s,"));
+}
+
+/// `--out /dev/stdout > est.csv`: the name is a link to a file that is open elsewhere.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_link_to_standard_output_stays_a_link() {
+    let folder = with_session();
+    std::os::unix::fs::symlink("/proc/self/fd/1", folder.path("stdout")).expect("a temporary folder can have links");
+    let redirected = std::fs::File::create(folder.path("est.csv")).expect("a temporary folder can be written to");
+    let status = folder.command(&replay_to("stdout")).stdout(redirected).status().expect("the tool starts");
+    assert!(folder.path("stdout").is_symlink());
+    assert!(status.success());
+}
+
+#[cfg(unix)]
+#[test]
+fn a_pipe_is_written_to_directly() {
+    let folder = with_session();
+    let made = std::process::Command::new("mkfifo").arg(folder.path("pipe")).status();
+    if !made.is_ok_and(|status| status.success()) {
+        println!("skipped: there is no mkfifo here");
+        return;
+    }
+    let pipe = folder.path("pipe");
+    let reader = std::thread::spawn(move || std::fs::read_to_string(pipe).expect("the pipe can be read"));
+    folder.done(&replay_to("pipe"));
+    let found = reader.join().expect("the reader ends with the pipe");
+    folder.done(&replay_to("est.csv"));
+    assert_eq!(found, folder.read("est.csv"));
+}
