@@ -68,13 +68,13 @@ pub struct Simulate {
     #[arg(long, value_enum)]
     pub scenario: ScenarioName,
     /// Duration, s
-    #[arg(long, value_name = "S")]
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
     pub seconds: f64,
     /// Seed of the motion, the pushes and all noise; the arm is always the same
     #[arg(long, value_name = "K")]
     pub seed: u64,
     /// Samples per second, 1 to 1000
-    #[arg(long, value_name = "HZ", default_value_t = 10.0)]
+    #[arg(long, value_name = "HZ", default_value_t = 10.0, allow_negative_numbers = true)]
     pub rate: f64,
     /// Form of the IMU readings
     #[arg(long, value_enum, default_value_t = ImuColumns::Deg)]

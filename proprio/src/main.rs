@@ -19,15 +19,13 @@ fn main() -> ExitCode {
         Ok(Err(error)) => {
             let (error_style, help_style) = (cli::STYLES.get_error(), cli::STYLES.get_valid());
             let remedy = error.remedy();
-            anstream::eprintln!(
+            commands::say(&format_args!(
                 "{error_style}error:{error_style:#} {error}\n{help_style}  help:{help_style:#} {remedy}"
-            );
+            ));
             ExitCode::from(2)
         }
         Err(_) => {
-            anstream::eprintln!(
-                "This is a fault of proprio. Please report it, with the message above and the command."
-            );
+            commands::say(&"This is a fault of proprio. Please report it, with the message above and the command.");
             ExitCode::from(1)
         }
     }

@@ -33,8 +33,9 @@ impl OutputFile {
         if inputs.iter().any(same) {
             return Err(Error::Overwrite(path.to_owned()));
         }
-        let sink = Sink::open(path).map_err(|source| Error::Output { path: path.to_owned(), source })?;
-        Ok(Self { path: path.to_owned(), sink })
+        let target = target(path);
+        let sink = Sink::open(&target).map_err(|source| Error::Output { path: path.to_owned(), source })?;
+        Ok(Self { path: target, sink })
     }
 
     /// Completes the file and gives it its name.
@@ -53,11 +54,24 @@ impl OutputFile {
     }
 }
 
+/// What a link points to, so that the link stays; an open file under `/dev` or `/proc` is no link to a name.
+fn target(path: &Path) -> PathBuf {
+    let is_link = fs::symlink_metadata(path).is_ok_and(|found| found.is_symlink());
+    let target = if is_link { fs::read_link(path) } else { return path.to_owned() };
+    let target = target.map_or_else(|_| path.to_owned(), |to| path.parent().unwrap_or(Path::new("")).join(to));
+    if is_open_file(&target) { target } else { fs::canonicalize(&target).unwrap_or(target) }
+}
+
+/// Whether the name stands for a file that is already open, such as `/proc/self/fd/1`.
+fn is_open_file(path: &Path) -> bool {
+    ["/dev", "/proc"].iter().any(|folder| path.starts_with(folder))
+}
+
 impl Sink {
     fn open(path: &Path) -> io::Result<Self> {
         match fs::metadata(path) {
             Ok(found) if found.is_dir() => return Err(io::ErrorKind::IsADirectory.into()),
-            Ok(found) if !found.is_file() => {
+            Ok(found) if !found.is_file() || is_open_file(path) => {
                 return Ok(Self::Direct(BufWriter::new(fs::OpenOptions::new().write(true).open(path)?)));
             }
             _ => {}

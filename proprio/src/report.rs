@@ -1,7 +1,6 @@
 //! The figures of sessions, as `replay` prints them.
 
-use std::path::PathBuf;
-
+/// The file.
 use estimator_core::Method;
 use serde::Serialize;
 use serde::ser::{SerializeMap, Serializer};
@@ -24,7 +23,7 @@ pub struct Report {
 #[derive(Debug, Serialize)]
 pub struct SessionReport {
     /// The file.
-    pub path: PathBuf,
+    pub path: String,
     /// Number of samples.
     pub samples: u64,
     /// From the first sample to the last.

@@ -49,7 +49,7 @@ fn figures(report: &Report, figure: Pick) -> String {
         table.add_row([name, samples.to_string(), format!("{seconds:.1}")].into_iter().chain(cells));
     };
     for session in &report.sessions {
-        add(session.path.display().to_string(), session.samples, session.seconds, &session.figures);
+        add(session.path.clone(), session.samples, session.seconds, &session.figures);
     }
     let samples = report.sessions.iter().map(|session| session.samples).sum();
     let seconds = report.sessions.iter().map(|session| session.seconds).sum();

@@ -12,10 +12,26 @@ pub enum CalibrationError {
         /// The segment, from 1.
         segment: usize,
     },
+    /// The camera hardly saw a segment.
+    #[error("the camera saw segment {segment} in {found} rows, expected at least {least}")]
+    Unseen {
+        /// The segment, from 1.
+        segment: usize,
+        /// Rows found.
+        found: usize,
+        /// Rows needed.
+        least: usize,
+    },
+    /// The truth does not hang together.
+    #[error("the truth's points are {percent:.0} % of the arm's length away from where its headings put them")]
+    TruthMisfit {
+        /// Root mean square distance of the tip from the chain of the true bend angles, % of the arm's length.
+        percent: f64,
+    },
     /// Too few rows have truth, or a reading of one sensor.
     #[error("{name} has {found} rows with both a reading and truth, expected at least {least}")]
     TooFewRows {
-        /// The sensor or segment.
+        /// The sensor.
         name: String,
         /// Rows found.
         found: usize,
@@ -109,7 +125,13 @@ impl CalibrationError {
                 "write bend = [] in each segment of the arm description: it is a table then, for imu_o".to_owned()
             }
             Self::SensorBAlone { .. } => "a segment's only sensor is called a: rename the column".to_owned(),
-            Self::TooFewRows { .. } => "record a longer sweep, with the camera seeing every segment".to_owned(),
+            Self::TruthMisfit { .. } => {
+                "x is to the right, y along the base, headings clockwise from y: check the axes and the arm's lengths"
+                    .to_owned()
+            }
+            Self::Unseen { .. } | Self::TooFewRows { .. } => {
+                "record a longer sweep, with the camera seeing every segment".to_owned()
+            }
             Self::SmallSweep { .. } => "sweep every segment through its whole range, in both directions".to_owned(),
             Self::Dead { name, .. } | Self::Unrelated { name, .. } => {
                 format!("check its wiring, or remove column {name}_adc to calibrate without it")

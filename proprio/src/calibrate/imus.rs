@@ -1,42 +1,48 @@
 //! The IMUs: each must follow its own segment's end, the right way round.
 //!
-//! Headings have an unknown zero and drift, so steps over one second are compared instead.
+//! Headings have an unknown zero and drift, so steps over one second are compared instead. An IMU measures them one to
+//! one, and so the size counts as well: the ends of a module's two segments turn alike, but not equally far.
 
 use super::error::{CalibrationError, Warning};
 use super::sweep::{LEAST_ROWS, Sweep};
 
-/// Correlation below which an IMU does not follow.
-const FOLLOWS: f64 = 0.7;
-/// An IMU is swapped where another segment's end leaves this share of what its own leaves.
-const SWAPPED: f64 = 0.25;
+/// Share of its steps that even a poor IMU in its place leaves unexplained, in squares.
+const GOOD_ENOUGH: f64 = 0.1;
+/// An IMU is swapped or inverted where that explains it this many times better than its own place does.
+const BETTER: f64 = 4.0;
+/// An IMU that leaves more than this unexplained follows nothing.
+const UNRELATED: f64 = 0.5;
 
 pub(super) fn check(sweep: &Sweep) -> Result<Vec<Warning>, CalibrationError> {
     let lag = sweep.rate_hz.round().max(1.0) as usize;
     let mut warnings = Vec::new();
     for (i, imu) in sweep.imu.iter().enumerate() {
         let segment = i + 1;
-        let Some(own) = correlation(imu, &sweep.heading[i], lag) else {
+        let Some(own) = unexplained(imu, &sweep.heading[i], lag, 1.0) else {
             warnings.push(Warning::ImuNotRead { segment });
             continue;
         };
-        if own < -FOLLOWS {
+        if own < GOOD_ENOUGH {
+            continue;
+        }
+        let explains = |j: usize, sign| unexplained(imu, &sweep.heading[j], lag, sign).filter(|u| u * BETTER < own);
+        if explains(i, -1.0).is_some() {
             return Err(CalibrationError::InvertedImu { segment });
         }
-        let others = (0..sweep.heading.len()).filter(|j| *j != i);
-        let others = others.filter_map(|j| Some((j, correlation(imu, &sweep.heading[j], lag)?)));
-        let best = others.max_by(|a, b| a.1.total_cmp(&b.1));
-        if let Some((j, _)) = best.filter(|(_, other)| 1.0 - other < SWAPPED * (1.0 - own)) {
+        let others = (0..sweep.heading.len()).filter_map(|j| Some((j, explains(j, 1.0)?)));
+        if let Some((j, _)) = others.min_by(|a, b| a.1.total_cmp(&b.1)) {
             return Err(CalibrationError::SwappedImu { segment, follows: j + 1 });
         }
-        if own < FOLLOWS {
+        if own > UNRELATED {
             return Err(CalibrationError::UnrelatedImu { segment });
         }
     }
     Ok(warnings)
 }
 
-/// Correlation of the steps over `lag` rows; `None` where too few rows have both.
-fn correlation(imu: &[Option<f64>], truth: &[Option<f64>], lag: usize) -> Option<f64> {
+/// Share of the squared steps of `imu` over `lag` rows that `sign` times those of `truth` leave; `None` where too few
+/// rows have both. The mean step is taken out, as it is drift.
+fn unexplained(imu: &[Option<f64>], truth: &[Option<f64>], lag: usize, sign: f64) -> Option<f64> {
     let steps = |column: &[Option<f64>]| -> Vec<Option<f64>> {
         column.iter().zip(column.iter().skip(lag)).map(|(from, to)| Some((*to)? - (*from)?)).collect()
     };
@@ -44,9 +50,11 @@ fn correlation(imu: &[Option<f64>], truth: &[Option<f64>], lag: usize) -> Option
     if pairs.len() < LEAST_ROWS {
         return None;
     }
-    let n = pairs.len() as f64;
-    let (mean_a, mean_b) = pairs.iter().fold((0.0, 0.0), |(a, b), pair| (a + pair.0 / n, b + pair.1 / n));
-    let product = |f: fn(f64, f64) -> f64| pairs.iter().map(|(a, b)| f(a - mean_a, b - mean_b)).sum::<f64>();
-    let (aa, ab, bb) = (product(|a, _| a * a), product(|a, b| a * b), product(|_, b| b * b));
-    Some(if aa > 0.0 && bb > 0.0 { ab / (aa * bb).sqrt() } else { 0.0 })
+    let variance = |values: Vec<f64>| {
+        let mean = values.iter().sum::<f64>() / values.len() as f64;
+        values.iter().map(|value| (value - mean).powi(2)).sum::<f64>()
+    };
+    let left = variance(pairs.iter().map(|(a, b)| a - sign * b).collect());
+    let all = variance(pairs.iter().map(|(a, _)| *a).collect());
+    Some(if all > 0.0 { left / all } else { 1.0 })
 }

@@ -22,6 +22,10 @@ use crate::error::Error;
 use crate::replay::NamedTable;
 use sweep::Sweep;
 
+/// Truth whose tip lies further from the chain of its own headings than constant curvature explains, % of the length:
+/// a real arm has 3 %.
+const MISFIT_PERCENT: f64 = 10.0;
+
 /// What was found of one bend sensor.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SensorReport {
@@ -66,6 +70,10 @@ pub fn calibrate(session: &Path, arm: &NamedTable) -> Result<Calibration, Error>
         (segment.orient, segment.coord) = (None, None);
     }
     let mut table = NamedTable { file: table, path: arm.path };
-    residuals::set_filters(session, &mut table, sweep.rate_hz)?;
+    let misfit_m = residuals::set_filters(session, &mut table, sweep.rate_hz)?;
+    let percent = misfit_m * 1e5 / table.file.length_mm();
+    if percent > MISFIT_PERCENT {
+        return Err(refuse(CalibrationError::TruthMisfit { percent }));
+    }
     Ok(Calibration { table: table.file, sensors: sensors.into_iter().map(|sensor| sensor.report).collect(), warnings })
 }

@@ -1,24 +1,29 @@
 //! The filters' default parameters, from the errors of bend sensors and IMUs on the calibration session.
 //!
-//! R_bend is the mean square of the bend sensors' error, of each segment by itself. R_imu is that of the error which the
-//! corrected IMUs would have if perfect bend sensors anchored them: what they really have on top of it is the slow part
-//! of the bend sensors' error, which the anchor passes on to them; it is in both measurements, no filter can remove it,
-//! and it must not count against one of them. KF_coord's are these errors moved through PCC to the segment's end.
+//! R_bend is the mean square of the bend sensors' error, of each segment by itself. R_imu is R_bend times a ratio of two
+//! mean squares, for which the IMUs' error is the one that they would have if perfect bend sensors anchored them: what
+//! they really have on top of it is the slow part of the bend sensors' error, which the anchor passes on; it is in both
+//! measurements, no filter can remove it, and it must not count against one of them.
+//!
+//! For KF_coord these are the errors of a segment's end in its own frame. For KF_orient they are those of the headings
+//! that the bend angles add up to, the same for the whole arm: along the chain the errors of bend sensors grow, where
+//! those of IMUs do not, as each heading is measured by itself.
 
 use std::path::Path;
 
 use calibration_tables::{MAX_WINDOW, NoiseKeys};
-use estimator_core::{Anchor, AnchorRule, Angle, Link, Segment, Turns};
+use estimator_core::{Anchor, AnchorRule, Angle, Link, Segment, SegmentEstimate, Turns, chain};
 use nalgebra::Vector2;
 
 use crate::error::Error;
-use crate::replay::{NamedTable, Outcome, replay};
+use crate::replay::{NamedTable, replay};
 use crate::session::Row;
 
-/// Bounds of R_imu : R_bend: the session is only a sample, and neither measurement is beyond doubt.
-const RATIO: [f64; 2] = [0.05, 10.0];
+/// Bounds of R_imu : R_bend for KF_orient and for KF_coord: the session is only a sample, and slower than what follows.
+const ORIENT_RATIO: [f64; 2] = [0.01, 1.0];
+const COORD_RATIO: [f64; 2] = [0.1, 1.0];
 
-/// Mean squares of one filter's measurement errors on one segment.
+/// Mean squares of errors.
 #[derive(Debug, Clone, Copy, Default)]
 struct Errors {
     imu: f64,
@@ -33,11 +38,14 @@ impl Errors {
         self.count += coordinates;
     }
 
-    /// `None` where the two measurements were never there together.
-    fn noise(&self) -> Option<NoiseKeys> {
-        let [lo, hi] = RATIO;
+    fn ratio(&self, [lo, hi]: [f64; 2]) -> f64 {
+        (self.imu / self.bend).clamp(lo, hi)
+    }
+
+    /// Parameters with these errors' R_bend; `None` where the two measurements were never there together.
+    fn noise(&self, ratio: f64) -> Option<NoiseKeys> {
         let r_bend = self.bend / self.count;
-        (self.bend > 0.0).then(|| NoiseKeys::from_variances((self.imu / self.bend).clamp(lo, hi) * r_bend, r_bend))
+        (r_bend > 0.0).then(|| NoiseKeys::from_variances(ratio * r_bend, r_bend))
     }
 }
 
@@ -50,37 +58,58 @@ struct Gatherer<'t> {
     coord: Errors,
 }
 
-/// Sets `orient` and `coord` of every segment that has bend sensors.
-pub(super) fn set_filters(session: &Path, table: &mut NamedTable, rate_hz: f64) -> Result<(), Error> {
+/// Sets `orient` and `coord` of every segment that has bend sensors. Gives the root mean square distance, m, of the true
+/// tip from the chain of the true bend angles.
+pub(super) fn set_filters(session: &Path, table: &mut NamedTable, rate_hz: f64) -> Result<f64, Error> {
     let baked = table.bake::<f64>(rate_hz)?;
     let baked = baked.table();
     let gatherer =
         |segment| Gatherer { segment, anchor: Anchor::new(), orient: Errors::default(), coord: Errors::default() };
     let mut gatherers: Vec<Gatherer> = baked.segments.iter().map(gatherer).collect();
+    let mut headings = Errors::default();
+    let (mut misfit, mut tips) = (0.0, 0.0);
     replay::<f64>(session, table, |row, outcome| {
-        for (i, gatherer) in gatherers.iter_mut().enumerate() {
-            gatherer.add_row(i, row, outcome, &baked.anchor);
+        if let Some(distance) = truth_misfit(row, baked.segments) {
+            (misfit, tips) = (misfit + distance * distance, tips + 1.0);
+        }
+        let mut sums = Some([0.0, 0.0]);
+        for (i, (gatherer, estimate)) in gatherers.iter_mut().zip(&outcome.estimate.segments).enumerate() {
+            let errors = gatherer.add_row(row.true_theta(i), estimate, &baked.anchor);
+            sums = sums.zip(errors).map(|(sums, errors)| [sums[0] + errors[0], sums[1] + errors[1]]);
+            if let Some([imu, bend]) = sums {
+                headings.add(imu * imu, bend * bend, 1.0);
+            }
         }
         Ok(())
     })?;
     for (segment, gatherer) in table.file.segments.iter_mut().zip(&gatherers) {
-        (segment.orient, segment.coord) = (gatherer.orient.noise(), gatherer.coord.noise());
+        segment.orient = gatherer.orient.noise(headings.ratio(ORIENT_RATIO));
+        segment.coord = gatherer.coord.noise(gatherer.coord.ratio(COORD_RATIO));
     }
-    Ok(())
+    Ok((misfit / f64::max(tips, 1.0)).sqrt())
+}
+
+/// Distance of the true tip from the chain of the true bend angles, m.
+fn truth_misfit(row: &Row, segments: &[Segment<f64>]) -> Option<f64> {
+    let thetas = segments.iter().enumerate().map(|(i, segment)| (row.true_theta(i), segment));
+    let links = thetas.map(|(theta, segment)| theta.map(|theta| Link::new(Angle::from(theta), segment)));
+    let tip = chain(links).last()??;
+    let truth = row.truth.get(segments.len() - 1)?.as_ref()?;
+    Some((tip - Vector2::new(truth.x_m, truth.y_m)).norm())
 }
 
 impl Gatherer<'_> {
-    fn add_row(&mut self, i: usize, row: &Row, outcome: &Outcome<f64>, rule: &AnchorRule) {
-        let Some(estimate) = outcome.estimate.segments.get(i) else { return };
+    /// Adds one row; gives the errors of θ by the IMUs and by the bend sensors, rad, where both are known.
+    fn add_row(&mut self, truth: Option<f64>, estimate: &SegmentEstimate<f64>, rule: &AnchorRule) -> Option<[f64; 2]> {
         let imu = estimate.imu_o.map(Angle::rad);
-        let truth = row.true_theta(i);
         self.anchor.push(rule, imu.zip(truth).map(|(imu, truth)| Turns::from_rad(imu - truth)));
-        let imu_c = imu.zip(self.anchor.offset()).map(|(imu, offset)| imu - offset.rad());
+        let (truth, imu, bend) = (truth?, imu? - self.anchor.offset()?.rad(), estimate.bend?);
 
-        let Some(((imu_c, bend), truth)) = imu_c.zip(estimate.bend).zip(truth) else { return };
-        self.orient.add((imu_c - truth).powi(2), (bend.theta.rad() - truth).powi(2), 1.0);
+        let errors = [imu - truth, bend.theta.rad() - truth];
+        self.orient.add(errors[0].powi(2), errors[1].powi(2), 1.0);
         let end = |theta: f64| Link::new(Angle::from(theta), self.segment).end;
         let square = |point: Vector2<f64>| (point - end(truth)).norm_squared();
-        self.coord.add(square(end(imu_c)), square(bend.end), 2.0);
+        self.coord.add(square(end(imu)), square(bend.end), 2.0);
+        Some(errors)
     }
 }

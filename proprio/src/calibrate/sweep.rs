@@ -89,8 +89,7 @@ impl Sweep {
         for (i, theta) in self.theta.iter().enumerate() {
             let known = theta.iter().flatten().count();
             if known < LEAST_ROWS {
-                let name = format!("segment {}", i + 1);
-                return Err(CalibrationError::TooFewRows { name, found: known, least: LEAST_ROWS });
+                return Err(CalibrationError::Unseen { segment: i + 1, found: known, least: LEAST_ROWS });
             }
             let [lo, hi] = range(theta.iter().flatten().copied());
             let range_deg = (hi - lo).to_degrees();

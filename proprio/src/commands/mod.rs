@@ -28,7 +28,12 @@ fn print(text: &str) -> Result<(), Error> {
     stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()).map_err(Error::Stdout)
 }
 
+/// Writes a line to standard error, if that can be written at all.
+pub fn say(line: &impl std::fmt::Display) {
+    let _ = writeln!(anstream::stderr(), "{line}");
+}
+
 fn warn(warning: &impl std::fmt::Display) {
     let yellow = anstyle::AnsiColor::Yellow.on_default().bold();
-    anstream::eprintln!("{yellow}warning:{yellow:#} {warning}");
+    say(&format_args!("{yellow}warning:{yellow:#} {warning}"));
 }

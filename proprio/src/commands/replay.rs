@@ -57,7 +57,7 @@ fn replay_all<S: Scalar>(sessions: &[PathBuf], table: &NamedTable, out: Option<&
             super::warn(&format_args!("{}: the last line has no end; its last number may be cut", path.display()));
         }
         let figures = Methods { methods: score.figures() };
-        reports.push(SessionReport { path: path.clone(), samples, seconds, figures });
+        reports.push(SessionReport { path: path.display().to_string(), samples, seconds, figures });
     }
     Ok(Report { sessions: reports, all: Methods { methods: all.figures() }, length_mm })
 }

@@ -40,14 +40,14 @@ pub enum Problem {
     /// A column is there twice.
     #[error("column {0} is there twice")]
     DuplicateColumn(String),
-    /// A column belongs to a segment that the table does not have.
-    #[error("column {column} is of segment {segment}, but the table has {segments}")]
+    /// A column belongs to a segment that the arm does not have.
+    #[error("column {column} is of segment {segment}, but the arm has {segments}")]
     OtherArm {
         /// Name of the column.
         column: String,
         /// The column's segment.
         segment: usize,
-        /// Segments of the table.
+        /// Segments of the arm.
         segments: usize,
     },
     /// A row has too few or too many cells.
@@ -104,10 +104,14 @@ impl Problem {
             Self::Directory => "name the .csv file in it",
             Self::NoHeader | Self::NoSamples => "record the session again, or take another",
             Self::NotText => "save it as CSV in UTF-8",
-            Self::MissingColumn(_) => "add the column, or take the arm or table that this session belongs to",
+            Self::MissingColumn(_) => {
+                "take the arm or table of this session, or add the column; names are as in docs/FORMATS.md, between commas"
+            }
             Self::DuplicateColumn(_) => "remove or rename one of them",
-            Self::OtherArm { .. } => "take the table of the arm that was recorded",
-            Self::RowLength { .. } => "the file was cut or edited: remove the row, or copy the file again",
+            Self::OtherArm { .. } => "take the arm description or table of the arm that was recorded",
+            Self::RowLength { .. } => {
+                "the file was cut or edited, or has decimal commas: remove the row, copy the file again, or use points"
+            }
             Self::NoTime | Self::Time(_) => "give every row its time in seconds",
             Self::NotANumber(_) => "write numbers with a decimal point, and leave the cell of a missing reading empty",
             Self::NotFinite(_) => "leave the cell empty",

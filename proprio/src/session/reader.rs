@@ -1,7 +1,7 @@
 //! Reads a session row by row, in memory that does not grow with its length.
 
 use std::collections::VecDeque;
-use std::fs::File;
+use std::fs::{self, File};
 use std::io::{self, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
@@ -147,7 +147,8 @@ impl SessionReader {
             ImuColumn::Heading(Column { index, factor }) => self.cell(index, |text| cell::heading(text, factor)),
             ImuColumn::Quaternion(columns) => {
                 let [w, x, y, z] = columns.map(|index| self.cell(index, cell::number));
-                cell::quaternion([w?, x?, y?, z?]).map_err(|problem| self.cell_error(columns[0], problem))
+                let parts = [w?, x?, y?, z?];
+                cell::quaternion(parts).map_err(|problem| self.cell_error(columns[first_empty(&parts)], problem))
             }
         }
     }
@@ -156,10 +157,11 @@ impl SessionReader {
         let value =
             |Column { index, factor }| self.cell(index, |text| Ok(cell::number(text)?.map(|value| value * factor)));
         let [x, y, heading] = columns.map(value);
-        match (x?, y?, heading?) {
-            (None, None, None) => Ok(None),
-            (Some(x_m), Some(y_m), Some(heading_rad)) => Ok(Some(Pose { x_m, y_m, heading_rad })),
-            _ => Err(self.cell_error(columns[0].index, Problem::PartialTruth)),
+        let parts = [x?, y?, heading?];
+        match parts {
+            [None, None, None] => Ok(None),
+            [Some(x_m), Some(y_m), Some(heading_rad)] => Ok(Some(Pose { x_m, y_m, heading_rad })),
+            _ => Err(self.cell_error(columns[first_empty(&parts)].index, Problem::PartialTruth)),
         }
     }
 
@@ -168,13 +170,18 @@ impl SessionReader {
     }
 
     fn cell_error(&self, index: usize, problem: Problem) -> SessionError {
-        let line = self.record.position().map(csv::Position::line);
+        let line = self.record.position().map(|position| line_at(&self.path, position));
         self.error(line, self.names.get(index).cloned(), problem)
     }
 
     fn error(&self, line: Option<u64>, column: Option<String>, problem: Problem) -> SessionError {
         SessionError { path: self.path.clone(), line, column, problem }
     }
+}
+
+/// The part to name: the first that is empty, else the first.
+fn first_empty(parts: &[Option<f64>]) -> usize {
+    parts.iter().position(Option::is_none).unwrap_or(0)
 }
 
 /// Looks at the last byte, and goes back to the first. What cannot be wound, such as a pipe, is taken for whole.
@@ -187,8 +194,17 @@ fn ends_with_line(file: &mut File) -> io::Result<bool> {
     Ok(last == [b'\n'])
 }
 
+/// Line of a row, from 1. The parser counts a line end only when it reads on, which the `\r\n` and the empty lines
+/// before a row mislead; so the file is looked at again, where it can be.
+fn line_at(path: &Path, row: &csv::Position) -> u64 {
+    let Ok(bytes) = fs::read(path) else { return row.line() };
+    let (before, rest) = bytes.split_at_checked(row.byte() as usize).unwrap_or((&bytes, &[]));
+    let gap = rest.iter().take_while(|byte| matches!(byte, b'\r' | b'\n'));
+    1 + before.iter().chain(gap).filter(|byte| **byte == b'\n').count() as u64
+}
+
 fn csv_error(path: &Path, error: csv::Error) -> SessionError {
-    let mut line = error.position().map(csv::Position::line);
+    let mut line = error.position().map(|position| line_at(path, position));
     let problem = match error.into_kind() {
         csv::ErrorKind::Io(error) => {
             line = None;

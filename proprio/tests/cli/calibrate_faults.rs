@@ -215,7 +215,7 @@ fn a_session_whose_truth_is_empty_is_refused() {
             session.map(name, |_, _| String::new());
         }
     });
-    assert!(error.starts_with(": segment 1 has 0 rows"), "{error}");
+    assert!(error.starts_with(": the camera saw segment 1 in 0 rows"), "{error}");
 }
 
 #[test]
@@ -225,7 +225,7 @@ fn a_segment_that_the_camera_never_saw_is_named() {
             session.map(&format!("truth4_{part}"), |_, _| String::new());
         }
     });
-    assert!(error.starts_with(": segment 4 has 0 rows"), "{error}");
+    assert!(error.starts_with(": the camera saw segment 4 in 0 rows"), "{error}");
 }
 
 #[test]
@@ -265,4 +265,14 @@ fn the_description_of_a_shorter_arm_is_refused() {
     folder.write("arm.toml", &description[..last]);
     let error = folder.refused(&["calibrate", "sweep.csv", "--arm", "arm.toml", "-o", "table.toml"]);
     assert!(error.starts_with("sweep.csv, line 1: ") && error.contains("segment 6"), "{error}");
+}
+
+#[test]
+fn truth_with_a_mirrored_axis_is_refused() {
+    let error = refused(|session| {
+        for i in 1..=6 {
+            session.map(&format!("truth{i}_x_mm"), |_, x| format!("{}", -x.parse::<f64>().expect("a number")));
+        }
+    });
+    assert!(error.contains("the truth's points are"), "{error}");
 }
