@@ -37,11 +37,16 @@ impl ArmFile {
             tare_samples: samples(self.tare.seconds, rate_hz),
             anchor: AnchorRule {
                 window: self.anchor.window,
-                decimation: (rate_hz / self.anchor.rate_hz).round().max(1.0) as u16,
+                rate_millihertz: millihertz(self.anchor.rate_hz),
+                sample_rate_millihertz: millihertz(rate_hz),
                 threshold: Turns::from_rad(self.anchor.threshold_deg.to_radians()),
             },
         })
     }
+}
+
+fn millihertz(rate_hz: f64) -> u32 {
+    (rate_hz * 1000.0).round() as u32
 }
 
 /// Samples in `seconds`; at least one where there is any time at all.
@@ -53,7 +58,7 @@ impl SegmentKeys {
     fn bake<S: Scalar>(&self, reference_deg: f64, rate_hz: f64) -> Segment<S> {
         let mut bend = [None; SENSORS_PER_SEGMENT];
         for (place, map) in bend.iter_mut().zip(self.bend.iter().flatten()) {
-            *place = Some(BendMap::from_volts(map.c2, map.c1, map.c0, map.volts.unwrap_or([0.0, 3.3])));
+            *place = Some(BendMap::from_volts(map.c2, map.c1, map.c0, map.range_volts()));
         }
         Segment {
             length: S::from_f64(self.length_mm / 1000.0),

@@ -2,7 +2,7 @@
 
 use std::ops::RangeInclusive;
 
-use estimator_core::{H_LIMIT, SENSORS_PER_SEGMENT};
+use estimator_core::{BendMap, H_LIMIT, SENSORS_PER_SEGMENT, VOLTS_PER_COUNT};
 
 use crate::file::{ArmFile, BendKeys, FileError, MAX_SEGMENTS, MAX_WINDOW, NoiseKeys, SegmentKeys};
 
@@ -10,6 +10,8 @@ use crate::file::{ArmFile, BendKeys, FileError, MAX_SEGMENTS, MAX_WINDOW, NoiseK
 const MAX_ARM_MM: f64 = 16_000.0;
 /// No segment bends further, rad; fixed point ends at ±32.
 const MAX_ANGLE: f64 = 10.0;
+/// Coefficients of a map about the middle of its range, rad, that fixed point holds.
+const MAX_COEFFICIENT: f64 = 31.0;
 /// r_imu over r_bend: beyond it fixed point has no digits left for the smaller one.
 const VARIANCE_RATIO: RangeInclusive<f64> = 1e-5..=1e5;
 /// A measurement that is a multiple of the state, but not another one.
@@ -61,7 +63,20 @@ impl BendKeys {
             within(&format!("{key}.{name}"), value, -1e4..=1e4)?;
         }
         within(&format!("{key}.rmse_deg"), self.rmse_deg.unwrap_or(0.0), 0.0..=360.0)?;
-        let Some([lo, hi]) = self.volts else { return Ok(()) };
+        if let Some(volts) = self.volts {
+            self.check_within(key, volts)?;
+        }
+        let map = BendMap::<f64>::from_volts(self.c2, self.c1, self.c0, self.range_volts());
+        let largest = map.coefficients.into_iter().fold(0.0, |largest: f64, b| largest.max(b.abs()));
+        ensure(
+            largest < MAX_COEFFICIENT,
+            key,
+            &"a map that is too steep",
+            "the angles of a segment, within half a turn",
+        )
+    }
+
+    fn check_within(&self, key: &str, [lo, hi]: [f64; 2]) -> Result<(), FileError> {
         let volts = format!("{key}.volts");
         let in_order = ADC_VOLTS.contains(&lo) && ADC_VOLTS.contains(&hi) && lo < hi;
         ensure(in_order, &volts, &format!("[{lo}, {hi}]"), "[lowest, highest] within 0 to 3.3 V")?;
@@ -73,6 +88,17 @@ impl BendKeys {
             &format!("a map that turns back at {:.3} V", self.turning_point()),
             &format!("one that only rises or only falls from {lo} V to {hi} V"),
         )
+    }
+
+    /// The voltages that the map was fitted on; where it does not say, those at which it stays within half a turn, V.
+    #[must_use]
+    pub fn range_volts(&self) -> [f64; 2] {
+        self.volts.unwrap_or_else(|| {
+            let volts = (0..=4095_u16).map(|counts| f64::from(counts) * VOLTS_PER_COUNT);
+            let bent = volts.filter(|v| self.angle(*v).abs() <= std::f64::consts::PI);
+            let [lo, hi] = bent.fold([f64::INFINITY, f64::NEG_INFINITY], |[lo, hi], v| [lo.min(v), hi.max(v)]);
+            if lo < hi { [lo, hi] } else { [0.0, 3.3] }
+        })
     }
 
     /// Bend angle at a voltage, rad.

@@ -5,10 +5,12 @@ use crate::angle::Turns;
 /// When the anchor averages and when it corrects; the same for all segments.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct AnchorRule {
-    /// Length of the window, in values of the anchor's own rate.
+    /// Length of the window, in values.
     pub window: u16,
-    /// Samples whose mean makes one value of the window: the sample rate over the anchor's rate, at least 1.
-    pub decimation: u16,
+    /// Rate of the window's values, mHz. Above the sample rate, every sample is a value.
+    pub rate_millihertz: u32,
+    /// Rate of the samples, mHz; those between two values are averaged.
+    pub sample_rate_millihertz: u32,
     /// Offsets up to this size are left alone.
     pub threshold: Turns,
 }
@@ -22,7 +24,12 @@ pub struct AnchorRule {
 /// ```
 /// use estimator_core::{Anchor, AnchorRule, Turns};
 ///
-/// let rule = AnchorRule { window: 2, decimation: 1, threshold: Turns::ZERO };
+/// let rule = AnchorRule {
+///     window: 2,
+///     rate_millihertz: 10_000,
+///     sample_rate_millihertz: 10_000,
+///     threshold: Turns::ZERO,
+/// };
 /// let mut anchor = Anchor::<2>::new();
 /// for value in [1, 3, 5] {
 ///     anchor.push(&rule, Some(Turns::from_bits(value)));
@@ -35,7 +42,8 @@ pub struct Anchor<const W: usize> {
     oldest: usize,
     mean: Mean,
     group: Mean,
-    group_ticks: u16,
+    /// How much of the time to the next value has passed: adds the anchor's rate a sample, up to the sample rate.
+    phase: u32,
     offset: Option<Turns>,
 }
 
@@ -74,18 +82,19 @@ impl<const W: usize> Anchor<W> {
     /// An anchor that has seen nothing.
     #[must_use]
     pub const fn new() -> Self {
-        Self { window: [MISSING; W], oldest: 0, mean: Mean::EMPTY, group: Mean::EMPTY, group_ticks: 0, offset: None }
+        Self { window: [MISSING; W], oldest: 0, mean: Mean::EMPTY, group: Mean::EMPTY, phase: 0, offset: None }
     }
 
     /// Takes this sample's difference θ_imu,i − θ_bend,i, or `None` where one of the two is unknown.
     pub fn push(&mut self, rule: &AnchorRule, difference: Option<Turns>) {
         self.group.add(difference.unwrap_or(MISSING));
-        self.group_ticks += 1;
-        if self.group_ticks < rule.decimation {
+        self.phase = self.phase.saturating_add(rule.rate_millihertz);
+        if self.phase < rule.sample_rate_millihertz {
             return;
         }
+        self.phase = (self.phase - rule.sample_rate_millihertz).min(rule.sample_rate_millihertz);
         let newest = self.group.value().unwrap_or(MISSING);
-        (self.group, self.group_ticks) = (Mean::EMPTY, 0);
+        self.group = Mean::EMPTY;
         if let Some(place) = self.window.get_mut(self.oldest) {
             self.mean.remove(*place);
             self.mean.add(newest);

@@ -219,7 +219,7 @@ fn round_to_i64(value: f64) -> i64 {
 
 /// A bend angle θ = `rest` + 2π·`turns`, rad, clockwise positive: whole turns beside the remainder.
 ///
-/// Only IMU angles ever have turns, once they have drifted past 180° and no bend sensor anchors them.
+/// Only IMU angles have turns, once they have drifted past 180°: raw ones, and corrected ones that nothing anchors.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Angle<S> {
     /// The angle without the turns, rad.

@@ -5,11 +5,16 @@ use crate::scalar::Scalar;
 /// Volts of one ADC count: 3.3 V over 12 bits.
 pub const VOLTS_PER_COUNT: f64 = 3.3 / 4095.0;
 
+/// Largest reading of a 12-bit ADC.
+const MAX_COUNTS: u16 = 4095;
+
 /// Quadratic map θ = c2 V² + c1 V + c0 with V = counts · 3.3 / 4095, θ in rad.
 ///
 /// Held about the middle of the sensor's own voltage range and scaled to it: θ = b0 + b1 u + b2 u² with
 /// u = (counts − `center`) / 2^`shift` within ±1. So the coefficients stay as small as the angles themselves, where
 /// c2, c1 and c0 of a sensor with a narrow range are large and cancel.
+///
+/// Counts at which the map passes a whole turn, such as those of an open or shorted sensor, are no reading.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BendMap<S> {
     /// Counts in the middle of the calibrated range.
@@ -18,6 +23,8 @@ pub struct BendMap<S> {
     pub shift: u8,
     /// b0, b1, b2, rad.
     pub coefficients: [S; 3],
+    /// Lowest and highest counts around `center` up to which |θ| stays within a whole turn.
+    pub readable: [u16; 2],
 }
 
 impl<S: Scalar> BendMap<S> {
@@ -31,22 +38,34 @@ impl<S: Scalar> BendMap<S> {
         let v0 = f64::from(center) * VOLTS_PER_COUNT;
         let scale = f64::from(1_u32 << shift) * VOLTS_PER_COUNT;
         let coefficients = [(c2 * v0 + c1) * v0 + c0, (2.0 * c2 * v0 + c1) * scale, c2 * scale * scale];
-        Self { center, shift: shift as u8, coefficients: coefficients.map(S::from_f64) }
+        let is_turn = |counts: &u16| {
+            let v = f64::from(*counts) * VOLTS_PER_COUNT;
+            !((c2 * v + c1) * v + c0).abs().le(&core::f64::consts::TAU)
+        };
+        let lowest = (0..=center).rev().find(is_turn).map_or(0, |counts| counts + 1);
+        let highest = (center..=MAX_COUNTS).find(is_turn).map_or(MAX_COUNTS, |counts| counts.saturating_sub(1));
+        let readable = [lowest, highest];
+        Self { center, shift: shift as u8, coefficients: coefficients.map(S::from_f64), readable }
     }
 
-    /// Bend angle at `counts`, rad.
+    /// Bend angle at `counts`, rad; `None` outside the readable range.
     ///
     /// ```
     /// use estimator_core::BendMap;
     ///
     /// let map = BendMap::<f64>::from_volts(0.1, 0.5, -1.0, [0.5, 2.5]);
     /// let volts = 2000.0 * 3.3 / 4095.0;
-    /// assert!((map.angle(2000) - (0.1 * volts * volts + 0.5 * volts - 1.0)).abs() < 1e-12);
+    /// let angle = map.angle(2000).expect("a reading in the middle of the range");
+    /// assert!((angle - (0.1 * volts * volts + 0.5 * volts - 1.0)).abs() < 1e-12);
     /// ```
     #[must_use]
-    pub fn angle(&self, counts: u16) -> S {
+    pub fn angle(&self, counts: u16) -> Option<S> {
+        let [lowest, highest] = self.readable;
+        if counts < lowest || counts > highest {
+            return None;
+        }
         let u = S::from_fraction(i32::from(counts) - i32::from(self.center), u32::from(self.shift));
         let [b0, b1, b2] = self.coefficients;
-        b0 + u * (b1 + u * b2)
+        Some(b0 + u * (b1 + u * b2))
     }
 }

@@ -212,7 +212,7 @@ impl Tangent {
 fn bend_angle<S: Scalar>(segment: &Segment<S>, counts: &[Option<u16>]) -> (Option<S>, u8) {
     const HALF: Constant = Constant::new(0.5);
     let maps = segment.bend.iter().zip(counts);
-    let mut angles = maps.filter_map(|(map, counts)| Some(map.as_ref()?.angle((*counts)?)));
+    let mut angles = maps.filter_map(|(map, counts)| map.as_ref()?.angle((*counts)?));
     match (angles.next(), angles.next()) {
         (Some(a), Some(b)) => (Some((a + b) * S::constant(HALF)), 2),
         (one, _) => (one, u8::from(one.is_some())),
@@ -223,14 +223,19 @@ impl<S: Scalar, const W: usize> State<S, W> {
     /// KF_orient and KF_coord of one segment, with the measurements that there are.
     fn fuse(&mut self, segment: &Segment<S>, imu_c: Option<Link<S>>, bend: Option<Link<S>>) -> Option<Fused<S>> {
         let (orient, coord) = (&segment.orient, &segment.coord);
+        // A segment without bend sensors drifts on; whole turns say nothing of its bend, and fixed point ends at 32 rad.
+        let imu_c = imu_c.map(|link| match link.theta {
+            Angle { turns: 0, .. } => link,
+            Angle { rest, .. } => Link::new(Angle::from(rest), segment),
+        });
         self.orient.predict(orient.q);
         self.coord.predict(coord.q);
         if let Some(link) = imu_c {
-            self.orient.update(SVector::from([link.theta.value()]), orient.h_imu, orient.r_imu);
+            self.orient.update(SVector::from([link.theta.rest]), orient.h_imu, orient.r_imu);
             self.coord.update(link.end, coord.h_imu, coord.r_imu);
         }
         if let Some(link) = bend {
-            self.orient.update(SVector::from([link.theta.value()]), orient.h_bend, orient.r_bend);
+            self.orient.update(SVector::from([link.theta.rest]), orient.h_bend, orient.r_bend);
             self.coord.update(link.end, coord.h_bend, coord.r_bend);
         }
         let ((theta, theta_variance), (end, end_variance)) = self.orient.state().zip(self.coord.state())?;

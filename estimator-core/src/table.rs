@@ -68,7 +68,12 @@ impl<'t, S> Table<'t, S> {
     #[must_use]
     pub const fn bare(segments: &'t [Segment<S>]) -> Self {
         // 0.5° in units of 2⁻³² turns.
-        let anchor = AnchorRule { window: 100, decimation: 1, threshold: Turns::from_bits(5_965_232) };
+        let anchor = AnchorRule {
+            window: 100,
+            rate_millihertz: 10_000,
+            sample_rate_millihertz: 10_000,
+            threshold: Turns::from_bits(5_965_232),
+        };
         Self { segments, tare_samples: 0, anchor }
     }
 }

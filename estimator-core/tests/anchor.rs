@@ -4,7 +4,8 @@ use estimator_core::{Anchor, AnchorRule, Turns};
 use proptest::prelude::*;
 
 fn rule(window: u16, decimation: u16) -> AnchorRule {
-    AnchorRule { window, decimation, threshold: Turns::ZERO }
+    let sample_rate_millihertz = 10_000 * u32::from(decimation);
+    AnchorRule { window, rate_millihertz: 10_000, sample_rate_millihertz, threshold: Turns::ZERO }
 }
 
 /// The mean of what is there, towards zero as [`Turns::mean_of`] is.
@@ -84,6 +85,21 @@ fn decimation_averages_whole_groups() {
     let values = [Some(1), Some(2), Some(6), Some(30), Some(30), Some(30), Some(-99)];
     let expected = [None, None, Some(3), Some(3), Some(3), Some(16), Some(16)];
     assert_eq!(pushed::<10>(&rule(10, 3), &values), expected);
+}
+
+#[test]
+fn a_rate_that_does_not_divide_keeps_its_pace() {
+    let rule = AnchorRule { sample_rate_millihertz: 25_000, ..rule(10, 1) };
+    let values = [1, 2, 3, 10, 12, 1, 2, 3, 10, 12].map(Some);
+    // 25 Hz to 10 Hz: groups of 3 and 2 in turn, of means 2 and 11.
+    let expected = [None, None, Some(2), Some(2), Some(6), Some(6), Some(6), Some(5), Some(5), Some(6)];
+    assert_eq!(pushed::<10>(&rule, &values), expected);
+}
+
+#[test]
+fn a_rate_above_the_samples_takes_every_sample() {
+    let rule = AnchorRule { sample_rate_millihertz: 3_000, ..rule(2, 1) };
+    assert_eq!(pushed::<2>(&rule, &[1, 3, 5].map(Some)), [Some(1), Some(2), Some(4)]);
 }
 
 #[test]

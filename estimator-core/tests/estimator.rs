@@ -31,7 +31,7 @@ fn segment<S: Scalar>(sensors: usize) -> Segment<S> {
 }
 
 fn rule(window: u16) -> AnchorRule {
-    AnchorRule { window, decimation: 1, threshold: Turns::from_rad(0.01) }
+    AnchorRule { window, rate_millihertz: 10_000, sample_rate_millihertz: 10_000, threshold: Turns::from_rad(0.01) }
 }
 
 fn table<S>(segments: &[Segment<S>]) -> Table<'_, S> {
@@ -321,8 +321,21 @@ fn a_map_of_a_narrow_range_loses_no_digits_in_fixed_point() {
     for counts in (2482..=2729).step_by(13) {
         let v = f64::from(counts) * 3.3 / 4095.0;
         let exact = c2 * v * v + c1 * v + c0;
-        assert!((float.angle(counts) - exact).abs() < 1e-11);
+        let (float, fixed) = float.angle(counts).zip(fixed.angle(counts)).expect("counts of the range");
+        assert!((float - exact).abs() < 1e-11);
         // Three coefficients and two products, each rounded by half a step.
-        assert!((fixed.angle(counts).to_f64() - exact).abs() <= 2.5 * LSB);
+        assert!((fixed.to_f64() - exact).abs() <= 2.5 * LSB);
+    }
+}
+
+#[test]
+fn counts_beyond_a_whole_turn_of_the_map_are_no_reading() {
+    // A sensor of 0.2 V: at the rails its map says 4 turns.
+    let map = BendMap::<Q>::from_volts(0.0, 15.0, -30.0, [1.9, 2.1]);
+    assert_eq!((map.angle(0), map.angle(4095)), (None, None));
+    let volts = |counts: u16| f64::from(counts) * 3.3 / 4095.0;
+    for counts in 0..=4095 {
+        let angle: f64 = 15.0 * volts(counts) - 30.0;
+        assert_eq!(map.angle(counts).is_some(), angle.abs() <= std::f64::consts::TAU, "{counts} counts, {angle} rad");
     }
 }

@@ -58,7 +58,12 @@ fn floats_from_tables_saturate_uncounted() {
 fn run(counts: u16, steps: u32) {
     let map = BendMap::from_volts(0.0, 1.2, -1.8, [0.5, 2.5]);
     let segments = [Segment { bend: [Some(map), None], ..Segment::<Q>::bare(0.08, 0.017) }; 3];
-    let anchor = AnchorRule { window: 10, decimation: 1, threshold: Turns::from_rad(0.01) };
+    let anchor = AnchorRule {
+        window: 10,
+        rate_millihertz: 10_000,
+        sample_rate_millihertz: 10_000,
+        threshold: Turns::from_rad(0.01),
+    };
     let table = Table { segments: &segments, tare_samples: 10, anchor };
     let mut estimator = Estimator::<Q, 3, 10>::new(&table).expect("a valid table");
     for step in 0..steps {

@@ -204,18 +204,21 @@ fn world_headings(raw: &[Option<f64>], tare: usize, reference: f64) -> Vec<Optio
 
 /// MA(θ_imu) − MA(θ_bend) of each row and segment.
 fn offsets(arm: &Arm, imu: &Rows, bend: &Rows) -> Rows {
-    let group = ((arm.rate / arm.anchor_rate).round() as usize).max(1);
+    // Value k of the window ends with the first row by whose end k periods of the anchor's rate have passed.
+    let values_by = |rows: usize| (rows as f64 * (arm.anchor_rate / arm.rate).min(1.0) + 1e-9).floor() as usize;
+    let mut begun = 0;
     let mut newest: Vec<Option<f64>> = vec![None; arm.segments.len()];
     let mut slots: Vec<Vec<Option<(f64, f64)>>> = vec![Vec::new(); arm.segments.len()];
     let mut offsets = Vec::new();
     for t in 0..imu.len() {
-        for i in 0..arm.segments.len() {
-            if (t + 1) % group == 0 {
-                let rows = t + 1 - group..=t;
+        if values_by(t + 1) > values_by(t) {
+            for i in 0..arm.segments.len() {
+                let rows = begun..=t;
                 slots[i].push(means(&rows.map(|t| imu[t][i].zip(bend[t][i])).collect::<Vec<_>>()));
                 let window = slots[i].len().saturating_sub(arm.window);
                 newest[i] = means(&slots[i][window..]).map(|(imu, bend)| imu - bend).or(newest[i]);
             }
+            begun = t + 1;
         }
         offsets.push(newest.clone());
     }
@@ -285,6 +288,8 @@ impl<'a> Fusion<'a> {
     /// θ_i and P_i, fused; `None` before the first measurement.
     fn step(&mut self, imu: Option<f64>, bend: Option<f64>) -> Option<(f64, [f64; 2])> {
         let Segment { orient, coord, .. } = *self.segment;
+        // Whole turns are drift, not bending.
+        let imu = imu.map(wrapped);
         let point = |theta: Option<f64>| theta.map(|theta| pcc(self.segment, theta).to_vec());
         let (imu_point, bend_point) = (point(imu), point(bend));
         measure(&mut self.orient, self.rate, &orient, imu.map(|theta| vec![theta]), bend.map(|theta| vec![theta]));

@@ -246,7 +246,8 @@ pub fn segments<S: Scalar>(arm: &literal::Arm) -> Vec<Segment<S>> {
 pub fn rule(arm: &literal::Arm) -> (AnchorRule, u32) {
     let anchor = AnchorRule {
         window: arm.window as u16,
-        decimation: (arm.rate / arm.anchor_rate).round().max(1.0) as u16,
+        rate_millihertz: (arm.anchor_rate * 1000.0) as u32,
+        sample_rate_millihertz: (arm.rate * 1000.0) as u32,
         threshold: Turns::from_rad(arm.threshold),
     };
     (anchor, (arm.rate * arm.tare_seconds).round() as u32)
