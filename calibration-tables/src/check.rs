@@ -85,7 +85,10 @@ impl BendKeys {
         ensure(
             self.is_monotonic_within([lo, hi]),
             key,
-            &format!("a map that turns back at {:.3} V", self.turning_point()),
+            &match self.turning_point() {
+                volts if volts.is_finite() => format!("a map that turns back at {volts:.3} V"),
+                _ => "a map that stays level".to_owned(),
+            },
             &format!("one that only rises or only falls from {lo} V to {hi} V"),
         )
     }
@@ -133,11 +136,13 @@ impl NoiseKeys {
 }
 
 fn ensure(holds: bool, key: &str, found: &impl ToString, expected: &str) -> Result<(), FileError> {
-    let error = || FileError::Value { key: key.to_owned(), found: found.to_string(), expected: expected.to_owned() };
-    if holds { Ok(()) } else { Err(error()) }
+    if holds {
+        return Ok(());
+    }
+    Err(FileError::Value { line: None, key: key.to_owned(), found: found.to_string(), expected: expected.to_owned() })
 }
 
 /// NaN is within no range.
 fn within(key: &str, value: f64, range: RangeInclusive<f64>) -> Result<(), FileError> {
-    ensure(range.contains(&value), key, &value, &format!("{:?} to {:?}", range.start(), range.end()))
+    ensure(range.contains(&value), key, &format!("{value:?}"), &format!("{:?} to {:?}", range.start(), range.end()))
 }

@@ -1,12 +1,18 @@
 //! The TOML file as it stands, read and written without loss.
 
+use std::io::Read;
 use std::path::Path;
 
-use serde::{Deserialize, Serialize};
+use serde::de::{DeserializeOwned, Error};
+use serde::{Deserialize, Deserializer, Serialize};
 use toml_edit::Item;
+
+use crate::place::{line_and_column, line_of};
 
 /// The `format` that this crate reads and writes.
 const FORMAT: u32 = 1;
+/// Size of the largest file.
+const MAX_BYTES: u64 = 1 << 20;
 /// Segments of the longest arm.
 pub const MAX_SEGMENTS: usize = 16;
 /// Values of the longest anchor window.
@@ -113,7 +119,7 @@ pub struct BendKeys {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rmse_deg: Option<f64>,
     /// Lowest and highest voltage of the calibration, V; the whole 0…3.3 where it is not known.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, deserialize_with = "pair", skip_serializing_if = "Option::is_none")]
     pub volts: Option<[f64; 2]>,
 }
 
@@ -145,15 +151,27 @@ pub enum FileError {
     /// The file cannot be read.
     #[error("cannot be read: {0}")]
     Read(#[from] std::io::Error),
-    /// It is not TOML, or a key is missing, unknown or of the wrong type. The text names line and column.
-    #[error("{}", .0.to_string().trim_end())]
-    Syntax(#[from] toml_edit::de::Error),
+    /// It is larger than any table.
+    #[error("is larger than {MAX_BYTES} bytes, which no arm description or table is")]
+    Size,
+    /// It is not TOML, or a key is missing, unknown or of the wrong type.
+    #[error("line {line}, column {column}: {message}")]
+    Syntax {
+        /// Line, from 1.
+        line: usize,
+        /// Column, from 1.
+        column: usize,
+        /// What is wrong there.
+        message: String,
+    },
     /// The format number is from another time.
     #[error("format = {0} is not known; this version reads format = {FORMAT}")]
     Format(u32),
     /// A value that the estimator cannot use.
-    #[error("{key} = {found}, expected {expected}")]
+    #[error("{}{key} = {found}, expected {expected}", line.map(|line| format!("line {line}: ")).unwrap_or_default())]
     Value {
+        /// Line, from 1, where the key is in the file.
+        line: Option<usize>,
         /// Where, such as `segment[2].bend[0].volts`, counted from 1.
         key: String,
         /// What stands there.
@@ -172,7 +190,8 @@ impl FileError {
     pub const fn remedy(&self) -> &'static str {
         match self {
             Self::Read(_) => "check the name and that you may read it; it must be a text file in UTF-8",
-            Self::Syntax(_) => "correct the line; the keys are listed in docs/FORMATS.md",
+            Self::Size => "name the .toml file of the arm",
+            Self::Syntax { .. } => "correct the line; the keys are listed in docs/FORMATS.md",
             Self::Format(_) => "take a version of proprio that knows this format",
             Self::Value { .. } => "correct the value, or make the table again with `proprio calibrate`",
             Self::NotCalibrated(_) => "make a table of it with `proprio calibrate`, or write bend = [] if it has none",
@@ -186,7 +205,9 @@ impl ArmFile {
     /// # Errors
     /// Any [`FileError`] but [`FileError::NotCalibrated`].
     pub fn load(path: &Path) -> Result<Self, FileError> {
-        Self::parse(&std::fs::read_to_string(path)?)
+        let mut text = String::new();
+        std::fs::File::open(path)?.take(MAX_BYTES + 1).read_to_string(&mut text)?;
+        if text.len() as u64 > MAX_BYTES { Err(FileError::Size) } else { Self::parse(&text) }
     }
 
     /// Checks a file's text; a byte-order mark is accepted.
@@ -195,12 +216,17 @@ impl ArmFile {
     /// As [`ArmFile::load`].
     pub fn parse(text: &str) -> Result<Self, FileError> {
         let text = text.trim_start_matches('\u{feff}');
-        let version: Version = toml_edit::de::from_str(text)?;
+        let version: Version = read(text)?;
         if version.format != FORMAT {
             return Err(FileError::Format(version.format));
         }
-        let file: Self = toml_edit::de::from_str(text)?;
-        file.check()?;
+        let file: Self = read(text)?;
+        file.check().map_err(|error| match error {
+            FileError::Value { key, found, expected, .. } => {
+                FileError::Value { line: line_of(text, &key), key, found, expected }
+            }
+            other => other,
+        })?;
         Ok(file)
     }
 
@@ -237,6 +263,22 @@ impl ArmFile {
         };
         self.segments.iter().enumerate().map(sensors).collect()
     }
+}
+
+fn read<T: DeserializeOwned>(text: &str) -> Result<T, FileError> {
+    toml_edit::de::from_str(text).map_err(|error| {
+        let (line, column) = line_and_column(text, error.span().map_or(0, |span| span.start));
+        let message = error.message().chars().take(200).collect::<String>().replace('\n', ", ");
+        FileError::Syntax { line, column, message }
+    })
+}
+
+/// An array of two numbers, no more.
+fn pair<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<[f64; 2]>, D::Error> {
+    let numbers = Vec::deserialize(deserializer)?;
+    let found = numbers.len();
+    let pair = numbers.try_into().map_err(|_: Vec<f64>| D::Error::custom(format!("{found} numbers, expected 2")))?;
+    Ok(Some(pair))
 }
 
 /// The format number alone, so that a file of another format is told so and not that its keys are unknown.

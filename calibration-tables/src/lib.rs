@@ -32,6 +32,7 @@ mod bake;
 mod check;
 mod file;
 mod noise;
+mod place;
 
 pub use bake::Baked;
 pub use file::{

@@ -129,7 +129,10 @@ proptest! {
     }
 
     #[test]
-    fn the_bend_angle_is_the_mean_of_the_sensors_that_were_read(a: Option<u16>, b: Option<u16>) {
+    fn the_bend_angle_is_the_mean_of_the_sensors_that_were_read(
+        a in prop::option::of(0_u16..=4095),
+        b in prop::option::of(0_u16..=4095),
+    ) {
         let segments = [segment::<f64>(2)];
         let table = table(&segments);
         let mut estimator = Estimator::<f64, 1, 10>::new(&table).expect("a valid table");

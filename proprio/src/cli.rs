@@ -13,7 +13,9 @@ pub const STYLES: Styles = Styles::styled();
 /// The shape of a soft robot arm from its bend sensors and IMUs.
 #[derive(Debug, Parser)]
 #[command(version, styles = STYLES, max_term_width = 100)]
-#[command(after_help = "Exit status: 0 done, 2 the input or the command cannot be used, 1 a fault of proprio itself.")]
+#[command(
+    after_help = "Exit status: 0 done, 2 the input or the command cannot be used, 130 interrupted, 1 a fault of proprio itself."
+)]
 pub struct Cli {
     #[command(subcommand)]
     pub command: Command,

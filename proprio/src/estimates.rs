@@ -2,52 +2,74 @@
 
 use std::io::{self, Write};
 
+use calibration_tables::ArmFile;
 use estimator_core::{Method, Scalar, SegmentShape};
 
+use crate::error::Error;
+use crate::output::OutputFile;
 use crate::replay::Outcome;
 
 /// Estimates that are being written.
-pub struct EstimateWriter<W> {
-    sink: W,
+pub struct EstimateWriter {
+    file: OutputFile,
 }
 
-impl<W: Write> EstimateWriter<W> {
-    /// Begins a file for an arm of `segments` segments with its header.
+impl EstimateWriter {
+    /// Begins `file` with the header for the table's segments.
     ///
     /// # Errors
-    /// Those of `sink`.
-    pub fn new(mut sink: W, segments: usize) -> io::Result<Self> {
-        write!(sink, "time_s")?;
-        for method in Method::ALL.map(Method::name) {
-            for i in 1..=segments {
-                write!(sink, ",{method}{i}_theta_deg,{method}{i}_x_mm,{method}{i}_y_mm")?;
-            }
-        }
-        writeln!(sink)?;
-        Ok(Self { sink })
+    /// [`Error::Output`].
+    pub fn new(mut file: OutputFile, table: &ArmFile) -> Result<Self, Error> {
+        write_header(&mut file, table.segments.len()).map_err(|error| file.error(error))?;
+        Ok(Self { file })
     }
 
     /// Writes one row; the cells of what is not known stay empty.
     ///
     /// # Errors
-    /// Those of the sink.
-    pub fn write<S: Scalar>(&mut self, outcome: &Outcome<S>) -> io::Result<()> {
-        write!(self.sink, "{}", outcome.estimate.time_us as f64 / 1e6)?;
-        for SegmentShape { theta, end } in outcome.shapes.iter().flatten() {
-            match theta {
-                Some(theta) => write!(self.sink, ",{:.6}", theta.rad().to_degrees())?,
-                None => write!(self.sink, ",")?,
-            }
-            match end {
-                Some(end) => write!(self.sink, ",{:.5},{:.5}", end.x.to_f64() * 1e3, end.y.to_f64() * 1e3)?,
-                None => write!(self.sink, ",,")?,
-            }
-        }
-        writeln!(self.sink)
+    /// [`Error::Output`].
+    pub fn write<S: Scalar>(&mut self, outcome: &Outcome<S>) -> Result<(), Error> {
+        write_row(&mut self.file, outcome).map_err(|error| self.file.error(error))
     }
 
-    /// The sink, when all rows are written.
-    pub fn into_inner(self) -> W {
-        self.sink
+    /// Completes the file and gives it its name.
+    ///
+    /// # Errors
+    /// [`Error::Output`].
+    pub fn finish(self) -> Result<(), Error> {
+        self.file.finish()
     }
+}
+
+/// Writes the header for an arm of `segments` segments.
+///
+/// # Errors
+/// Those of `sink`.
+pub fn write_header(sink: &mut impl Write, segments: usize) -> io::Result<()> {
+    write!(sink, "time_s")?;
+    for method in Method::ALL.map(Method::name) {
+        for i in 1..=segments {
+            write!(sink, ",{method}{i}_theta_deg,{method}{i}_x_mm,{method}{i}_y_mm")?;
+        }
+    }
+    writeln!(sink)
+}
+
+/// Writes one row.
+///
+/// # Errors
+/// Those of `sink`.
+pub fn write_row<S: Scalar>(sink: &mut impl Write, outcome: &Outcome<S>) -> io::Result<()> {
+    write!(sink, "{}", outcome.estimate.time_us as f64 / 1e6)?;
+    for SegmentShape { theta, end } in outcome.shapes.iter().flatten() {
+        match theta {
+            Some(theta) => write!(sink, ",{:.6}", theta.rad().to_degrees())?,
+            None => write!(sink, ",")?,
+        }
+        match end {
+            Some(end) => write!(sink, ",{:.5},{:.5}", end.x.to_f64() * 1e3, end.y.to_f64() * 1e3)?,
+            None => write!(sink, ",,")?,
+        }
+    }
+    writeln!(sink)
 }

@@ -9,9 +9,18 @@ use std::process::ExitCode;
 
 use clap::Parser;
 use proprio::error::Error;
+use proprio::output::discard_unfinished;
+
+/// Exit status after Ctrl-C or a termination, as shells have it.
+const INTERRUPTED: i32 = 130;
 
 fn main() -> ExitCode {
     let command = cli::Cli::parse().command;
+    // Without a handler an interrupt leaves an unfinished file behind, and nothing worse.
+    let _ = ctrlc::set_handler(|| {
+        discard_unfinished();
+        std::process::exit(INTERRUPTED);
+    });
     match catch_unwind(|| command.run()) {
         Ok(Ok(())) => ExitCode::SUCCESS,
         // A reader that has seen enough, such as `head`, is no failure.

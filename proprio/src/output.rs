@@ -3,6 +3,7 @@
 use std::fs;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use tempfile::NamedTempFile;
 
@@ -54,6 +55,21 @@ impl OutputFile {
     }
 }
 
+/// Files that wait for their names.
+static UNFINISHED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+
+fn unfinished() -> MutexGuard<'static, Vec<PathBuf>> {
+    UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Removes what was begun and not finished, for a program that is interrupted.
+pub fn discard_unfinished() {
+    for path in unfinished().drain(..) {
+        // One that has its name by now is no longer there, and that is well.
+        let _ = fs::remove_file(path);
+    }
+}
+
 /// What a link points to, so that the link stays; an open file under `/dev` or `/proc` is no link to a name.
 fn target(path: &Path) -> PathBuf {
     let is_link = fs::symlink_metadata(path).is_ok_and(|found| found.is_symlink());
@@ -71,6 +87,7 @@ impl Sink {
     fn open(path: &Path) -> io::Result<Self> {
         match fs::metadata(path) {
             Ok(found) if found.is_dir() => return Err(io::ErrorKind::IsADirectory.into()),
+            Ok(found) if found.permissions().readonly() => return Err(io::ErrorKind::PermissionDenied.into()),
             Ok(found) if !found.is_file() || is_open_file(path) => {
                 return Ok(Self::Direct(BufWriter::new(fs::OpenOptions::new().write(true).open(path)?)));
             }
@@ -82,7 +99,9 @@ impl Sink {
         builder.prefix(".proprio-").suffix(".part");
         #[cfg(unix)]
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-        Ok(Self::Aside(BufWriter::new(builder.tempfile_in(folder)?)))
+        let file = builder.tempfile_in(folder)?;
+        unfinished().push(file.path().to_owned());
+        Ok(Self::Aside(BufWriter::new(file)))
     }
 
     fn finish(self, path: &Path) -> io::Result<()> {
@@ -91,8 +110,7 @@ impl Sink {
             Self::Aside(file) => {
                 let file = file.into_inner().map_err(io::IntoInnerError::into_error)?;
                 file.as_file().sync_all()?;
-                file.persist(path).map_err(|error| error.error)?;
-                Ok(())
+                file.persist(path).map(|_| ()).map_err(|error| error.error)
             }
         }
     }

@@ -88,8 +88,7 @@ pub fn replay<S: Scalar>(
     mut visit: impl FnMut(&Row, &Outcome<S>) -> Result<(), Error>,
 ) -> Result<Extent, Error> {
     let mut reader = SessionReader::open(session, &table.needs()?)?;
-    let rate_hz = reader.rate_hz().unwrap_or(table.file.rate_hz);
-    let baked = table.bake::<S>(rate_hz)?;
+    let baked = table.bake::<S>(reader.rate_hz(table.file.rate_hz))?;
     let baked = baked.table();
     let mut estimator: Box<HostEstimator<S>> = Box::new(Estimator::new(&baked).expect("the file was checked"));
 

@@ -176,10 +176,31 @@ pub enum Warning {
         /// The sensor.
         name: String,
     },
+    /// The file's last line has no end.
+    #[error("the last line has no end; its last number may be cut")]
+    LastLine,
+    /// Readings that no noise explains.
+    #[error("{count} readings of {name} are over six RMSE off its map; spikes spoil it, empty their cells")]
+    Outliers {
+        /// The sensor.
+        name: String,
+        /// Number of readings.
+        count: usize,
+    },
+    /// Segments that the sweep cannot tell apart.
+    #[error("segments {} bend alike here, so that sensors swapped between them would not be noticed", pairs(.0))]
+    Alike(
+        /// Pairs of segments, from 1.
+        Vec<(usize, usize)>,
+    ),
     /// An IMU without readings.
     #[error("imu{segment} was not read; the sweep says nothing about it")]
     ImuNotRead {
         /// The segment, from 1.
         segment: usize,
     },
+}
+
+fn pairs(pairs: &[(usize, usize)]) -> String {
+    pairs.iter().map(|(i, j)| format!("{i} and {j}")).collect::<Vec<_>>().join(", ")
 }

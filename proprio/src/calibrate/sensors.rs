@@ -13,6 +13,10 @@ const DEAD_COUNTS: u16 = 20;
 const END_COUNTS: u16 = 2;
 /// Share of the rows at one end, and bending meanwhile, that make a sensor saturated.
 const SATURATED: (f64, f64) = (0.01, 15.0 * std::f64::consts::PI / 180.0);
+/// The same at the ends of the converter itself, where nothing else can be meant.
+const SATURATED_AT_RAIL: (f64, f64) = (0.01, 5.0 * std::f64::consts::PI / 180.0);
+/// Readings this many RMSE off the map are no noise.
+const OUTLIER: f64 = 6.0;
 /// A map that leaves more of the variance than this follows nothing.
 const UNRELATED: f64 = 0.5;
 /// A sensor is swapped where another segment explains it this many times better, and its own does it worse than
@@ -48,6 +52,9 @@ fn fit_one(sweep: &Sweep, column: &SensorColumn, warnings: &mut Vec<Warning>) ->
         quadratic(&pairs).ok_or_else(|| CalibrationError::Dead { name: name.clone(), range: count_range(&pairs) })?;
     check_place(sweep, column, &fit)?;
     check_monotonic(&name, &mut fit, warnings)?;
+    let is_off = |(counts, theta): &&(u16, f64)| (fit.map.angle(volts(*counts)) - theta).abs() > OUTLIER * fit.rmse;
+    let count = pairs.iter().filter(is_off).count();
+    warnings.extend((count > 0).then(|| Warning::Outliers { name: name.clone(), count }));
     let report = SensorReport {
         name,
         samples: fit.samples,
@@ -86,7 +93,8 @@ fn check_alive(name: &str, pairs: &[(u16, f64)]) -> Result<(), CalibrationError>
         // Without a tenth at either side: a noisy sensor gets to its end now and then.
         let tenth = thetas.len() / 10;
         let span = thetas[thetas.len() - 1 - tenth] - thetas[tenth];
-        if share > SATURATED.0 && span > SATURATED.1 {
+        let (least_share, least_span) = if [0, 4095].contains(&end) { SATURATED_AT_RAIL } else { SATURATED };
+        if share > least_share && span > least_span {
             let (percent, span_deg) = (share * 100.0, span.to_degrees());
             return Err(CalibrationError::Saturated { name: name.to_owned(), counts: end, percent, span_deg });
         }

@@ -8,12 +8,16 @@ use estimator_core::{Heading, ImuReading, Phase, SENSORS_PER_SEGMENT, Turns};
 use super::error::{CalibrationError, Warning};
 use crate::error::Error;
 use crate::progress::Progress;
-use crate::session::{Needs, Row, SessionReader};
+use crate::session::{Needs, Problem, Row, SENSOR_NAMES, SessionError, SessionReader};
 
 /// Bending that a quadratic can be fitted to at all, degrees.
 const LEAST_RANGE_DEG: f64 = 10.0;
 /// Bending that a good sweep goes beyond, degrees.
 const GOOD_RANGE_DEG: f64 = 45.0;
+/// Rows between two looks at the progress.
+const PROGRESS_ROWS: usize = 1024;
+/// Squared correlation from which on two segments bend alike: a sensor's error is a few percent of its signal.
+const ALIKE: f64 = 0.98;
 /// Rows that a fit needs at least.
 pub(super) const LEAST_ROWS: usize = 50;
 
@@ -31,6 +35,7 @@ pub(super) struct SensorColumn {
 /// Readings and truth of a session; all columns have one value a row.
 pub(super) struct Sweep {
     pub rate_hz: f64,
+    pub ends_with_line: bool,
     /// True bend angle of each segment, rad.
     pub theta: Vec<Vec<Option<f64>>>,
     /// True heading of each segment's end, unwrapped, rad.
@@ -49,10 +54,15 @@ struct Unwrap {
 impl Sweep {
     pub fn read(session: &Path, arm: &ArmFile) -> Result<Self, Error> {
         let mut reader = SessionReader::open(session, &Needs::of_calibration(arm))?;
+        if !reader.is_regular_file() {
+            let path = session.to_owned();
+            return Err(SessionError { path, line: None, column: None, problem: Problem::NotAFile }.into());
+        }
         let n = arm.segments.len();
         let refuse = |source| Error::Calibration { path: session.to_owned(), source };
         let mut sweep = Self {
-            rate_hz: reader.rate_hz().unwrap_or(arm.rate_hz),
+            rate_hz: reader.rate_hz(arm.rate_hz),
+            ends_with_line: reader.ends_with_line(),
             theta: vec![Vec::new(); n],
             heading: vec![Vec::new(); n],
             imu: vec![Vec::new(); n],
@@ -63,7 +73,7 @@ impl Sweep {
         let mut progress = Progress::new(format!("reading {}", session.display()), reader.progress().1);
         while let Some(row) = reader.next_row()? {
             sweep.push(&row, &mut unwrap);
-            if row.sample.time_us % 1_000_000 == 0 {
+            if sweep.theta[0].len() % PROGRESS_ROWS == 0 {
                 progress.set(reader.progress().0);
             }
         }
@@ -100,7 +110,25 @@ impl Sweep {
                 warnings.push(Warning::NarrowSweep { segment: i + 1, range_deg });
             }
         }
+        let alike = self.alike();
+        warnings.extend((!alike.is_empty()).then_some(Warning::Alike(alike)));
+        warnings.extend((!self.ends_with_line).then_some(Warning::LastLine));
         Ok(warnings)
+    }
+
+    /// Pairs of segments, from 1, whose bend angles are the same but for a factor.
+    fn alike(&self) -> Vec<(usize, usize)> {
+        let n = self.theta.len();
+        let pairs = (0..n).flat_map(|i| (i + 1..n).map(move |j| (i, j)));
+        let is_alike = |(i, j): &(usize, usize)| {
+            let both = self.theta[*i].iter().zip(&self.theta[*j]).filter_map(|(a, b)| a.zip(*b));
+            let (mut aa, mut ab, mut bb) = (0.0, 0.0, 0.0);
+            for (a, b) in both {
+                (aa, ab, bb) = (aa + a * a, ab + a * b, bb + b * b);
+            }
+            ab * ab > ALIKE * aa * bb
+        };
+        pairs.filter(is_alike).map(|(i, j)| (i + 1, j + 1)).collect()
     }
 }
 
@@ -111,7 +139,7 @@ fn sensor_columns(reader: &SessionReader) -> Result<Vec<SensorColumn>, Calibrati
             return Err(CalibrationError::SensorBAlone { segment: segment + 1 });
         }
         for place in (0..SENSORS_PER_SEGMENT).filter(|place| present[*place]) {
-            let name = format!("bend{}{}", segment + 1, ['a', 'b'][place]);
+            let name = format!("bend{}{}", segment + 1, SENSOR_NAMES[place]);
             columns.push(SensorColumn { name, segment, place, counts: Vec::new() });
         }
     }

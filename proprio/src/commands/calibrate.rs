@@ -12,12 +12,13 @@ use crate::tables;
 
 pub fn run(args: &Calibrate) -> Result<(), Error> {
     let arm = NamedTable::load(&args.arm)?;
+    let mut file = OutputFile::create(&args.output, &[&args.session, &args.arm])?;
     let calibration = calibrate(&args.session, &arm)?;
     for warning in &calibration.warnings {
         super::warn(&format_args!("{}: {warning}", args.session.display()));
     }
-    let mut file = OutputFile::create(&args.output, &[&args.session, &args.arm])?;
     file.write_all(calibration.table.to_toml().as_bytes()).map_err(|error| file.error(error))?;
-    file.finish()?;
-    super::print(&tables::sensors(&calibration.sensors))
+    // Last, so that a command that fails leaves no file.
+    super::print(&tables::sensors(&calibration.sensors))?;
+    file.finish()
 }

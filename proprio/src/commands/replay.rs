@@ -18,11 +18,13 @@ pub fn run(args: &Replay) -> Result<(), Error> {
         return Err(Error::OneSession(args.sessions.len()));
     }
     let table = NamedTable::load(&args.table)?;
-    let out = args.out.as_deref();
+    let inputs: Vec<&Path> = args.sessions.iter().map(PathBuf::as_path).chain([table.path]).collect();
+    let out = args.out.as_deref().map(|out| OutputFile::create(out, &inputs)).transpose()?;
+    let mut out = out.map(|file| EstimateWriter::new(file, &table.file)).transpose()?;
     let report = if args.float {
-        replay_all::<f64>(&args.sessions, &table, out)?
+        replay_all::<f64>(&args.sessions, &table, out.as_mut())?
     } else {
-        replay_all::<Q>(&args.sessions, &table, out)?
+        replay_all::<Q>(&args.sessions, &table, out.as_mut())?
     };
     match saturations() {
         0 => {}
@@ -35,41 +37,31 @@ pub fn run(args: &Replay) -> Result<(), Error> {
     } else {
         tables::replay(&report)
     };
-    super::print(&text)
+    // The file gets its name last, so that a command that fails leaves none.
+    super::print(&text)?;
+    out.map_or(Ok(()), EstimateWriter::finish)
 }
 
-fn replay_all<S: Scalar>(sessions: &[PathBuf], table: &NamedTable, out: Option<&Path>) -> Result<Report, Error> {
+fn replay_all<S: Scalar>(
+    sessions: &[PathBuf],
+    table: &NamedTable,
+    mut out: Option<&mut EstimateWriter>,
+) -> Result<Report, Error> {
     let length_mm = table.file.length_mm();
     let mut all = Score::new(length_mm);
     let mut reports = Vec::new();
     for path in sessions {
         let mut score = Score::new(length_mm);
-        let extent = match out {
-            Some(out) => replay_to_file::<S>(path, table, &mut score, out)?,
-            None => replay::<S>(path, table, |row, outcome| {
-                score.add(row, outcome);
-                Ok(())
-            })?,
-        };
-        all.append(&score);
-        let Extent { samples, seconds, ends_with_line } = extent;
+        let Extent { samples, seconds, ends_with_line } = replay::<S>(path, table, |row, outcome| {
+            score.add(row, outcome);
+            out.as_mut().map_or(Ok(()), |out| out.write(outcome))
+        })?;
         if !ends_with_line {
             super::warn(&format_args!("{}: the last line has no end; its last number may be cut", path.display()));
         }
+        all.append(&score);
         let figures = Methods { methods: score.figures() };
         reports.push(SessionReport { path: path.display().to_string(), samples, seconds, figures });
     }
     Ok(Report { sessions: reports, all: Methods { methods: all.figures() }, length_mm })
-}
-
-fn replay_to_file<S: Scalar>(path: &Path, table: &NamedTable, score: &mut Score, out: &Path) -> Result<Extent, Error> {
-    let output = |source| Error::Output { path: out.to_owned(), source };
-    let mut writer = EstimateWriter::new(OutputFile::create(out, &[path, table.path])?, table.file.segments.len())
-        .map_err(output)?;
-    let extent = replay::<S>(path, table, |row, outcome| {
-        score.add(row, outcome);
-        writer.write(outcome).map_err(output)
-    })?;
-    writer.into_inner().finish()?;
-    Ok(extent)
 }

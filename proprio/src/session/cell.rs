@@ -6,6 +6,8 @@ use super::Problem;
 
 /// Units of 2⁻³⁰ in 1.
 const QUATERNION_ONE: f64 = 1_073_741_824.0;
+/// Largest true coordinate or heading, m or rad.
+const MAX_TRUTH: f64 = 1e5;
 /// Latest time that a session may have, s.
 const MAX_TIME_S: f64 = 100.0 * 365.25 * 86_400.0;
 
@@ -17,8 +19,8 @@ pub(super) fn number(cell: &str) -> Result<Option<f64>, Problem> {
     }
     match cell.parse::<f64>() {
         Ok(value) if value.is_finite() => Ok(Some(value)),
-        Ok(_) => Err(Problem::NotFinite(cell.to_owned())),
-        Err(_) => Err(Problem::NotANumber(cell.to_owned())),
+        Ok(_) => Err(Problem::NotFinite(shown(cell))),
+        Err(_) => Err(Problem::NotANumber(shown(cell))),
     }
 }
 
@@ -35,7 +37,7 @@ fn whole_counts(value: f64, cell: &str) -> Result<u16, Problem> {
     if value.fract() == 0.0 && (0.0..=4095.0).contains(&value) {
         Ok(value as u16)
     } else {
-        Err(Problem::Counts(cell.trim().to_owned()))
+        Err(Problem::Counts(shown(cell)))
     }
 }
 
@@ -45,7 +47,7 @@ pub(super) fn time_us(cell: &str) -> Result<u64, Problem> {
     if (0.0..=MAX_TIME_S).contains(&seconds) {
         Ok((seconds * 1e6).round() as u64)
     } else {
-        Err(Problem::Time(cell.trim().to_owned()))
+        Err(Problem::Time(shown(cell)))
     }
 }
 
@@ -54,9 +56,20 @@ pub(super) fn heading(cell: &str, factor: f64) -> Result<Option<ImuReading>, Pro
     let Some(value) = number(cell)? else { return Ok(None) };
     let rad = value * factor;
     if !(0.0..=std::f64::consts::TAU + 1e-6).contains(&rad) {
-        return Err(Problem::Heading(cell.trim().to_owned()));
+        return Err(Problem::Heading(shown(cell)));
     }
     Ok(Some(ImuReading::Heading(Phase::from_rad(rad))))
+}
+
+/// A true coordinate or heading in units of `factor` m or rad.
+pub(super) fn truth(cell: &str, factor: f64) -> Result<Option<f64>, Problem> {
+    let value = number(cell)?.map(|value| value * factor);
+    if value.is_some_and(|value| value.abs() > MAX_TRUTH) { Err(Problem::Truth(shown(cell))) } else { Ok(value) }
+}
+
+/// A cell's text as it can be shown: one line, not too long.
+fn shown(cell: &str) -> String {
+    cell.trim().escape_debug().take(40).collect()
 }
 
 /// A unit quaternion w, x, y, z, kept to 2⁻³⁰: a BNO055's 2⁻¹⁴ exactly.

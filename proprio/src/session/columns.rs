@@ -39,7 +39,7 @@ pub(super) struct Columns {
 }
 
 /// Names of the sensors of a segment.
-pub(super) const SENSOR_NAMES: [char; SENSORS_PER_SEGMENT] = ['a', 'b'];
+pub(crate) const SENSOR_NAMES: [char; SENSORS_PER_SEGMENT] = ['a', 'b'];
 
 struct Header<'h> {
     places: HashMap<&'h str, usize>,

@@ -73,6 +73,12 @@ pub enum Problem {
     /// A heading out of range.
     #[error("heading {0}, expected at least 0 and less than a turn")]
     Heading(String),
+    /// Truth that no arm has.
+    #[error("{0} is out of range, expected at most 100 km or 16 000 turns")]
+    Truth(String),
+    /// A session that would have to be read twice.
+    #[error("is a pipe or device, expected a file, as it is read twice")]
+    NotAFile,
     /// A time that does not fit.
     #[error("time {0} s, expected 0 s to 100 years")]
     Time(String),
@@ -116,6 +122,8 @@ impl Problem {
             Self::NotANumber(_) => "write numbers with a decimal point, and leave the cell of a missing reading empty",
             Self::NotFinite(_) => "leave the cell empty",
             Self::Counts(_) => "write raw ADC counts, and leave the cell of a missing reading empty",
+            Self::Truth(_) => "correct the value, or leave all three cells empty",
+            Self::NotAFile => "save it as a file first",
             Self::Heading(_) => "write headings from 0 up to a full turn: 360 in _deg, 2π in _rad",
             Self::Backwards { .. } => "sort the rows by time; two sessions in one file must be split",
             Self::PartialQuaternion | Self::NotUnit(_) => {

@@ -9,6 +9,7 @@ mod writer;
 use calibration_tables::{ArmFile, FileError, MAX_SEGMENTS};
 use estimator_core::Sample;
 
+pub(crate) use columns::SENSOR_NAMES;
 pub use error::{Problem, SessionError};
 pub use reader::SessionReader;
 pub use writer::{ImuColumns, SessionWriter};

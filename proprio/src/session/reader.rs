@@ -13,7 +13,7 @@ use super::columns::{Column, Columns, ImuColumn};
 use super::{Needs, Pose, Problem, Row, SessionError, cell};
 
 /// Rows at the start whose time stamps tell the sample rate.
-const RATE_ROWS: usize = 101;
+const RATE_ROWS: usize = 1001;
 
 /// A session that is being read.
 pub struct SessionReader {
@@ -27,6 +27,7 @@ pub struct SessionReader {
     ahead: VecDeque<Row>,
     rate_hz: Option<f64>,
     ends_with_line: bool,
+    is_regular_file: bool,
 }
 
 impl SessionReader {
@@ -41,7 +42,9 @@ impl SessionReader {
         if metadata.is_dir() {
             return Err(fail(None, Problem::Directory));
         }
-        let ends_with_line = ends_with_line(&mut file).map_err(|error| fail(None, Problem::Read(error)))?;
+        let is_regular_file = metadata.is_file();
+        let ends_with_line =
+            !is_regular_file || ends_with_line(&mut file).map_err(|error| fail(None, Problem::Read(error)))?;
         let mut csv = csv::ReaderBuilder::new().buffer_capacity(1 << 16).from_reader(file);
         let header = csv.headers().map_err(|error| csv_error(path, error))?;
         if header.iter().all(str::is_empty) {
@@ -60,6 +63,7 @@ impl SessionReader {
             ahead: VecDeque::new(),
             rate_hz: None,
             ends_with_line,
+            is_regular_file,
         };
         reader.look_ahead()?;
         Ok(reader)
@@ -74,16 +78,26 @@ impl SessionReader {
             return Err(self.error(None, None, Problem::NoSamples));
         }
         let times = self.ahead.iter().map(|row| row.sample.time_us);
-        let mut steps: Vec<u64> = times.clone().zip(times.skip(1)).map(|(from, to)| to - from).collect();
-        steps.sort_unstable();
-        self.rate_hz = steps.get(steps.len() / 2).filter(|step| **step > 0).map(|step| 1e6 / *step as f64);
+        self.rate_hz = rate_hz(times.clone().zip(times.skip(1)).map(|(from, to)| to - from).collect());
         Ok(())
     }
 
-    /// Sample rate, from the median step of the first rows; `None` where a single row does not tell.
+    /// Sample rate: that of the mean step of the first rows without gaps, for jitter and rounded time stamps; where an
+    /// arm's `usual_hz`, or up to ten times more or less, is within 1 % of it, that; and `usual_hz` where a single row
+    /// does not tell.
     #[must_use]
-    pub fn rate_hz(&self) -> Option<f64> {
-        self.rate_hz
+    pub fn rate_hz(&self, usual_hz: f64) -> f64 {
+        let Some(rate_hz) = self.rate_hz else { return usual_hz };
+        let ratio = rate_hz / usual_hz;
+        let nominal_hz =
+            if ratio >= 1.0 { usual_hz * ratio.round().min(10.0) } else { usual_hz / ratio.recip().round().min(10.0) };
+        if (rate_hz / nominal_hz - 1.0).abs() < 0.01 { nominal_hz } else { rate_hz }
+    }
+
+    /// Whether the session can be read twice, which a pipe cannot.
+    #[must_use]
+    pub fn is_regular_file(&self) -> bool {
+        self.is_regular_file
     }
 
     /// Whether the session has truth.
@@ -154,8 +168,7 @@ impl SessionReader {
     }
 
     fn pose(&self, columns: [Column; 3]) -> Result<Option<Pose>, SessionError> {
-        let value =
-            |Column { index, factor }| self.cell(index, |text| Ok(cell::number(text)?.map(|value| value * factor)));
+        let value = |Column { index, factor }| self.cell(index, |text| cell::truth(text, factor));
         let [x, y, heading] = columns.map(value);
         let parts = [x?, y?, heading?];
         match parts {
@@ -179,12 +192,21 @@ impl SessionReader {
     }
 }
 
+/// Rate of the mean step, µs, of those that are not over twice the median: rows that were lost are no slower rate.
+fn rate_hz(mut steps_us: Vec<u64>) -> Option<f64> {
+    steps_us.sort_unstable();
+    let median = *steps_us.get(steps_us.len() / 2)?;
+    let without_gaps = steps_us.partition_point(|step| *step <= 2 * median);
+    let sum = steps_us[..without_gaps].iter().sum::<u64>();
+    (sum > 0).then(|| without_gaps as f64 * 1e6 / sum as f64)
+}
+
 /// The part to name: the first that is empty, else the first.
 fn first_empty(parts: &[Option<f64>]) -> usize {
     parts.iter().position(Option::is_none).unwrap_or(0)
 }
 
-/// Looks at the last byte, and goes back to the first. What cannot be wound, such as a pipe, is taken for whole.
+/// Looks at the last byte, and goes back to the first.
 fn ends_with_line(file: &mut File) -> io::Result<bool> {
     let mut last = [b'\n'];
     if file.seek(SeekFrom::End(-1)).is_ok() {

@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use estimator_core::ImuReading;
 use rig_twin::SEGMENTS;
 
-use super::columns::SENSOR_NAMES;
+use super::SENSOR_NAMES;
 use crate::simulate::Recorded;
 
 /// In which columns a session holds its IMU readings.

@@ -19,7 +19,8 @@ fn warnings(edit: impl FnOnce(&mut Csv)) -> Vec<String> {
     let warning = |line: &str| {
         line.strip_prefix("warning: sweep.csv: ").unwrap_or_else(|| panic!("no warning: {stderr}")).to_owned()
     };
-    stderr.lines().map(warning).collect()
+    // The twin's modules bend their two segments alike, whatever else is wrong.
+    stderr.lines().map(warning).filter(|warning| !warning.contains("bend alike")).collect()
 }
 
 fn counts(cell: &str) -> u16 {
