@@ -205,3 +205,20 @@ fn a_session_without_truth_gives_the_same_estimates() {
     blind.remove("truth");
     same_estimates(&blind);
 }
+
+/// At 30 Hz steps of 0.03 s and 0.04 s stand for 0.0333 s.
+#[test]
+fn rounded_time_stamps_give_the_same_estimates() {
+    let folder = Folder::new();
+    folder.done(&["simulate", "--scenario", "1", "--seconds", "20", "--seed", "6", "--rate", "30", "-o", "exact.csv"]);
+    let mut session = folder.csv("exact.csv");
+    session.map("time_s", |_, time| format!("{:.2}", time.parse::<f64>().expect("a time")));
+    folder.write("rounded.csv", session.to_string());
+    let estimates = |name: &str| {
+        folder.done(&["replay", &format!("{name}.csv"), "--table", table(), "--out", "est.csv"]);
+        let mut estimates = folder.csv("est.csv");
+        estimates.map("time_s", |_, _| String::new());
+        estimates
+    };
+    assert!(estimates("exact") == estimates("rounded"));
+}

@@ -170,3 +170,30 @@ fn a_pipe_is_written_to_directly() {
     folder.done(&replay_to("est.csv"));
     assert_eq!(found, folder.read("est.csv"));
 }
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_run_whose_figures_cannot_be_printed_leaves_no_estimates() {
+    let folder = with_session();
+    let full = std::fs::OpenOptions::new().write(true).open("/dev/full").expect("Linux has /dev/full");
+    let status = folder.command(&replay_to("est.csv")).stdout(full).status().expect("the tool starts");
+    assert_eq!(status.code(), Some(2));
+    assert!(!folder.path("est.csv").exists());
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupt_leaves_nothing_behind() {
+    let folder = Folder::new();
+    let arguments = ["simulate", "--scenario", "1", "--seconds", "1000000", "--seed", "1", "-o", "long.csv"];
+    let mut child = folder.command(&arguments).spawn().expect("the tool starts");
+    let files = || std::fs::read_dir(folder.path("")).expect("the folder is there").count();
+    while files() == 0 {
+        assert!(child.try_wait().expect("the tool runs").is_none(), "it ends before it has begun a file");
+        std::thread::yield_now();
+    }
+    let interrupt = std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).status();
+    assert!(interrupt.expect("unix has kill").success());
+    assert_eq!(child.wait().expect("the tool ends").code(), Some(130));
+    assert_eq!(files(), 0);
+}
