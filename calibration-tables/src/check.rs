@@ -8,8 +8,8 @@ use crate::file::{ArmFile, BendKeys, FileError, MAX_SEGMENTS, MAX_WINDOW, NoiseK
 
 /// Lengths that fixed point holds with room for the chain (m: ±32).
 const MAX_ARM_MM: f64 = 16_000.0;
-/// No segment bends further, rad; fixed point ends at ±32.
-const MAX_ANGLE: f64 = 10.0;
+/// No segment bends further, rad.
+const MAX_ANGLE: f64 = std::f64::consts::TAU;
 /// Coefficients of a map about the middle of its range, rad, that fixed point holds.
 const MAX_COEFFICIENT: f64 = 31.0;
 /// r_imu over r_bend: beyond it fixed point has no digits left for the smaller one.

@@ -1,9 +1,12 @@
 //! V–Orient map: a bend sensor's ADC counts to the bend angle of its segment (paper, eq. 1).
 
-use crate::scalar::Scalar;
+use crate::scalar::{Constant, Scalar};
 
 /// Volts of one ADC count: 3.3 V over 12 bits.
 pub const VOLTS_PER_COUNT: f64 = 3.3 / 4095.0;
+
+/// Over a whole turn by more than rounding, rad.
+const BEYOND_A_TURN: Constant = Constant::new(6.3);
 
 /// Largest reading of a 12-bit ADC.
 const MAX_COUNTS: u16 = 4095;
@@ -23,7 +26,7 @@ pub struct BendMap<S> {
     pub shift: u8,
     /// b0, b1, b2, rad.
     pub coefficients: [S; 3],
-    /// Lowest and highest counts around `center` up to which |θ| stays within a whole turn.
+    /// Lowest and highest counts at which |θ| is within a whole turn.
     pub readable: [u16; 2],
 }
 
@@ -38,17 +41,17 @@ impl<S: Scalar> BendMap<S> {
         let v0 = f64::from(center) * VOLTS_PER_COUNT;
         let scale = f64::from(1_u32 << shift) * VOLTS_PER_COUNT;
         let coefficients = [(c2 * v0 + c1) * v0 + c0, (2.0 * c2 * v0 + c1) * scale, c2 * scale * scale];
-        let is_turn = |counts: &u16| {
+        let is_angle = |counts: &u16| {
             let v = f64::from(*counts) * VOLTS_PER_COUNT;
-            !((c2 * v + c1) * v + c0).abs().le(&core::f64::consts::TAU)
+            ((c2 * v + c1) * v + c0).abs() <= core::f64::consts::TAU
         };
-        let lowest = (0..=center).rev().find(is_turn).map_or(0, |counts| counts + 1);
-        let highest = (center..=MAX_COUNTS).find(is_turn).map_or(MAX_COUNTS, |counts| counts.saturating_sub(1));
+        let lowest = (0..=MAX_COUNTS).find(is_angle).unwrap_or(MAX_COUNTS);
+        let highest = (0..=MAX_COUNTS).rev().find(is_angle).unwrap_or(0);
         let readable = [lowest, highest];
         Self { center, shift: shift as u8, coefficients: coefficients.map(S::from_f64), readable }
     }
 
-    /// Bend angle at `counts`, rad; `None` outside the readable range.
+    /// Bend angle at `counts`, rad; `None` where it is over a whole turn.
     ///
     /// ```
     /// use estimator_core::BendMap;
@@ -66,6 +69,8 @@ impl<S: Scalar> BendMap<S> {
         }
         let u = S::from_fraction(i32::from(counts) - i32::from(self.center), u32::from(self.shift));
         let [b0, b1, b2] = self.coefficients;
-        Some(b0 + u * (b1 + u * b2))
+        let angle = b0 + u * (b1 + u * b2);
+        // Between the two branches of a map that turns back it may be over a turn again.
+        (angle.magnitude() < S::constant(BEYOND_A_TURN)).then_some(angle)
     }
 }

@@ -1,4 +1,4 @@
-//! The design's mathematics, literally: whole sessions at once, std's floats, two moving averages, dense filters.
+//! The method's mathematics, literally: whole sessions at once, std's floats, two moving averages, dense filters.
 //!
 //! Nothing here is shared with `estimator-core`, so that an error must be made twice, in two ways, to stay unseen.
 
