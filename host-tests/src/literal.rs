@@ -105,7 +105,7 @@ pub struct Answer {
 /// A value per row and segment, unknown where it is `None`.
 type Rows = Vec<Vec<Option<f64>>>;
 
-/// What the design page says of a session.
+/// What the equations say of a session.
 pub fn replay(arm: &Arm, rows: &[Row]) -> Vec<Answer> {
     let bend = bend_angles(arm, rows);
     let imu = imu_angles(arm, rows);

@@ -1,6 +1,6 @@
-//! The estimator against the design's mathematics written down literally, over random sessions.
+//! The estimator against the method's mathematics written down literally, over random sessions.
 //!
-//! Tolerances are the design's: fixed point within 1e-6 rad and 0.002 mm of floats; floats within 1e-7 rad and m of the
+//! The tolerances: fixed point within 1e-6 rad and 0.002 mm of floats; floats within 1e-7 rad and m of the
 //! literal mathematics, as angles are whole numbers of 2⁻³² turns and the polynomials err by up to 2e-11.
 
 mod synthetic;
@@ -137,7 +137,7 @@ fn kinds(rate: f64, rows: usize, seeds: u64) -> impl Iterator<Item = Kind> {
     })
 }
 
-/// Checks these sessions with the design's tolerances, and that they are as hard as they are meant to be.
+/// Checks these sessions within the tolerances, and that they are as hard as they are meant to be.
 fn check_all(what: &str, kinds: impl Iterator<Item = Kind>) {
     let (mut literal, mut fixed) = (Differences::default(), Differences::default());
     let (mut wraps, mut farthest) = (0, 0.0_f64);

@@ -73,7 +73,7 @@ impl Sweep {
         let mut progress = Progress::new(format!("reading {}", session.display()), reader.progress().1);
         while let Some(row) = reader.next_row()? {
             sweep.push(&row, &mut unwrap);
-            if sweep.theta[0].len() % PROGRESS_ROWS == 0 {
+            if sweep.theta[0].len().is_multiple_of(PROGRESS_ROWS) {
                 progress.set(reader.progress().0);
             }
         }

@@ -71,7 +71,7 @@ fn headings_that_are_absolute_need_no_tare() {
     assert!((turns - turns.round()).abs() * 360.0 < 1e-5, "{found}");
 }
 
-/// The world points of a method are the chain of its own angles: checked with the design's formulas in floats.
+/// The world points of a method are the chain of its own angles: checked with its formulas in floats.
 #[test]
 fn points_are_the_chain_of_the_angles() {
     let estimates = estimates(session());
