@@ -8,7 +8,6 @@ use std::panic::catch_unwind;
 use std::process::ExitCode;
 
 use clap::Parser;
-use proprio::error::Error;
 use proprio::output::discard_unfinished;
 
 /// Exit status after Ctrl-C or a termination, as shells have it.
@@ -23,8 +22,6 @@ fn main() -> ExitCode {
     });
     match catch_unwind(|| command.run()) {
         Ok(Ok(())) => ExitCode::SUCCESS,
-        // A reader that has seen enough, such as `head`, is no failure.
-        Ok(Err(Error::Stdout(error))) if error.kind() == std::io::ErrorKind::BrokenPipe => ExitCode::SUCCESS,
         Ok(Err(error)) => {
             let (error_style, help_style) = (cli::STYLES.get_error(), cli::STYLES.get_valid());
             let remedy = error.remedy();

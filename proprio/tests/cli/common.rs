@@ -208,7 +208,8 @@ pub fn table() -> &'static str {
     text(TABLE.get_or_init(|| tables().join("planar-6.toml")))
 }
 
-fn simulate(args: &str) -> Csv {
+/// What `simulate` writes with these arguments.
+pub fn simulate(args: &str) -> Csv {
     let folder = Folder::new();
     let mut all = vec!["simulate", "-o", "session.csv"];
     all.extend(args.split(' '));

@@ -197,3 +197,13 @@ fn an_interrupt_leaves_nothing_behind() {
     assert_eq!(child.wait().expect("the tool ends").code(), Some(130));
     assert_eq!(files(), 0);
 }
+
+#[test]
+fn estimates_are_written_although_nobody_reads_the_figures() {
+    let (reader, writer) = std::io::pipe().expect("the system has pipes");
+    drop(reader);
+    let folder = with_session();
+    let status = folder.command(&replay_to("est.csv")).stdout(writer).status().expect("the tool starts");
+    assert!(status.success());
+    assert!(folder.read("est.csv").starts_with("time_s,"));
+}

@@ -3,15 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use super::common::{Csv, Folder, arm};
-
-fn simulate(args: &str) -> Csv {
-    let folder = Folder::new();
-    let mut all = vec!["simulate", "-o", "session.csv"];
-    all.extend(args.split(' '));
-    folder.done(&all);
-    folder.csv("session.csv")
-}
+use super::common::{Csv, Folder, arm, simulate};
 
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the crate is in a workspace")
