@@ -12,8 +12,10 @@ pub const LAG_S: f64 = 0.001;
 /// Residual of a V–Orient map that does not state its own: the paper's mean.
 pub const RMSE_DEG_UNKNOWN: f64 = 4.72;
 
-/// Share of R_bend that R_imu is taken for where no calibration has measured it.
-const R_IMU_UNKNOWN: f64 = 0.25;
+/// R_imu : R_bend of KF_orient and of KF_coord where no calibration has measured them: what calibrations of the reference
+/// arm give.
+const ORIENT_RATIO_UNKNOWN: f64 = 0.02;
+const COORD_RATIO_UNKNOWN: f64 = 0.1;
 
 impl NoiseKeys {
     /// Parameters for measurements of which the error variances are known: H = 1, and Q = R/[`LAG_S`] with 1/R =
@@ -35,16 +37,15 @@ impl SegmentKeys {
             // The mean of n sensors whose errors are their own.
             let n = sensors.len() as f64;
             let r_bend = if sensors.is_empty() { variance(RMSE_DEG_UNKNOWN) } else { variances.sum::<f64>() / (n * n) };
-            NoiseKeys::from_variances(R_IMU_UNKNOWN * r_bend, r_bend)
+            NoiseKeys::from_variances(ORIENT_RATIO_UNKNOWN * r_bend, r_bend)
         })
     }
 
-    /// KF_coord's parameters: the file's, or KF_orient's moved to the arc's end, which an error δθ shifts by L/2 δθ.
+    /// KF_coord's parameters: the file's, or R_bend of KF_orient moved to the arc's end, which an error δθ shifts by L/2 δθ.
     pub(crate) fn coord_or_default(&self) -> NoiseKeys {
         self.coord.clone().unwrap_or_else(|| {
-            let orient = self.orient_or_default();
-            let area = (self.length_mm / 2000.0).powi(2);
-            NoiseKeys::from_variances(orient.r_imu * area, orient.r_bend * area)
+            let r_bend = self.orient_or_default().r_bend * (self.length_mm / 2000.0).powi(2);
+            NoiseKeys::from_variances(COORD_RATIO_UNKNOWN * r_bend, r_bend)
         })
     }
 }
