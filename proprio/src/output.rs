@@ -70,17 +70,17 @@ pub fn discard_unfinished() {
     }
 }
 
-/// What a link points to, so that the link stays; an open file under `/dev` or `/proc` is no link to a name.
+/// The file that a link points to, so that the link stays; a pipe or device keeps the name that it was given by.
 fn target(path: &Path) -> PathBuf {
     let is_link = fs::symlink_metadata(path).is_ok_and(|found| found.is_symlink());
-    let target = if is_link { fs::read_link(path) } else { return path.to_owned() };
-    let target = target.map_or_else(|_| path.to_owned(), |to| path.parent().unwrap_or(Path::new("")).join(to));
-    if is_open_file(&target) { target } else { fs::canonicalize(&target).unwrap_or(target) }
-}
-
-/// Whether the name stands for a file that is already open, such as `/proc/self/fd/1`.
-fn is_open_file(path: &Path) -> bool {
-    ["/dev", "/proc"].iter().any(|folder| path.starts_with(folder))
+    match fs::metadata(path) {
+        Ok(found) if is_link && found.is_file() => fs::canonicalize(path).unwrap_or_else(|_| path.to_owned()),
+        Err(_) if is_link => {
+            let folder = path.parent().unwrap_or(Path::new(""));
+            fs::read_link(path).map_or_else(|_| path.to_owned(), |to| folder.join(to))
+        }
+        _ => path.to_owned(),
+    }
 }
 
 impl Sink {
@@ -88,7 +88,7 @@ impl Sink {
         match fs::metadata(path) {
             Ok(found) if found.is_dir() => return Err(io::ErrorKind::IsADirectory.into()),
             Ok(found) if found.permissions().readonly() => return Err(io::ErrorKind::PermissionDenied.into()),
-            Ok(found) if !found.is_file() || is_open_file(path) => {
+            Ok(found) if !found.is_file() => {
                 return Ok(Self::Direct(BufWriter::new(fs::OpenOptions::new().write(true).open(path)?)));
             }
             _ => {}

@@ -207,3 +207,33 @@ fn estimates_are_written_although_nobody_reads_the_figures() {
     assert!(status.success());
     assert!(folder.read("est.csv").starts_with("time_s,"));
 }
+
+/// Bash's `--out >(gzip > est.csv.gz)`: a name under `/dev/fd` that links to a pipe.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_link_to_a_pipe_is_written_to_directly() {
+    use std::io::Read;
+    use std::os::fd::AsRawFd;
+
+    let folder = with_session();
+    let (mut reader, writer) = std::io::pipe().expect("the system has pipes");
+    let name = format!("/proc/{}/fd/{}", std::process::id(), writer.as_raw_fd());
+    let mut child = folder.command(&replay_to(&name)).stdout(std::process::Stdio::null()).spawn().expect("it starts");
+    let mut begin = [0; 7];
+    reader.read_exact(&mut begin).expect("the estimates come");
+    std::thread::spawn(move || std::io::copy(&mut reader, &mut std::io::sink()));
+    assert!(child.wait().expect("the tool ends").success());
+    assert_eq!(&begin, b"time_s,");
+}
+
+/// A folder under `/dev` may hold ordinary files, as `/dev/shm` does.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_longer_file_in_shared_memory_is_replaced_whole() {
+    let shared = tempfile::Builder::new().tempdir_in("/dev/shm").expect("Linux has /dev/shm");
+    let path = shared.path().join("est.csv");
+    std::fs::write(&path, "old\n".repeat(1_000_000)).expect("there is room");
+    with_session().done(&replay_to(path.to_str().expect("a plain name")));
+    let estimates = std::fs::read_to_string(&path).expect("the estimates are there");
+    assert!(estimates.starts_with("time_s,") && !estimates.contains("old"));
+}
