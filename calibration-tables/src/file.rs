@@ -118,7 +118,7 @@ pub struct BendKeys {
     /// Residual of the calibration.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rmse_deg: Option<f64>,
-    /// Lowest and highest voltage of the calibration, V; the whole 0…3.3 where it is not known.
+    /// Lowest and highest voltage of the calibration, V; where it is not known, those of half a turn.
     #[serde(default, deserialize_with = "pair", skip_serializing_if = "Option::is_none")]
     pub volts: Option<[f64; 2]>,
 }
@@ -172,7 +172,7 @@ pub enum FileError {
     Value {
         /// Line, from 1, where the key is in the file.
         line: Option<usize>,
-        /// Where, such as `segment[2].bend[0].volts`, counted from 1.
+        /// Where, such as `segment[2].bend[1].volts`, counted from 1.
         key: String,
         /// What stands there.
         found: String,

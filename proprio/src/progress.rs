@@ -7,11 +7,15 @@ use indicatif::{ProgressBar, ProgressStyle};
 /// Work is shown once it has taken this long.
 const PATIENCE: Duration = Duration::from_secs(1);
 
+/// Only one in so many calls looks at the clock, so that every row may call.
+const CALLS: u64 = 1024;
+
 /// Progress of one piece of work.
 pub struct Progress {
     bar: ProgressBar,
     hidden_since: Option<Instant>,
     what: String,
+    calls: u64,
 }
 
 impl Progress {
@@ -20,11 +24,15 @@ impl Progress {
     pub fn new(what: String, total: u64) -> Self {
         let bar = ProgressBar::hidden();
         bar.set_length(total);
-        Self { bar, hidden_since: Some(Instant::now()), what }
+        Self { bar, hidden_since: Some(Instant::now()), what, calls: 0 }
     }
 
     /// `done` parts are done.
     pub fn set(&mut self, done: u64) {
+        self.calls += 1;
+        if !self.calls.is_multiple_of(CALLS) {
+            return;
+        }
         if self.hidden_since.is_some_and(|since| since.elapsed() > PATIENCE) {
             self.hidden_since = None;
             self.show();

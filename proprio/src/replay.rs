@@ -12,9 +12,6 @@ use crate::session::{Needs, Row, SessionReader};
 /// The estimator with room for every arm.
 pub type HostEstimator<'t, S> = Estimator<'t, S, MAX_SEGMENTS, { MAX_WINDOW as usize }>;
 
-/// Rows between two looks at the progress.
-const PROGRESS_ROWS: u64 = 1024;
-
 /// A table and the file that it came from.
 #[derive(Debug, Clone)]
 pub struct NamedTable<'p> {
@@ -101,9 +98,7 @@ pub fn replay<S: Scalar>(
         last_us = row.sample.time_us;
         first_us.get_or_insert(last_us);
         samples += 1;
-        if samples % PROGRESS_ROWS == 0 {
-            progress.set(reader.progress().0);
-        }
+        progress.set(reader.progress().0);
     }
     let seconds = (last_us - first_us.unwrap_or(last_us)) as f64 / 1e6;
     Ok(Extent { samples, seconds, ends_with_line: reader.ends_with_line() })

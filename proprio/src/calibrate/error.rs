@@ -1,5 +1,7 @@
 //! Why no table can be made of a session, and what deserves a look although one can.
 
+use crate::session::LAST_LINE;
+
 /// Why no good table can be made of a session.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum CalibrationError {
@@ -177,7 +179,7 @@ pub enum Warning {
         name: String,
     },
     /// The file's last line has no end.
-    #[error("the last line has no end; its last number may be cut")]
+    #[error("{LAST_LINE}")]
     LastLine,
     /// Readings that no noise explains.
     #[error("{count} readings of {name} are over six RMSE off its map; spikes spoil it, empty their cells")]

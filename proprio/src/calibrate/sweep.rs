@@ -14,8 +14,6 @@ use crate::session::{Needs, Problem, Row, SENSOR_NAMES, SessionError, SessionRea
 const LEAST_RANGE_DEG: f64 = 10.0;
 /// Bending that a good sweep goes beyond, degrees.
 const GOOD_RANGE_DEG: f64 = 45.0;
-/// Rows between two looks at the progress.
-const PROGRESS_ROWS: usize = 1024;
 /// Squared correlation from which on two segments bend alike: a sensor's error is a few percent of its signal.
 const ALIKE: f64 = 0.98;
 /// Rows that a fit needs at least.
@@ -73,9 +71,7 @@ impl Sweep {
         let mut progress = Progress::new(format!("reading {}", session.display()), reader.progress().1);
         while let Some(row) = reader.next_row()? {
             sweep.push(&row, &mut unwrap);
-            if sweep.theta[0].len().is_multiple_of(PROGRESS_ROWS) {
-                progress.set(reader.progress().0);
-            }
+            progress.set(reader.progress().0);
         }
         Ok(sweep)
     }

@@ -9,6 +9,7 @@ use proprio::output::OutputFile;
 use proprio::replay::{Extent, NamedTable, replay};
 use proprio::report::{Methods, Report, SessionReport};
 use proprio::score::Score;
+use proprio::session::LAST_LINE;
 
 use crate::cli::Replay;
 use crate::tables;
@@ -57,7 +58,7 @@ fn replay_all<S: Scalar>(
             out.as_mut().map_or(Ok(()), |out| out.write(outcome))
         })?;
         if !ends_with_line {
-            super::warn(&format_args!("{}: the last line has no end; its last number may be cut", path.display()));
+            super::warn(&format_args!("{}: {LAST_LINE}", path.display()));
         }
         all.append(&score);
         let figures = Methods { methods: score.figures() };

@@ -21,9 +21,7 @@ fn write(file: &mut OutputFile, args: &Simulate, run: Simulation, progress: &mut
     let mut session = SessionWriter::new(file, args.imu)?;
     for (done, sample) in (1..).zip(run) {
         session.write(&sample)?;
-        if done % 1024 == 0 {
-            progress.set(done);
-        }
+        progress.set(done);
     }
     Ok(())
 }

@@ -14,6 +14,9 @@ pub use error::{Problem, SessionError};
 pub use reader::SessionReader;
 pub use writer::{ImuColumns, SessionWriter};
 
+/// What to say of a file that does not end with a line end.
+pub const LAST_LINE: &str = "the last line has no end; its last number may be cut";
+
 /// What the camera saw of one segment's end in {W}.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pose {

@@ -1,8 +1,8 @@
 //! Reads a session row by row, in memory that does not grow with its length.
 
 use std::collections::VecDeque;
-use std::fs::{self, File};
-use std::io::{self, Read, Seek, SeekFrom};
+use std::fs::File;
+use std::io::{self, BufReader, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
 use calibration_tables::MAX_SEGMENTS;
@@ -98,12 +98,6 @@ impl SessionReader {
     #[must_use]
     pub fn is_regular_file(&self) -> bool {
         self.is_regular_file
-    }
-
-    /// Whether the session has truth.
-    #[must_use]
-    pub fn has_truth(&self) -> bool {
-        self.columns.segments.iter().all(|segment| segment.truth.is_some())
     }
 
     /// Which bend sensors of each segment the session has.
@@ -217,12 +211,25 @@ fn ends_with_line(file: &mut File) -> io::Result<bool> {
 }
 
 /// Line of a row, from 1. The parser counts a line end only when it reads on, which the `\r\n` and the empty lines
-/// before a row mislead; so the file is looked at again, where it can be.
+/// before a row mislead; so the file is looked at again, where it can be: a pipe is gone once it is read.
 fn line_at(path: &Path, row: &csv::Position) -> u64 {
-    let Ok(bytes) = fs::read(path) else { return row.line() };
-    let (before, rest) = bytes.split_at_checked(row.byte() as usize).unwrap_or((&bytes, &[]));
-    let gap = rest.iter().take_while(|byte| matches!(byte, b'\r' | b'\n'));
-    1 + before.iter().chain(gap).filter(|byte| **byte == b'\n').count() as u64
+    if !path.is_file() {
+        return row.line();
+    }
+    File::open(path).and_then(|file| lines_before(file, row.byte())).map_or(row.line(), |lines| lines + 1)
+}
+
+/// Line ends before a row that begins at `byte`, or behind the line ends there.
+fn lines_before(file: File, byte: u64) -> io::Result<u64> {
+    let mut lines = 0;
+    for (place, next) in (0..).zip(BufReader::new(file).bytes()) {
+        let next = next?;
+        if place >= byte && !matches!(next, b'\r' | b'\n') {
+            break;
+        }
+        lines += u64::from(next == b'\n');
+    }
+    Ok(lines)
 }
 
 fn csv_error(path: &Path, error: csv::Error) -> SessionError {
