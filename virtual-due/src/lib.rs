@@ -1,0 +1,6 @@
+//! An emulated Arduino Due.
+
+pub mod model;
+mod report;
+
+pub use report::Report;

@@ -1,0 +1,138 @@
+//! What a model of a peripheral is, and what it sees of the rest of the board. No model knows the CPU engine.
+
+use crate::report::Report;
+
+/// An instant, or a span of time: cycles of 84 MHz since power-on, whatever the master clock is.
+pub type Cycles = u64;
+
+/// Cycles in a second.
+pub const CYCLES_PER_SECOND: Cycles = 84_000_000;
+
+/// A peripheral as the bus, the interrupt controller and time see it.
+///
+/// Registers are 32 bits wide; the bus turns narrower accesses into these. Before every access the model is brought up
+/// to the access's time by [`advance`](Self::advance).
+pub trait Peripheral {
+    /// The value of the register at `offset`; what reading clears is cleared.
+    fn read(&mut self, offset: u32, context: &mut Context) -> u32;
+
+    /// Writes the register at `offset`.
+    fn write(&mut self, offset: u32, value: u32, context: &mut Context);
+
+    /// Does all that happens up to `context.now`.
+    fn advance(&mut self, context: &mut Context) {
+        let _ = context;
+    }
+
+    /// The next instant at which this model does something of its own, if it knows one.
+    fn next_event(&self) -> Option<Cycles> {
+        None
+    }
+
+    /// Whether the interrupt line is raised: status and mask.
+    fn interrupt(&self) -> bool {
+        false
+    }
+
+    /// As the chip's reset leaves it.
+    fn reset(&mut self);
+}
+
+/// What a model is lent while it is called.
+pub struct Context<'a> {
+    /// Time now.
+    pub now: Cycles,
+    /// The master clock, Hz.
+    pub master_clock_hz: u32,
+    /// The chip's memory, for the PDC.
+    pub memory: &'a mut dyn Memory,
+    /// What is wired to the chip's pins.
+    pub world: &'a mut dyn World,
+    /// Where unmodelled registers and the like are reported.
+    pub report: &'a mut Report,
+}
+
+impl Context<'_> {
+    /// How long `count` periods of the master clock take now.
+    pub fn master_cycles(&self, count: u64) -> Cycles {
+        (u128::from(count) * u128::from(CYCLES_PER_SECOND) / u128::from(self.master_clock_hz)) as Cycles
+    }
+}
+
+/// RAM and flash as a peripheral's DMA sees them.
+pub trait Memory {
+    /// Reads `bytes.len()` bytes at `address`; false where there is no memory.
+    fn read(&self, address: u32, bytes: &mut [u8]) -> bool;
+
+    /// Writes bytes at `address`; false where there is no RAM.
+    fn write(&mut self, address: u32, bytes: &[u8]) -> bool;
+}
+
+/// A pin of the chip: PIO controller A…D as 0…3, and line 0…31.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Pin {
+    /// 0 for PIOA … 3 for PIOD.
+    pub port: u8,
+    /// 0…31.
+    pub line: u8,
+}
+
+/// What is wired to the chip's pins.
+pub trait World {
+    /// What the converter makes of the voltage on an ADC channel, 0…15, now: counts 0…4095.
+    fn adc_counts(&mut self, channel: u8, now: Cycles) -> u16;
+
+    /// The devices on the wires of TWI0 or TWI1.
+    fn i2c(&mut self, twi: usize) -> &mut dyn I2c;
+
+    /// A PWM channel, 0…7, now is high for the first number of the second number of clocks; `None`: it is not running.
+    fn pwm(&mut self, channel: u8, duty: Option<(u32, u32)>, now: Cycles);
+
+    /// The chip now drives the pin to a level; `None`: it is an input or belongs to a peripheral.
+    fn drive(&mut self, pin: Pin, level: Option<bool>, now: Cycles);
+
+    /// The level that the outside gives to a pin; `None`: nothing drives it.
+    fn level(&mut self, pin: Pin, now: Cycles) -> Option<bool>;
+
+    /// A byte that left the chip on a serial port: 0 for UART, 1…4 for USART0…3.
+    fn transmitted(&mut self, port: usize, byte: u8, now: Cycles);
+
+    /// When the next byte on its way to a serial port is complete, at the port's baud rate, and takes it if that is not
+    /// after `now`. A byte arrives at most once in `byte_time`.
+    fn receive(&mut self, port: usize, byte_time: Cycles, now: Cycles) -> Reception;
+}
+
+/// What [`World::receive`] says.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Reception {
+    /// Nothing is on its way.
+    Idle,
+    /// The next byte is complete then.
+    At(Cycles),
+    /// A byte has arrived.
+    Byte(u8),
+}
+
+/// The devices on an I²C bus, byte by byte as a master sees them.
+pub trait I2c {
+    /// A start or repeated start with an address, 7 bits; whether a device acknowledged.
+    fn start(&mut self, address: u8, read: bool, now: Cycles) -> bool;
+
+    /// A byte to the addressed device; whether it acknowledged.
+    fn write(&mut self, byte: u8, now: Cycles) -> bool;
+
+    /// A byte from the addressed device.
+    fn read(&mut self, now: Cycles) -> u8;
+
+    /// A stop condition.
+    fn stop(&mut self, now: Cycles);
+
+    /// How long devices hold the clock low before the next byte.
+    fn stretch(&mut self, now: Cycles) -> Cycles;
+
+    /// Whether a device holds SCL, and SDA, low.
+    fn held(&mut self, now: Cycles) -> (bool, bool);
+
+    /// A clock pulse that the master gave by hand, as a GPIO.
+    fn pulse(&mut self, now: Cycles);
+}
