@@ -1,2 +1,6 @@
-//! Placeholder.
+//! The serial protocol between the arm's board and a host.
 #![no_std]
+
+mod message;
+
+pub use message::*;
