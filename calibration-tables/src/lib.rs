@@ -33,6 +33,7 @@ mod check;
 mod file;
 mod noise;
 mod place;
+mod source;
 
 pub use bake::Baked;
 pub use file::{

@@ -103,7 +103,17 @@ impl Rig {
 
     /// Fresh conversions of the bend sensors, 0 … 4095, in the order 1a, 1b, 2a, … 6b. Each call draws new noise.
     pub fn adc_counts(&mut self) -> [u16; BEND_SENSORS] {
-        core::array::from_fn(|index| self.bend_sensors[index].convert(&mut self.converter_noise))
+        core::array::from_fn(|index| self.convert(index))
+    }
+
+    /// One fresh conversion of one bend sensor, counted from 0 in the order of [`adc_counts`](Self::adc_counts): what a
+    /// converter does that takes one channel after the other.
+    ///
+    /// # Panics
+    ///
+    /// Where there is no such sensor.
+    pub fn convert(&mut self, sensor: usize) -> u16 {
+        self.bend_sensors[sensor].convert(&mut self.converter_noise)
     }
 
     /// The IMUs' last fusion output, at most 10 ms old: w, x, y, z of each segment's unit, in steps of 1/16384.

@@ -2,7 +2,10 @@
 //!
 //! Units on the wire are SI: µs, rad, m, Pa. Angles and lengths are the estimator's own bits, so that nothing is lost.
 
+use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
+
+use crate::wire::{EstimateWire, SampleWire};
 
 /// Segments of the arm.
 pub const SEGMENTS: usize = 6;
@@ -17,7 +20,7 @@ pub const REGULATORS: usize = 6;
 pub type Text<const N: usize> = heapless::String<N>;
 
 /// What the board says.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Schema)]
 pub enum Message {
     /// Who it is; on request and once a second.
     Hello(Hello),
@@ -34,7 +37,7 @@ pub enum Message {
 }
 
 /// Who the board is and how it came up.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, Schema)]
 pub struct Hello {
     /// Version of this protocol.
     pub protocol: u8,
@@ -59,7 +62,7 @@ pub struct Hello {
 }
 
 /// What started the board (datasheet, RSTC_SR).
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub enum ResetCause {
     /// Power came on.
     PowerOn,
@@ -75,6 +78,7 @@ pub enum ResetCause {
 
 /// What the board read in one tick: all that a replay needs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(into = "SampleWire", from = "SampleWire")]
 pub struct Sample {
     /// Number of the tick since boot.
     pub tick: u32,
@@ -90,6 +94,7 @@ pub struct Sample {
 
 /// The arm's shape by the Kalman filters, in the bits of `estimator_core::Q`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(into = "EstimateWire", from = "EstimateWire")]
 pub struct Estimate {
     /// Number of the tick whose sample it was made of.
     pub tick: u32,
@@ -98,7 +103,7 @@ pub struct Estimate {
 }
 
 /// One segment's estimate.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct SegmentEstimate {
     /// Bend angle θ_i, rad, in units of 2⁻²⁶.
     pub theta: i32,
@@ -107,7 +112,7 @@ pub struct SegmentEstimate {
 }
 
 /// State of one sensor.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub enum SensorState {
     /// It reads well.
     Ok,
@@ -126,7 +131,7 @@ pub enum SensorState {
 }
 
 /// State of one sensor, and how often it failed since boot.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct SensorHealth {
     /// State now.
     pub state: SensorState,
@@ -135,7 +140,7 @@ pub struct SensorHealth {
 }
 
 /// State of the pressures.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub enum Actuation {
     /// Vented, until it is armed.
     Disarmed,
@@ -148,7 +153,7 @@ pub enum Actuation {
 }
 
 /// How the board is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Health {
     /// Number of the last tick.
     pub tick: u32,
@@ -181,7 +186,7 @@ pub struct Health {
 }
 
 /// What has happened.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub enum Event {
     /// An IMU, counted from 0, changed its state.
     Imu(u8, SensorState),
@@ -196,7 +201,7 @@ pub enum Event {
 }
 
 /// What the host asks.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Request {
     /// The host's number of the request. A retried request keeps its number and acts once; numbers go up.
     pub id: u32,
@@ -205,7 +210,7 @@ pub struct Request {
 }
 
 /// What the board can do.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub enum Command {
     /// Nothing but answer, with a [`Hello`] behind it.
     Ping,
@@ -224,7 +229,7 @@ pub enum Command {
 }
 
 /// How often messages are sent, in ticks of 10 ms; 0: never.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Rates {
     /// Ticks from one sample to the next.
     pub sample: u16,
@@ -235,7 +240,7 @@ pub struct Rates {
 }
 
 /// Set-points with a deadline.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct SetPressures {
     /// Pressure of each regulator over the atmosphere's, Pa.
     pub pressures_pa: [u32; REGULATORS],
@@ -244,7 +249,7 @@ pub struct SetPressures {
 }
 
 /// The answer to a request.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Reply {
     /// The request's number.
     pub id: u32,
@@ -253,7 +258,7 @@ pub struct Reply {
 }
 
 /// Whether a request was done.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub enum Outcome {
     /// It was done.
     Ack,
@@ -262,7 +267,7 @@ pub enum Outcome {
 }
 
 /// Why a request was refused.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, thiserror::Error)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, Schema, thiserror::Error)]
 pub enum Refusal {
     /// The frame was whole but its body is no request of this protocol's version.
     #[error("the board does not know this request: host and firmware are of different versions")]

@@ -1,6 +1,38 @@
-//! An emulated Arduino Due.
+//! An emulated Arduino Due: it runs the unmodified ELF of a firmware, with the simulated arm on its pins.
+//!
+//! ```text
+//!  Machine ──► Cpu (engine.rs: a JIT for Cortex-M3)
+//!     │            │ loads and stores that no memory answers
+//!     ▼            ▼
+//!   Chip: bus, time, interrupt lines ──► peripherals/…, each behind `model::Peripheral`
+//!                                           │ pins, ADC, I²C, serial
+//!                                           ▼
+//!                                     World: rig/…, the arm with its sensors and regulators
+//! ```
+//!
+//! Time is virtual: cycles of 84 MHz since power-on. An instruction takes 1.4 cycles of the core clock, and sleep costs
+//! nothing. The models follow the datasheet of the SAM3X/A (Atmel 11057C), whatever firmware runs; what they leave out is
+//! reported once. Two runs of the same firmware, world and input do the same.
+//!
+//! Not modelled: HSMCI, SPI, SSC, EMAC, CAN, DMAC, DACC and the memory controllers read as zero; the native USB port
+//! never sees a host; flash wait states and the bus matrix cost no time; alarms of the RTC.
 
+mod chip;
+mod clock;
+mod cpu;
+mod dwt;
+mod elf;
+mod engine;
+mod machine;
+mod memory;
+mod memory_map;
 pub mod model;
+mod peripherals;
 mod report;
+pub mod rig;
 
+pub use elf::ElfError;
+pub use machine::{Machine, Reset};
+pub use model::{CYCLES_PER_SECOND, Cause, Cycles};
 pub use report::Report;
+pub use rig::Rig;

@@ -34,6 +34,17 @@ pub trait Peripheral {
         false
     }
 
+    /// The interrupt lines of a model that has several, bit 0 the first; one that has one gives
+    /// [`interrupt`](Self::interrupt).
+    fn interrupts(&self) -> u32 {
+        u32::from(self.interrupt())
+    }
+
+    /// Something happened elsewhere in the chip.
+    fn signal(&mut self, signal: Signal, context: &mut Context) {
+        let _ = (signal, context);
+    }
+
     /// As the chip's reset leaves it.
     fn reset(&mut self);
 }
@@ -50,6 +61,51 @@ pub struct Context<'a> {
     pub world: &'a mut dyn World,
     /// Where unmodelled registers and the like are reported.
     pub report: &'a mut Report,
+    /// What the model tells the rest of the chip, which hears it as soon as the call returns.
+    pub signals: &'a mut Vec<Signal>,
+}
+
+/// What a model tells the rest of the chip.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Signal {
+    /// A timer channel's TIOA rose: 0…8 for TC0…TC8.
+    Tioa(u8),
+    /// An event line of the PWM, 0 or 1.
+    PwmEvent(u8),
+    /// The master clock now has this frequency, Hz.
+    MasterClock(u32),
+    /// The peripherals whose clock now runs, a bit for each identifier.
+    PeripheralClocks(u64),
+    /// Flash changed at an address, for a number of bytes.
+    Flash(u32, u32),
+    /// GPNVM bit 1: the next reset boots from flash, or from ROM.
+    BootFlash(bool),
+    /// The lines of PIO controller 0…3 that belong to peripheral A, and B, a bit each.
+    Pins {
+        /// 0 for PIOA … 3 for PIOD.
+        port: u8,
+        /// Lines of peripheral A.
+        a: u32,
+        /// Lines of peripheral B.
+        b: u32,
+    },
+    /// The chip is reset.
+    Reset(Cause),
+}
+
+/// What caused a reset, as RSTC_SR.RSTTYP counts (datasheet 12.5.2).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Cause {
+    /// Power came up.
+    General = 0,
+    /// Out of backup mode.
+    Backup = 1,
+    /// The watchdog was not fed.
+    Watchdog = 2,
+    /// The firmware asked.
+    Software = 3,
+    /// NRST was held low: the reset button, or the USB bridge when a host opens the port.
+    User = 4,
 }
 
 impl Context<'_> {

@@ -6,6 +6,7 @@ use std::collections::BTreeSet;
 #[derive(Debug, Default)]
 pub struct Report {
     unmodelled: BTreeSet<(&'static str, u32)>,
+    said: BTreeSet<String>,
     lines: Vec<String>,
 }
 
@@ -14,6 +15,13 @@ impl Report {
     pub fn unmodelled(&mut self, peripheral: &'static str, offset: u32) {
         if self.unmodelled.insert((peripheral, offset)) {
             self.lines.push(format!("{peripheral}: register at offset {offset:#x} is not modelled"));
+        }
+    }
+
+    /// Reports a text, once however often it happens.
+    pub fn once(&mut self, text: String) {
+        if self.said.insert(text.clone()) {
+            self.lines.push(text);
         }
     }
 

@@ -181,3 +181,19 @@ fn the_reference_table_runs() {
     let tip = estimator.shape(&estimate, Method::Fusion)[5].end.expect("every bend sensor was read");
     assert!(tip.x.to_f64().hypot(tip.y.to_f64()) < 0.5821, "no farther than the straight arm is long");
 }
+
+#[test]
+fn the_checksum_is_that_of_the_parameters_and_not_of_the_file() {
+    let table = parse(TABLE);
+    let spaced = parse(&TABLE.replace(" = ", "  =  "));
+    assert_eq!(table.bake::<Q>(100.0).unwrap().checksum(), spaced.bake::<Q>(100.0).unwrap().checksum());
+}
+
+#[test]
+fn the_checksum_tells_the_smallest_change_of_a_parameter() {
+    let whole = parse(TABLE).bake::<Q>(100.0).unwrap().checksum();
+    let other_rate = parse(TABLE).bake::<Q>(50.0).unwrap().checksum();
+    // Half a micrometre: 33 steps of fixed point.
+    let longer = parse(&edited("length_mm = 80.0", "length_mm = 80.0005")).bake::<Q>(100.0).unwrap().checksum();
+    assert!(whole != other_rate && whole != longer && other_rate != longer);
+}

@@ -1,1 +1,7 @@
-//! Tests of the firmware on the emulated board.
+//! The firmware on the emulated board, as a host sees it: frames out, requests in, and the arm's truth beside them.
+
+mod board;
+mod build;
+
+pub use board::{Board, Received, UART};
+pub use build::{elf, firmware};

@@ -1,0 +1,64 @@
+//! The HardFault handler.
+
+use core::arch::naked_asm;
+
+use super::{SAFE_STATE, record, stop_or_reset};
+
+/// Entered by the processor. The stack may be the fault's cause, so that nothing is pushed: the frame's address goes on as
+/// an argument, and the stack starts again at its top, since nothing returns to it.
+#[unsafe(naked)]
+#[unsafe(no_mangle)]
+#[unsafe(link_section = ".HardFault.atsam3x8e_hal")]
+unsafe extern "C" fn HardFault() -> ! {
+    naked_asm!(
+        // Bit 2 of EXC_RETURN: the frame is on the process stack (ARMv7-M B1.5.8).
+        "tst lr, #4",
+        "ite eq",
+        "mrseq r0, msp",
+        "mrsne r0, psp",
+        "movw r1, #:lower16:_stack_start",
+        "movt r1, #:upper16:_stack_start",
+        "msr msp, r1",
+        "b {handler}",
+        handler = sym hard_fault,
+    )
+}
+
+/// The eight words that the processor stacks (ARMv7-M B1.5.6).
+const FRAME_BYTES: u32 = 32;
+/// Place of the return address among them.
+const FRAME_PC: u32 = 24;
+
+extern "C" fn hard_fault(frame: u32) -> ! {
+    critical_section::with(|token| {
+        if let Some(safe_state) = SAFE_STATE.borrow(token).get() {
+            safe_state();
+        }
+        // SAFETY: the system control block is always there, and reading the fault status changes nothing.
+        let cfsr = unsafe { (*cortex_m::peripheral::SCB::PTR).cfsr.read() };
+        match stacked_pc(frame, cfsr) {
+            Some(pc) => record(format_args!("HardFault pc={pc:#010x} cfsr={cfsr:#010x}")),
+            None => record(format_args!("HardFault pc=? sp={frame:#010x} cfsr={cfsr:#010x}: stack overflow?")),
+        }
+        stop_or_reset()
+    })
+}
+
+/// The faulting address, if the processor could stack it and the stack lies in RAM.
+fn stacked_pc(frame: u32, cfsr: u32) -> Option<u32> {
+    /// MSTKERR and STKERR: stacking failed (ARMv7-M B3.2.15).
+    const STACKING_FAILED: u32 = 1 << 4 | 1 << 12;
+    if cfsr & STACKING_FAILED != 0 || !is_in_ram(frame) {
+        return None;
+    }
+    let pc = (frame + FRAME_PC) as *const u32;
+    // SAFETY: the frame lies in RAM, is aligned, and was just written by the processor.
+    Some(unsafe { pc.read_volatile() })
+}
+
+/// Whether a whole frame lies in the chip's RAM: SRAM0 (64 KiB), or SRAM1 (32 KiB) with the contiguous alias below it
+/// (datasheet chapter 7).
+fn is_in_ram(frame: u32) -> bool {
+    let fits = |start: u32, end: u32| (start..=end - FRAME_BYTES).contains(&frame);
+    frame.is_multiple_of(4) && (fits(0x2000_0000, 0x2001_0000) || fits(0x2007_0000, 0x2008_8000))
+}

@@ -1,0 +1,75 @@
+//! Why the chip was reset, and resetting it.
+//!
+//! ```no_run
+//! use atsam3x8e_hal::{pac, reset};
+//!
+//! let device = pac::Peripherals::take().unwrap();
+//! if reset::cause(&device.RSTC) == reset::Cause::PowerUp {
+//!     reset::reset();
+//! }
+//! ```
+
+use crate::{pac, reg};
+
+/// What caused the last reset (RSTTYP, datasheet chapter 12, RSTC_SR).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Cause {
+    /// First power-up.
+    PowerUp,
+    /// Return from backup mode, or a brown-out that the supply controller noticed.
+    Backup,
+    /// The watchdog was not fed.
+    Watchdog,
+    /// Software asked for it.
+    Software,
+    /// The NRST pin was pulled low: the reset button, or on the Due a host that opens the programming port.
+    Pin,
+    /// A code the datasheet does not list.
+    Unknown,
+}
+
+/// What caused the last reset.
+pub fn cause(rstc: &pac::RSTC) -> Cause {
+    decode(rstc.sr.read().bits())
+}
+
+fn decode(status: u32) -> Cause {
+    match status >> 8 & 0b111 {
+        0 => Cause::PowerUp,
+        1 => Cause::Backup,
+        2 => Cause::Watchdog,
+        3 => Cause::Software,
+        4 => Cause::Pin,
+        _ => Cause::Unknown,
+    }
+}
+
+/// Resets processor and peripherals. Memory keeps its content.
+///
+/// Callable from anywhere, also from fault handlers.
+pub fn reset() -> ! {
+    /// Both bits together, with the key (datasheet chapter 12, RSTC_CR).
+    const KEY_PERRST_PROCRST: u32 = 0xA5 << 24 | 1 << 2 | 1;
+    // SAFETY: the reset controller is always there; writing its control register ends the program, whoever owns it.
+    let rstc = unsafe { &*pac::RSTC::ptr() };
+    // What was written last, for example a crash's record, reaches memory before the reset.
+    core::sync::atomic::fence(core::sync::atomic::Ordering::SeqCst);
+    loop {
+        reg::set(&rstc.cr, KEY_PERRST_PROCRST);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_cause_is_read_from_rsttyp_whatever_the_other_bits() {
+        let other_bits = 0x0003_0001;
+        assert_eq!(decode(other_bits), Cause::PowerUp);
+        assert_eq!(decode(other_bits | 2 << 8), Cause::Watchdog);
+        assert_eq!(decode(other_bits | 3 << 8), Cause::Software);
+        assert_eq!(decode(other_bits | 4 << 8), Cause::Pin);
+        assert_eq!(decode(other_bits | 7 << 8), Cause::Unknown);
+    }
+}

@@ -1,0 +1,236 @@
+//! BNO055: quaternions of an IMU in the fusion mode IMUPLUS, one short step a tick.
+//!
+//! A [`Bno055`] is advanced once a tick of 10 ms and never waits by itself: a step makes at most two transactions, each
+//! of at most eight bytes of data, and the chip's 650 ms of reset are ticks in which there is nothing to do. The time
+//! is the number of the tick, given by the caller, and may wrap.
+//!
+//! | phase | transactions in one tick | goes on when |
+//! |---|---|---|
+//! | identify | PAGE_ID ← 0, CHIP_ID → | CHIP_ID is 0xA0 |
+//! | inspect | OPR_MODE →, then OPR_MODE ← IMUPLUS, or SYS_TRIGGER ← RST_SYS | always |
+//! | boot | none | 700 ms have passed; identified again |
+//! | settle | none for two ticks, then SYS_STATUS … OPR_MODE → | fusion runs; after 1 s without, reset |
+//! | run | QUA_DATA →, every 4th tick SYS_STATUS … OPR_MODE or CHIP_ID → | for ever |
+//!
+//! A chip in CONFIGMODE has just come out of a reset and holds all defaults (BST-BNO055-DS000, 3.2 and 3.3.1), which
+//! are what IMUPLUS needs here: a quaternion has no selectable unit (3.6.5.5), and the internal clock works on every
+//! board, also on those without a crystal. A chip in any other mode is reset first, so that each start is from the
+//! same state. A start takes 5 ticks from CONFIGMODE and about 76 ticks with a reset.
+//!
+//! A supply that dips returns the chip silently to CONFIGMODE, where it answers and reads zero (3.3.1). A reading that
+//! is no unit quaternion, and a reading after any error, is therefore followed by a check of mode and status in the same
+//! tick; both are checked every 80 ms anyway, and so is the identity. After a start the heading counts from anew.
+//!
+//! The published crate `bno055` 0.4 does not suit: its start blocks for 650 ms and more, each of its calls first
+//! writes the page register, which doubles the transactions, and it records a mode before the write has succeeded, so
+//! that one lost write makes it believe in a fusion that does not run.
+
+use core::ops::RangeInclusive;
+use embedded_hal::i2c::{Error, ErrorKind};
+use embedded_hal_async::i2c::I2c;
+
+/// The chip's address with COM3 low (Table 4-7).
+pub const ADDRESS: u8 = 0x28;
+
+const CHIP_ID: u8 = 0x00;
+const PAGE_ID: u8 = 0x07;
+const QUA_DATA_W_LSB: u8 = 0x20;
+const SYS_STATUS: u8 = 0x39;
+const OPR_MODE: u8 = 0x3D;
+const SYS_TRIGGER: u8 = 0x3F;
+
+/// What CHIP_ID reads.
+const IDENTITY: u8 = 0xA0;
+/// Low bits of OPR_MODE (Table 3-5); the others are reserved.
+const MODE_MASK: u8 = 0x0F;
+const MODE_CONFIG: u8 = 0x00;
+const MODE_IMUPLUS: u8 = 0x08;
+/// SYS_STATUS: the fusion algorithm runs.
+const STATUS_FUSION: u8 = 5;
+/// SYS_TRIGGER: reset.
+const RST_SYS: u8 = 0x20;
+
+/// 650 ms from reset to CONFIGMODE is typical (Table 0-2); a chip that takes longer does not answer yet.
+const BOOT_TICKS: u32 = 70;
+/// 7 ms from CONFIGMODE to any other (Table 3-6); two ticks, because a step may come late in one and early in the next.
+const SWITCH_TICKS: u32 = 2;
+/// By then fusion runs, or never will.
+const SETTLE_TICKS: u32 = 100;
+/// Mode and status are checked once in so many ticks, and halfway between the identity.
+const CHECK_TICKS: u32 = 8;
+
+/// The square of a quaternion's norm where that is 1 within 1 %: the chip's unit is 2¹⁴ steps (3.6.5.5).
+const NORM_SQUARED: RangeInclusive<u64> = ((1 << 28) * 99 * 99 / 10_000)..=((1 << 28) * 101 * 101 / 10_000);
+
+/// What one step brought.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Answer {
+    /// The orientation w, x, y, z in units of 2⁻¹⁴, of norm 1 within 1 %.
+    Quaternion([i16; 4]),
+    /// The chip answers, but with no unit quaternion, or it is no BNO055.
+    Garbage,
+    /// The chip is on its way to its first reading; its heading counts from anew.
+    Starting,
+}
+
+/// One IMU, read in IMUPLUS mode. See the [module](self) for what a step does.
+#[derive(Debug)]
+pub struct Bno055 {
+    address: u8,
+    phase: Phase,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Phase {
+    Identify,
+    Inspect,
+    Boot {
+        since: u32,
+    },
+    Settle {
+        since: u32,
+    },
+    /// `trusted`: nothing has failed since mode and status were last seen right.
+    Run {
+        trusted: bool,
+    },
+}
+
+impl Bno055 {
+    /// The IMU at `address`, in whatever state it is.
+    #[must_use]
+    pub const fn new(address: u8) -> Self {
+        Self { address, phase: Phase::Identify }
+    }
+
+    /// Whether a step in this tick would only wait, so that the bus need not be given to it.
+    #[must_use]
+    pub fn is_waiting(&self, tick: u32) -> bool {
+        match self.phase {
+            Phase::Boot { since } => tick.wrapping_sub(since) < BOOT_TICKS,
+            Phase::Settle { since } => tick.wrapping_sub(since) < SWITCH_TICKS,
+            Phase::Identify | Phase::Inspect | Phase::Run { .. } => false,
+        }
+    }
+
+    /// One step in tick number `tick`: at most two transactions. May be dropped at any await: the next step then
+    /// checks before it trusts.
+    ///
+    /// # Errors
+    ///
+    /// What the bus says; the step is done again in the next tick. The caller decides how often it asks a chip that
+    /// does not answer.
+    pub async fn step<I: I2c>(&mut self, i2c: &mut I, tick: u32) -> Result<Answer, I::Error> {
+        if self.is_waiting(tick) {
+            return Ok(Answer::Starting);
+        }
+        match self.phase {
+            Phase::Identify | Phase::Boot { .. } => self.identify(i2c).await,
+            Phase::Inspect => self.inspect(i2c, tick).await,
+            Phase::Settle { since } => self.settle(i2c, tick.wrapping_sub(since)).await,
+            Phase::Run { trusted } => self.run(i2c, tick, trusted).await,
+        }
+    }
+
+    async fn identify<I: I2c>(&mut self, i2c: &mut I) -> Result<Answer, I::Error> {
+        // Another page would hide the identity; PAGE_ID is on both pages (4.2).
+        self.write(i2c, PAGE_ID, 0).await?;
+        if !self.is_bno055(i2c).await? {
+            return Ok(Answer::Garbage);
+        }
+        self.phase = Phase::Inspect;
+        Ok(Answer::Starting)
+    }
+
+    async fn inspect<I: I2c>(&mut self, i2c: &mut I, tick: u32) -> Result<Answer, I::Error> {
+        let [mode] = self.read(i2c, OPR_MODE).await?;
+        if mode & MODE_MASK == MODE_CONFIG {
+            self.write(i2c, OPR_MODE, MODE_IMUPLUS).await?;
+            self.phase = Phase::Settle { since: tick };
+        } else {
+            self.phase = Phase::Boot { since: tick };
+            match self.write(i2c, SYS_TRIGGER, RST_SYS).await {
+                // The chip may be gone before it acknowledges. If it was not reset, it is inspected again.
+                Err(error) if !matches!(error.kind(), ErrorKind::NoAcknowledge(_)) => return Err(error),
+                _ => {}
+            }
+        }
+        Ok(Answer::Starting)
+    }
+
+    async fn settle<I: I2c>(&mut self, i2c: &mut I, ticks: u32) -> Result<Answer, I::Error> {
+        let (status, mode) = self.status_and_mode(i2c).await?;
+        if mode == MODE_IMUPLUS && status == STATUS_FUSION {
+            self.phase = Phase::Run { trusted: true };
+        } else if mode != MODE_IMUPLUS || ticks >= SETTLE_TICKS {
+            self.phase = Phase::Identify;
+        }
+        Ok(Answer::Starting)
+    }
+
+    async fn run<I: I2c>(&mut self, i2c: &mut I, tick: u32, trusted: bool) -> Result<Answer, I::Error> {
+        self.phase = Phase::Run { trusted: false };
+        let quaternion = self.quaternion(i2c).await?;
+        let is_unit = is_unit(quaternion);
+        let turn = tick % CHECK_TICKS;
+        let is_sound = if !trusted || !is_unit || turn == 0 {
+            self.status_and_mode(i2c).await? == (STATUS_FUSION, MODE_IMUPLUS)
+        } else if turn == CHECK_TICKS / 2 {
+            self.is_bno055(i2c).await?
+        } else {
+            true
+        };
+        if !is_sound {
+            self.phase = Phase::Identify;
+            return Ok(Answer::Starting);
+        }
+        self.phase = Phase::Run { trusted: true };
+        Ok(if is_unit { Answer::Quaternion(quaternion) } else { Answer::Garbage })
+    }
+
+    async fn is_bno055<I: I2c>(&self, i2c: &mut I) -> Result<bool, I::Error> {
+        Ok(self.read(i2c, CHIP_ID).await? == [IDENTITY])
+    }
+
+    /// SYS_STATUS 0x39 and OPR_MODE 0x3D in one read, with SYS_ERR, UNIT_SEL and a reserved byte between them.
+    async fn status_and_mode<I: I2c>(&self, i2c: &mut I) -> Result<(u8, u8), I::Error> {
+        let [status, _, _, _, mode] = self.read(i2c, SYS_STATUS).await?;
+        Ok((status, mode & MODE_MASK))
+    }
+
+    async fn quaternion<I: I2c>(&self, i2c: &mut I) -> Result<[i16; 4], I::Error> {
+        let [w0, w1, x0, x1, y0, y1, z0, z1] = self.read(i2c, QUA_DATA_W_LSB).await?;
+        Ok([[w0, w1], [x0, x1], [y0, y1], [z0, z1]].map(i16::from_le_bytes))
+    }
+
+    async fn read<I: I2c, const N: usize>(&self, i2c: &mut I, register: u8) -> Result<[u8; N], I::Error> {
+        let mut bytes = [0; N];
+        i2c.write_read(self.address, &[register], &mut bytes).await?;
+        Ok(bytes)
+    }
+
+    async fn write<I: I2c>(&self, i2c: &mut I, register: u8, value: u8) -> Result<(), I::Error> {
+        i2c.write(self.address, &[register, value]).await
+    }
+}
+
+fn is_unit(quaternion: [i16; 4]) -> bool {
+    let squares = quaternion.map(|component| u64::from(component.unsigned_abs()).pow(2));
+    NORM_SQUARED.contains(&squares.iter().sum())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::is_unit;
+
+    #[test]
+    fn only_a_norm_within_one_percent_is_a_reading() {
+        assert!(is_unit([16384, 0, 0, 0]));
+        assert!(is_unit([-8192, 8192, -8192, 8192]));
+        assert!(is_unit([0, 0, 0, 16547]) && is_unit([0, 16221, 0, 0]));
+        assert!(!is_unit([0, 0, 0, 16548]) && !is_unit([0, 16219, 0, 0]));
+        assert!(!is_unit([0; 4]));
+        assert!(!is_unit([-1; 4]));
+        assert!(!is_unit([i16::MIN; 4]));
+    }
+}

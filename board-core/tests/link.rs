@@ -1,0 +1,222 @@
+//! Requests: each acts once, in order, and a flood does not matter.
+
+use board_core::{ANEW_TICKS, BURST, Link, PER_TICK};
+use proptest::prelude::*;
+use telemetry::{Command, Outcome, Refusal, Reply, Request};
+
+const LATE: Option<Outcome> = Some(Outcome::Nack(Refusal::Late));
+const BUSY: Option<Outcome> = Some(Outcome::Nack(Refusal::Busy));
+const ACK: Option<Outcome> = Some(Outcome::Ack);
+
+/// A link, and what it had done.
+#[derive(Default)]
+struct Board {
+    link: Link,
+    done: Vec<(u32, Command)>,
+}
+
+impl Board {
+    /// Sends a request; what it would do succeeds.
+    fn ask(&mut self, id: u32, command: Command, tick: u32) -> Option<Outcome> {
+        let reply = self.link.answer(&Request { id, command }, tick, |command| {
+            self.done.push((id, command));
+            Ok(())
+        });
+        reply.map(|reply: Reply| {
+            assert_eq!(reply.id, id);
+            reply.outcome
+        })
+    }
+}
+
+#[test]
+fn the_first_request_may_have_any_number() {
+    for id in [0, 1, 12_345, u32::MAX] {
+        let mut board = Board::default();
+        assert_eq!(board.ask(id, Command::Arm, 0), ACK);
+        assert_eq!(board.done, [(id, Command::Arm)]);
+    }
+}
+
+#[test]
+fn a_repeated_request_gets_its_answer_again_and_acts_once() {
+    let mut board = Board::default();
+    for tick in [0, 0, 5, 100_000] {
+        assert_eq!(board.ask(1, Command::Tare, tick), ACK);
+    }
+    assert_eq!(board.done, [(1, Command::Tare)]);
+}
+
+#[test]
+fn a_repeated_request_that_was_refused_is_not_tried_again() {
+    let mut link = Link::new();
+    let request = Request { id: 1, command: Command::Arm };
+    let refused = Some(Reply { id: 1, outcome: Outcome::Nack(Refusal::Disarmed) });
+    assert_eq!(link.answer(&request, 0, |_| Err(Refusal::Disarmed)), refused);
+    assert_eq!(link.answer(&request, 1, |_| Ok(())), refused);
+}
+
+#[test]
+fn an_older_request_is_late() {
+    let mut board = Board::default();
+    board.ask(5, Command::Arm, 0);
+    assert_eq!(board.ask(4, Command::Disarm, 0), LATE);
+    assert_eq!(board.ask(0, Command::Ping, 0), LATE);
+    assert_eq!(board.ask(4, Command::Arm, 100_000), LATE);
+    assert_eq!(board.done.len(), 1);
+}
+
+#[test]
+fn another_request_under_the_last_number_is_late() {
+    let mut board = Board::default();
+    board.ask(5, Command::Arm, 0);
+    assert_eq!(board.ask(5, Command::Disarm, 0), LATE);
+    assert_eq!(board.done, [(5, Command::Arm)]);
+}
+
+#[test]
+fn numbers_may_have_gaps() {
+    let mut board = Board::default();
+    for id in [1, 2, 10, 1000] {
+        assert_eq!(board.ask(id, Command::Ping, 0), ACK);
+    }
+    assert_eq!(board.done.len(), 4);
+}
+
+#[test]
+fn a_ping_starts_the_numbers_anew_after_silence() {
+    let mut board = Board::default();
+    board.ask(900, Command::Arm, 10);
+    assert_eq!(board.ask(1, Command::Ping, 10 + ANEW_TICKS - 1), LATE);
+    // Refused requests are no sign of life: who repeats its ping does not wait for ever.
+    assert_eq!(board.ask(1, Command::Ping, 10 + ANEW_TICKS), ACK);
+    assert_eq!(board.ask(2, Command::Arm, 10 + ANEW_TICKS), ACK);
+    assert_eq!(board.ask(900, Command::Disarm, 10 + ANEW_TICKS), ACK);
+}
+
+#[test]
+fn a_new_host_may_begin_at_the_very_number_where_the_old_one_ended() {
+    let mut board = Board::default();
+    board.ask(1, Command::Ping, 0);
+    assert_eq!(board.ask(1, Command::Ping, ANEW_TICKS), ACK);
+    assert_eq!(board.done.len(), 2);
+}
+
+#[test]
+fn a_burst_is_served_and_then_a_steady_rate() {
+    let mut board = Board::default();
+    let mut served = Vec::new();
+    for tick in 0..4 {
+        let before = board.done.len();
+        for n in 0..100 {
+            board.ask(tick * 100 + n, Command::Ping, tick);
+        }
+        served.push(board.done.len() - before);
+    }
+    let per_tick = usize::from(PER_TICK);
+    assert_eq!(served, [usize::from(BURST), per_tick, per_tick, per_tick]);
+}
+
+#[test]
+fn a_flood_is_told_busy_once_a_tick_and_then_nothing() {
+    let mut board = Board::default();
+    for id in 0..u32::from(BURST) {
+        assert_eq!(board.ask(id, Command::Ping, 0), ACK);
+    }
+    assert_eq!(board.ask(100, Command::Ping, 0), BUSY);
+    assert_eq!(board.ask(101, Command::Ping, 0), None);
+    for id in 102..102 + u32::from(PER_TICK) {
+        assert_eq!(board.ask(id, Command::Ping, 1), ACK);
+    }
+    assert_eq!(board.ask(200, Command::Ping, 1), BUSY);
+    assert_eq!(board.ask(201, Command::Ping, 1), None);
+}
+
+#[test]
+fn who_was_told_busy_may_ask_again_under_the_same_number() {
+    let mut board = Board::default();
+    for id in 0..u32::from(BURST) {
+        board.ask(id, Command::Ping, 0);
+    }
+    assert_eq!(board.ask(100, Command::Tare, 0), BUSY);
+    assert_eq!(board.ask(100, Command::Tare, 1), ACK);
+    assert_eq!(board.done.last(), Some(&(100, Command::Tare)));
+}
+
+#[test]
+fn a_disarm_is_done_in_the_middle_of_a_flood() {
+    let mut board = Board::default();
+    for id in 0..1000 {
+        board.ask(id, Command::Ping, 0);
+    }
+    board.ask(1000, Command::Disarm, 0);
+    assert_eq!(board.done.last(), Some(&(1000, Command::Disarm)));
+    assert_eq!(board.ask(1000, Command::Disarm, 1), ACK);
+    assert_eq!(board.done.len(), usize::from(BURST) + 1);
+}
+
+#[test]
+fn a_long_pause_gives_no_more_than_a_burst() {
+    let mut board = Board::default();
+    for id in 0..100 {
+        board.ask(id, Command::Ping, 100_000);
+    }
+    assert_eq!(board.done.len(), usize::from(BURST));
+}
+
+#[test]
+fn a_pause_gives_the_burst_back_even_where_the_tick_wraps() {
+    let mut board = Board::default();
+    for id in 0..100 {
+        board.ask(id, Command::Ping, u32::MAX);
+    }
+    let before = board.done.len();
+    for id in 100..200 {
+        board.ask(id, Command::Ping, 10);
+    }
+    assert_eq!(board.done.len() - before, usize::from(BURST));
+}
+
+/// What may come next on the line.
+#[derive(Debug, Clone)]
+enum Arrival {
+    /// A new request, after some that are on their way still or lost.
+    New { skipped: u32 },
+    /// One that was sent before.
+    Old { before_newest: u32 },
+}
+
+fn arrival() -> impl Strategy<Value = Arrival> {
+    prop_oneof![
+        (0_u32..3).prop_map(|skipped| Arrival::New { skipped }),
+        (0_u32..20).prop_map(|before_newest| Arrival::Old { before_newest }),
+    ]
+}
+
+proptest! {
+    /// Shorter than the silence after which numbers may start anew.
+    #[test]
+    fn whatever_is_repeated_or_delayed_acts_once_and_in_order(
+        arrivals in prop::collection::vec(arrival(), 1..ANEW_TICKS as usize),
+        first in 20_u32..1000,
+    ) {
+        // Of one host, each number belongs to one command.
+        let command = |id: u32| [Command::Ping, Command::Arm, Command::Disarm, Command::Tare][id as usize % 4];
+        let mut board = Board::default();
+        let mut newest = first;
+        board.ask(first, command(first), 0);
+        let mut expected = vec![(first, command(first))];
+        for (tick, arrival) in (1..).zip(arrivals) {
+            let id = match arrival {
+                Arrival::New { skipped } => {
+                    newest += 1 + skipped;
+                    expected.push((newest, command(newest)));
+                    newest
+                }
+                Arrival::Old { before_newest } => newest - before_newest,
+            };
+            board.ask(id, command(id), tick);
+        }
+        prop_assert_eq!(board.done, expected);
+    }
+}

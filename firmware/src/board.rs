@@ -1,0 +1,117 @@
+//! Brings the board up: clocks, pins and drivers, in the order that they need.
+
+use atsam3x8e_hal::adc::{self, Adc};
+use atsam3x8e_hal::backup::Backup;
+use atsam3x8e_hal::gpio::Split;
+use atsam3x8e_hal::pac::Peripherals;
+use atsam3x8e_hal::pwm::{self, Output, Period, Polarity, Prescaler, Pwm};
+use atsam3x8e_hal::tc::{self, Mono, Trigger};
+use atsam3x8e_hal::twi::Twi;
+use atsam3x8e_hal::uart::{self, Rx, Tx};
+use atsam3x8e_hal::watchdog::Watchdog;
+use atsam3x8e_hal::{clock, crash, eefc, gpio, reset};
+use board_core::imus::Imus;
+use board_core::tca9548a::{self, Tca9548a};
+use board_core::Boots;
+use embedded_hal::digital::PinState;
+use telemetry::{BEND_SENSORS, Hello, REGULATORS};
+
+use crate::imu_bus::ImuBus;
+use crate::panic::outputs_safe;
+use crate::parameters::{
+    BAUD, BEND_CHANNELS, PWM_COUNTS, RECEIVE_BYTES, SCAN_US, STORAGE, TICK_HZ, TRANSMIT_BYTES, WATCHDOG_MS,
+};
+use crate::{identity, kept};
+
+/// The multiplexer's RESET, on D22.
+type MuxReset = gpio::Pin<'B', 26, gpio::Output>;
+
+/// Memory that the peripherals read and write by themselves.
+pub struct Buffers {
+    /// One scan of the ADC.
+    pub scan: [u16; BEND_SENSORS],
+    /// Frames on their way to the line.
+    pub transmit: [u8; TRANSMIT_BYTES],
+    /// Bytes that came from the line.
+    pub receive: [u8; RECEIVE_BYTES],
+}
+
+impl Buffers {
+    /// Empty ones.
+    pub const fn new() -> Self {
+        Self { scan: [0; BEND_SENSORS], transmit: [0; TRANSMIT_BYTES], receive: [0; RECEIVE_BYTES] }
+    }
+}
+
+/// What the tasks share out among themselves.
+pub struct Board {
+    pub watchdog: Watchdog,
+    pub trigger: Trigger,
+    /// Time of the trigger's first edge, µs.
+    pub start_us: u64,
+    pub adc: Adc<BEND_SENSORS>,
+    pub regulators: Pwm<REGULATORS>,
+    pub imus: Imus<ImuBus, MuxReset>,
+    pub tx: Tx,
+    pub rx: Rx,
+    pub backup: Backup,
+    pub boots: Boots,
+    pub hello: Hello,
+}
+
+/// Why the board does not come up. Each is a fault of the hardware or of [`parameters`](crate::parameters).
+#[derive(Debug)]
+pub enum Error {
+    Clock(clock::Error),
+    Watchdog(atsam3x8e_hal::watchdog::Error),
+    Timer(tc::Error),
+    Adc(adc::Error),
+    Pwm(pwm::Error),
+    Uart(uart::Error),
+    Flash(eefc::Error),
+}
+
+/// Takes the chip and gives the board, vented and with its trigger running.
+pub fn set_up(device: Peripherals, buffers: &'static mut Buffers) -> Result<Board, Error> {
+    crash::on_fault(outputs_safe);
+    // First of all, so that whatever hangs below is cut off.
+    let watchdog = Watchdog::start(device.WDT, WATCHDOG_MS).map_err(Error::Watchdog)?;
+    let cause = identity::reset_cause(reset::cause(&device.RSTC));
+    let clocks = clock::configure(device.PMC, &device.EFC0, &device.EFC1).map_err(Error::Clock)?;
+    let (a, b, c) = (device.PIOA.split(clocks), device.PIOB.split(clocks), device.PIOC.split(clocks));
+
+    let regulators = [
+        Output::from(c.pc24),
+        Output::from(c.pc23),
+        Output::from(c.pc22),
+        Output::from(c.pc21),
+        Output::from(c.pc2),
+        Output::from(c.pc4),
+    ];
+    let period = Period { prescaler: Prescaler::Div1, counts: PWM_COUNTS };
+    let regulators = Pwm::new(device.PWM, regulators, period, Polarity::ActiveHigh, clocks).map_err(Error::Pwm)?;
+
+    let mut flash = eefc::Flash::new(device.EFC0, device.EFC1, STORAGE).map_err(Error::Flash)?;
+    let chip = flash.unique_id().map_err(Error::Flash)?;
+    let mut backup = Backup::new(device.GPBR);
+    let last_panic = crash::take();
+    let boots = Boots::start(kept::read(&backup), cause, last_panic.is_some());
+    kept::write(&mut backup, &boots);
+    let hello = identity::hello(chip, cause, boots.number(), last_panic.as_ref());
+
+    let (rx, tx) = (a.pa8.into_peripheral_a(), a.pa9.into_peripheral_a());
+    let uart = uart::new(device.UART, rx, tx, BAUD, &mut buffers.transmit, &mut buffers.receive, clocks);
+    let (tx, rx) = uart.map_err(Error::Uart)?;
+
+    let twi = Twi::new(device.TWI1, b.pb12.into_peripheral_a(), b.pb13.into_peripheral_a(), Mono, clocks);
+    let mux = Tca9548a::new(tca9548a::ADDRESS, Some(b.pb26.into_output(PinState::High)));
+    let imus = Imus::new(ImuBus(twi), mux);
+
+    let channels = tc::split(device.TC0, clocks);
+    Mono::start(channels.channel1);
+    let adc = Adc::new(device.ADC, BEND_CHANNELS, adc::Trigger::Tc0Channel0, &mut buffers.scan, clocks);
+    let adc = adc.map_err(Error::Adc)?;
+    let start_us = Mono::now_us();
+    let trigger = Trigger::start(channels.channel0, TICK_HZ, SCAN_US).map_err(Error::Timer)?;
+    Ok(Board { watchdog, trigger, start_us, adc, regulators, imus, tx, rx, backup, boots, hello })
+}

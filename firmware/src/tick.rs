@@ -1,0 +1,91 @@
+//! The tick: takes the scan, moves the pressures, feeds the watchdog, and sets the other tasks off.
+
+use atsam3x8e_hal::adc::Adc;
+use atsam3x8e_hal::backup::Backup;
+use atsam3x8e_hal::pwm::Pwm;
+use atsam3x8e_hal::tc::{Mono, Trigger};
+use atsam3x8e_hal::watchdog::Watchdog;
+use board_core::{Actuator, Boots, Late, Task};
+use rtic::Mutex;
+use rtic_sync::signal::SignalWriter;
+use telemetry::{BEND_SENSORS, REGULATORS};
+
+use crate::SUPERVISOR;
+use crate::kept;
+use crate::parameters::{BEND_POSITIONS, TICK_US};
+
+/// What a tick hands on to the tasks that follow it.
+#[derive(Clone, Copy)]
+pub struct Tick {
+    /// Its number since boot.
+    pub number: u32,
+    /// Time of the ADC's trigger, µs.
+    pub time_us: u64,
+    /// Counts of the bend sensors 1a, 1b, … 6b; `None`: the scan is not whole.
+    pub scan: Option<[u16; BEND_SENSORS]>,
+}
+
+/// What the tick needs.
+pub struct Ticker {
+    pub trigger: Trigger,
+    /// Time of the trigger's first edge, µs.
+    pub start_us: u64,
+    pub adc: Adc<BEND_SENSORS>,
+    pub regulators: Pwm<REGULATORS>,
+    pub watchdog: Watchdog,
+    pub backup: Backup,
+    pub boots: Boots,
+    /// Those who follow.
+    pub followers: [SignalWriter<'static, Tick>; 2],
+    /// A task was late: the watchdog is not fed again.
+    pub late: Option<Late>,
+}
+
+impl Ticker {
+    /// One tick.
+    pub fn run(&mut self, mut actuator: impl Mutex<T = Actuator>) {
+        if !self.trigger.on_interrupt() {
+            return;
+        }
+        let now_us = Mono::now_us();
+        // By the clock and not by counting: a tick that was missed leaves a gap and shifts nothing.
+        let number = (now_us.saturating_sub(self.start_us) / TICK_US) as u32;
+        let time_us = self.start_us + u64::from(number) * TICK_US;
+        let scan = self.adc.take_scan().ok().map(in_order);
+
+        let period = self.regulators.period();
+        let duties = actuator.lock(|actuator| {
+            actuator.advance(now_us);
+            actuator.duties(period)
+        });
+        // The only error is a duty over the period, which `duties` does not give.
+        let _ = self.regulators.set_duties(duties);
+
+        for follower in &mut self.followers {
+            follower.write(Tick { number, time_us, scan });
+        }
+        kept::write_uptime(&mut self.backup, self.boots.uptime(number));
+        SUPERVISOR.report(Task::Tick, number);
+        self.supervise(number);
+    }
+
+    fn supervise(&mut self, tick: u32) {
+        if self.late.is_some() {
+            return;
+        }
+        match SUPERVISOR.check(tick) {
+            Ok(()) => self.watchdog.feed(),
+            Err(late) => {
+                let Late(task) = late;
+                defmt::error!("task {} is late", defmt::Debug2Format(&task));
+                atsam3x8e_hal::crash::record(format_args!("{late}"));
+                self.late = Some(late);
+            }
+        }
+    }
+}
+
+/// A scan in the order of the sensors.
+fn in_order(scan: [u16; BEND_SENSORS]) -> [u16; BEND_SENSORS] {
+    BEND_POSITIONS.map(|position| scan[position])
+}

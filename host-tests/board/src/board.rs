@@ -1,0 +1,151 @@
+//! A board that runs the firmware, and a host at its serial line.
+
+use telemetry::{Command, Decoder, Encoder, Estimate, Event, Health, Hello, MAX_FRAME, Message, Outcome, Request, Sample};
+use virtual_due::{CYCLES_PER_SECOND, Cycles, Machine, Rig};
+
+use crate::build::firmware;
+
+/// The serial port of the programming port: the UART.
+pub const UART: usize = 0;
+
+/// A message, and when its last byte left the board.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Received {
+    /// When.
+    pub at: Cycles,
+    /// What.
+    pub message: Message,
+}
+
+/// The board, and all that it has said.
+pub struct Board {
+    /// The emulated board.
+    pub machine: Machine<Rig>,
+    decoder: Decoder<Message>,
+    encoder: Encoder,
+    next_id: u32,
+    received: Vec<Received>,
+    bytes: u64,
+}
+
+impl Board {
+    /// A board with the firmware in its flash, in a rig, with power just come up.
+    ///
+    /// # Panics
+    /// If the firmware does not build.
+    #[must_use]
+    pub fn new(rig: Rig) -> Self {
+        let machine = Machine::new(firmware(), rig).expect("cargo built an ELF for the board");
+        Self { machine, decoder: Decoder::new(), encoder: Encoder::new(), next_id: 1, received: Vec::new(), bytes: 0 }
+    }
+
+    /// Lets time pass, and takes what the board says meanwhile.
+    ///
+    /// # Panics
+    /// If the board says what is no message.
+    pub fn run_ms(&mut self, ms: u64) {
+        self.machine.run_for(ms * CYCLES_PER_SECOND / 1000);
+        for (at, byte) in self.machine.world_mut().take_transmitted(UART) {
+            self.bytes += 1;
+            if let Some(message) = self.decoder.push(byte) {
+                let message = message.expect("the line is without noise");
+                self.received.push(Received { at, message });
+            }
+        }
+    }
+
+    /// Sends a request once, and gives its number.
+    ///
+    /// # Panics
+    /// Never: every request fits a frame.
+    pub fn send(&mut self, command: Command) -> u32 {
+        let id = self.next_id;
+        self.next_id += 1;
+        self.send_again(Request { id, command });
+        id
+    }
+
+    /// Sends a request with a number of its own.
+    ///
+    /// # Panics
+    /// Never: every request fits a frame.
+    pub fn send_again(&mut self, request: Request) {
+        let mut buffer = [0; MAX_FRAME];
+        let frame = self.encoder.encode(&request, &mut buffer).expect("every request fits");
+        let now = self.machine.now();
+        self.machine.world_mut().send(UART, frame, now);
+    }
+
+    /// Sends a request and gives the answer.
+    ///
+    /// # Panics
+    /// If none comes within 100 ms.
+    pub fn ask(&mut self, command: Command) -> Outcome {
+        let before = self.received.len();
+        let id = self.send(command);
+        self.run_ms(100);
+        let mut replies = self.received[before..].iter().filter_map(|received| match received.message {
+            Message::Reply(reply) if reply.id == id => Some(reply.outcome),
+            _ => None,
+        });
+        replies.next().expect("a request is answered within 100 ms")
+    }
+
+    /// All that was received, in order.
+    #[must_use]
+    pub fn received(&self) -> &[Received] {
+        &self.received
+    }
+
+    /// Bytes that were received.
+    #[must_use]
+    pub const fn bytes(&self) -> u64 {
+        self.bytes
+    }
+
+    /// What the decoder counted.
+    #[must_use]
+    pub const fn counts(&self) -> telemetry::Counts {
+        self.decoder.counts()
+    }
+
+    /// All samples, in order.
+    pub fn samples(&self) -> impl Iterator<Item = &Sample> {
+        self.received.iter().filter_map(|received| match &received.message {
+            Message::Sample(sample) => Some(sample),
+            _ => None,
+        })
+    }
+
+    /// All estimates, in order.
+    pub fn estimates(&self) -> impl Iterator<Item = &Estimate> {
+        self.received.iter().filter_map(|received| match &received.message {
+            Message::Estimate(estimate) => Some(estimate),
+            _ => None,
+        })
+    }
+
+    /// All health messages, in order.
+    pub fn healths(&self) -> impl Iterator<Item = &Health> {
+        self.received.iter().filter_map(|received| match &received.message {
+            Message::Health(health) => Some(health),
+            _ => None,
+        })
+    }
+
+    /// All events, in order.
+    pub fn events(&self) -> impl Iterator<Item = Event> {
+        self.received.iter().filter_map(|received| match &received.message {
+            Message::Event(event) => Some(*event),
+            _ => None,
+        })
+    }
+
+    /// All greetings, in order.
+    pub fn hellos(&self) -> impl Iterator<Item = &Hello> {
+        self.received.iter().filter_map(|received| match &received.message {
+            Message::Hello(hello) => Some(hello),
+            _ => None,
+        })
+    }
+}

@@ -1,0 +1,3 @@
+//! What users rely on of the firmware, on the emulated board.
+
+mod boot;

@@ -1,0 +1,83 @@
+//! Frames are what the protocol page says, and only those are accepted.
+
+use proptest::prelude::*;
+use telemetry::{DecodeError, Decoder, Encoder, Message, PROTOCOL_VERSION, Payload, Request, SCHEMA, topic};
+
+use crate::values::{longest_messages, message, ping};
+use crate::{block_by_hand, decode, encode, frame_by_hand};
+
+proptest! {
+    #[test]
+    fn a_frame_is_standard_cobs_and_crc_32(message in message()) {
+        let mut body = [0; 250];
+        let length = message.write(&mut body).expect("a body has at most 245 bytes");
+        let by_hand = frame_by_hand(PROTOCOL_VERSION, message.topic(), 0, &body[..length]);
+        prop_assert_eq!(encode(&mut Encoder::new(), &message), by_hand);
+    }
+}
+
+#[test]
+fn topics_are_those_of_the_protocol_page() {
+    assert_eq!(longest_messages().map(|message| message.topic()), [1, 2, 3, 4, 5, 6]);
+    assert_eq!(ping(1).topic(), 0x80);
+}
+
+#[test]
+fn the_schema_is_that_of_this_version() {
+    // If this fails, a message's form has changed: raise PROTOCOL_VERSION, put the new hash here, and bring
+    // docs/PROTOCOL.md up to date.
+    assert_eq!((PROTOCOL_VERSION, SCHEMA), (1, 0xA862_C5CE));
+}
+
+#[test]
+fn a_frame_of_another_version_is_told_apart_from_a_damaged_one() {
+    let mut decoder = Decoder::<Message>::new();
+    let found = decode(&mut decoder, &frame_by_hand(PROTOCOL_VERSION + 1, topic::EVENT, 0, &[3]));
+    assert_eq!(found, [Err(DecodeError::Version(PROTOCOL_VERSION + 1))]);
+    assert_eq!((decoder.counts().foreign, decoder.counts().damaged), (1, 0));
+}
+
+#[test]
+fn an_unknown_topic_is_skipped_and_its_number_counts() {
+    let mut decoder = Decoder::<Message>::new();
+    let mut encoder = Encoder::new();
+    let message = &longest_messages()[4];
+    decode(&mut decoder, &encode(&mut encoder, message));
+    encode(&mut encoder, message);
+    let found = decode(&mut decoder, &frame_by_hand(PROTOCOL_VERSION, 7, 1, b"news"));
+    assert_eq!(found, [Err(DecodeError::Topic(7))]);
+    assert_eq!(decode(&mut decoder, &encode(&mut encoder, message)), [Ok(message.clone())]);
+    assert_eq!((decoder.counts().unknown, decoder.counts().lost), (1, 0));
+}
+
+#[test]
+fn a_side_does_not_take_its_own_topics_for_the_other_sides() {
+    let mut echo = Decoder::<Message>::new();
+    let found = decode(&mut echo, &encode(&mut Encoder::new(), &ping(1)));
+    assert_eq!(found, [Err(DecodeError::Topic(topic::REQUEST))]);
+}
+
+#[test]
+fn bytes_behind_a_body_are_an_error() {
+    let mut decoder = Decoder::<Message>::new();
+    let bus_recovery = frame_by_hand(PROTOCOL_VERSION, topic::EVENT, 0, &[3]);
+    let and_a_byte = frame_by_hand(PROTOCOL_VERSION, topic::EVENT, 1, &[3, 0]);
+    assert!(decode(&mut decoder, &bus_recovery)[0].is_ok());
+    assert_eq!(decode(&mut decoder, &and_a_byte), [Err(DecodeError::Body(topic::EVENT))]);
+    assert_eq!(decoder.counts().unknown, 1);
+}
+
+#[test]
+fn a_request_with_an_unknown_command_can_be_refused_by_its_number() {
+    let mut decoder = Decoder::<Request>::new();
+    let found = decode(&mut decoder, &frame_by_hand(PROTOCOL_VERSION, topic::REQUEST, 0, &[0x96, 0x01, 99]));
+    assert_eq!(found, [Err(DecodeError::Request(150))]);
+}
+
+#[test]
+fn a_whole_block_without_a_version_is_damaged() {
+    let mut decoder = Decoder::<Message>::new();
+    // CRC-32 of nothing is zero.
+    let found = decode(&mut decoder, &block_by_hand(&[0; 4]));
+    assert_eq!(found, [Err(DecodeError::Damaged)]);
+}

@@ -1,0 +1,224 @@
+//! Messages with any values at all, and with those that take the most bytes.
+
+use proptest::prelude::*;
+use proptest::sample::select;
+use telemetry::*;
+
+/// Any number, its extremes often.
+macro_rules! number {
+    ($type:ty) => {
+        prop_oneof![2 => any::<$type>(), 1 => select(vec![<$type>::MIN, <$type>::MAX, 0, 1])]
+    };
+}
+
+pub fn message() -> impl Strategy<Value = Message> {
+    prop_oneof![
+        hello().prop_map(Message::Hello),
+        sample().prop_map(Message::Sample),
+        estimate().prop_map(Message::Estimate),
+        health().prop_map(Message::Health),
+        event().prop_map(Message::Event),
+        reply().prop_map(Message::Reply),
+    ]
+}
+
+pub fn request() -> impl Strategy<Value = Request> {
+    let rates = prop::array::uniform3(number!(u16))
+        .prop_map(|[sample, estimate, health]| Command::Rates(Rates { sample, estimate, health }));
+    let pressures = (prop::array::uniform(number!(u32)), number!(u16))
+        .prop_map(|(pressures_pa, valid_ms)| Command::SetPressures(SetPressures { pressures_pa, valid_ms }));
+    let plain = select(vec![Command::Ping, Command::Tare, Command::Arm, Command::Disarm, Command::Reboot]);
+    (number!(u32), prop_oneof![plain, rates, pressures]).prop_map(|(id, command)| Request { id, command })
+}
+
+fn text<const N: usize>() -> impl Strategy<Value = Text<N>> {
+    prop::collection::vec(any::<char>(), 0..=N).prop_map(|chars| {
+        let mut text = Text::new();
+        let _ = chars.into_iter().try_for_each(|char| text.push(char));
+        text
+    })
+}
+
+fn hello() -> impl Strategy<Value = Hello> {
+    let reset = select(vec![
+        ResetCause::PowerOn,
+        ResetCause::Backup,
+        ResetCause::Watchdog,
+        ResetCause::Software,
+        ResetCause::Pin,
+    ]);
+    let texts = (text(), text(), text(), prop::option::of(text()));
+    let numbers = (number!(u8), number!(u32), number!(u32), number!(u32));
+    (texts, numbers, any::<[u8; 16]>(), reset).prop_map(
+        |((firmware, revision, arm, last_panic), (protocol, schema, table, boot), chip, reset)| Hello {
+            protocol,
+            schema,
+            firmware,
+            revision,
+            arm,
+            table,
+            chip,
+            reset,
+            boot,
+            last_panic,
+        },
+    )
+}
+
+pub fn sample() -> impl Strategy<Value = Sample> {
+    let bend = prop::array::uniform(prop::option::of(number!(u16)));
+    let imu = prop::array::uniform(prop::option::of(prop::array::uniform4(number!(i16))));
+    (number!(u32), number!(u64), number!(u8), bend, imu).prop_map(|(tick, time_us, tare, bend, imu)| Sample {
+        tick,
+        time_us,
+        tare,
+        bend,
+        imu,
+    })
+}
+
+fn estimate() -> impl Strategy<Value = Estimate> {
+    let segment = (number!(i32), prop::array::uniform2(number!(i32)));
+    let segment = segment.prop_map(|(theta, end)| SegmentEstimate { theta, end });
+    let segments = prop::array::uniform(prop::option::of(segment));
+    (number!(u32), segments).prop_map(|(tick, segments)| Estimate { tick, segments })
+}
+
+fn sensor_state() -> impl Strategy<Value = SensorState> {
+    select(vec![
+        SensorState::Ok,
+        SensorState::Off,
+        SensorState::Stuck,
+        SensorState::Garbage,
+        SensorState::Wrong,
+        SensorState::Slow,
+        SensorState::Intermittent,
+    ])
+}
+
+fn actuation() -> impl Strategy<Value = Actuation> {
+    select(vec![Actuation::Disarmed, Actuation::Armed, Actuation::Holding, Actuation::Ramping])
+}
+
+fn health() -> impl Strategy<Value = Health> {
+    let sensor = || (sensor_state(), number!(u16)).prop_map(|(state, missed)| SensorHealth { state, missed });
+    let sensors = (prop::array::uniform(sensor()), prop::array::uniform(sensor()));
+    let numbers = prop::array::uniform9(number!(u32));
+    let pressures = prop::array::uniform(number!(u32));
+    (sensors, numbers, number!(u16), actuation(), pressures).prop_map(
+        |((bend, imu), numbers, load_permille, actuation, pressures_pa)| {
+            let [tick, longest_tick_us, longest_imu_read_us, overruns, stale_scans, counts @ ..] = numbers;
+            let [dropped_frames, damaged_frames, bus_recoveries, saturations] = counts;
+            Health {
+                tick,
+                bend,
+                imu,
+                longest_tick_us,
+                longest_imu_read_us,
+                load_permille,
+                overruns,
+                stale_scans,
+                dropped_frames,
+                damaged_frames,
+                bus_recoveries,
+                saturations,
+                actuation,
+                pressures_pa,
+            }
+        },
+    )
+}
+
+fn event() -> impl Strategy<Value = Event> {
+    prop_oneof![
+        (number!(u8), sensor_state()).prop_map(|(imu, state)| Event::Imu(imu, state)),
+        (number!(u8), sensor_state()).prop_map(|(bend, state)| Event::Bend(bend, state)),
+        actuation().prop_map(Event::Actuation),
+        Just(Event::BusRecovery),
+        number!(u32).prop_map(Event::Tare),
+    ]
+}
+
+fn reply() -> impl Strategy<Value = Reply> {
+    let refusal = select(vec![
+        Refusal::Unknown,
+        Refusal::Late,
+        Refusal::OverRange,
+        Refusal::Deadline,
+        Refusal::Disarmed,
+        Refusal::Busy,
+    ]);
+    let outcome = prop_oneof![Just(Outcome::Ack), refusal.prop_map(Outcome::Nack)];
+    (number!(u32), outcome).prop_map(|(id, outcome)| Reply { id, outcome })
+}
+
+/// A ping, the shortest request.
+pub fn ping(id: u32) -> Request {
+    Request { id, command: Command::Ping }
+}
+
+/// Of each kind the message that takes the most bytes.
+pub fn longest_messages() -> [Message; 6] {
+    [
+        Message::Hello(longest_hello()),
+        Message::Sample(Sample {
+            tick: u32::MAX,
+            time_us: u64::MAX,
+            tare: u8::MAX,
+            bend: [Some(u16::MAX); BEND_SENSORS],
+            imu: [Some([i16::MIN; 4]); SEGMENTS],
+        }),
+        Message::Estimate(Estimate {
+            tick: u32::MAX,
+            segments: [Some(SegmentEstimate { theta: i32::MIN, end: [i32::MIN; 2] }); SEGMENTS],
+        }),
+        Message::Health(longest_health()),
+        Message::Event(Event::Tare(u32::MAX)),
+        Message::Reply(Reply { id: u32::MAX, outcome: Outcome::Nack(Refusal::Busy) }),
+    ]
+}
+
+fn full<const N: usize>() -> Text<N> {
+    Text::try_from("x".repeat(N).as_str()).expect("N bytes")
+}
+
+pub fn longest_hello() -> Hello {
+    Hello {
+        protocol: u8::MAX,
+        schema: u32::MAX,
+        firmware: full(),
+        revision: full(),
+        arm: full(),
+        table: u32::MAX,
+        chip: [u8::MAX; 16],
+        reset: ResetCause::Pin,
+        boot: u32::MAX,
+        last_panic: Some(full()),
+    }
+}
+
+fn longest_health() -> Health {
+    let sensor = SensorHealth { state: SensorState::Intermittent, missed: u16::MAX };
+    Health {
+        tick: u32::MAX,
+        bend: [sensor; BEND_SENSORS],
+        imu: [sensor; SEGMENTS],
+        longest_tick_us: u32::MAX,
+        longest_imu_read_us: u32::MAX,
+        load_permille: u16::MAX,
+        overruns: u32::MAX,
+        stale_scans: u32::MAX,
+        dropped_frames: u32::MAX,
+        damaged_frames: u32::MAX,
+        bus_recoveries: u32::MAX,
+        saturations: u32::MAX,
+        actuation: Actuation::Ramping,
+        pressures_pa: [u32::MAX; REGULATORS],
+    }
+}
+
+/// The request that takes the most bytes.
+pub fn longest_request() -> Request {
+    let command = Command::SetPressures(SetPressures { pressures_pa: [u32::MAX; REGULATORS], valid_ms: u16::MAX });
+    Request { id: u32::MAX, command }
+}

@@ -1,0 +1,321 @@
+//! The chip around the CPU: bus, time and interrupt lines of the peripherals.
+
+use crate::clock::Clock;
+use crate::cpu::{Access, Bus};
+use crate::dwt::Dwt;
+use crate::engine::DWT;
+use crate::memory_map::{BANK, FLASH, Memories};
+use crate::model::{Cause, Context, Cycles, Peripheral, Signal, World};
+use crate::peripherals::{Directory, Slot};
+use crate::report::Report;
+
+const NEVER: Cycles = Cycles::MAX;
+
+/// All of the chip but its CPU, and the world on its pins.
+pub struct Chip<W> {
+    pub clock: Clock,
+    pub memories: Memories,
+    pub world: W,
+    pub report: Report,
+    /// What asked for a reset.
+    pub reset: Option<Cause>,
+    /// Whether the next reset boots from flash.
+    pub boots_from_flash: bool,
+    /// The CPU returns by then.
+    pub limit: Cycles,
+    directory: Directory,
+    slots: Vec<Slot>,
+    // For each slot, when it next does something of its own, and its interrupt lines.
+    due: Vec<Cycles>,
+    lines: Vec<u32>,
+    earliest: Cycles,
+    // No model has been called at a later time.
+    now: Cycles,
+    changed_lines: Vec<(u16, bool)>,
+    signals: Vec<Signal>,
+    master_clock_hz: u32,
+    clocks: u64,
+    dwt: Dwt,
+}
+
+impl<W: World> Chip<W> {
+    /// The chip with this world, before its first reset.
+    pub fn new(world: W) -> Self {
+        let memories = Memories::new();
+        let slots = crate::peripherals::all(&memories);
+        let master_clock_hz = 4_000_000;
+        Self {
+            clock: Clock::new(master_clock_hz),
+            memories,
+            world,
+            report: Report::default(),
+            reset: None,
+            boots_from_flash: true,
+            limit: 0,
+            directory: Directory::new(&slots),
+            due: vec![NEVER; slots.len()],
+            lines: vec![0; slots.len()],
+            slots,
+            earliest: NEVER,
+            now: 0,
+            changed_lines: Vec::new(),
+            signals: Vec::new(),
+            master_clock_hz,
+            clocks: 0,
+            dwt: Dwt::default(),
+        }
+    }
+
+    /// Brings all models into the state after a reset, with `instructions` retired.
+    pub fn apply_reset(&mut self, cause: Cause, instructions: u64) {
+        self.now = self.now.max(self.clock.now(instructions));
+        self.reset = None;
+        self.dwt = Dwt::default();
+        for index in 0..self.slots.len() {
+            self.slots[index].model.reset();
+            self.call(index, |model, context| model.signal(Signal::Reset(cause), context));
+        }
+        self.heed_signals(instructions);
+        // The CPU forgot its lines.
+        self.changed_lines.clear();
+        for index in 0..self.slots.len() {
+            self.lines[index] = 0;
+            self.refresh(index);
+        }
+    }
+
+    /// When a model next does something of its own.
+    pub fn next_event(&self) -> Cycles {
+        self.earliest
+    }
+
+    /// Does all that is due up to `now`, each at its own time.
+    pub fn catch_up(&mut self, now: Cycles, instructions: u64) {
+        while self.earliest <= now {
+            let (index, due) =
+                self.due.iter().copied().enumerate().min_by_key(|(_, due)| *due).expect("there are peripherals");
+            self.now = self.now.max(due);
+            self.call(index, |model, context| model.advance(context));
+            self.heed_signals(instructions);
+            self.refresh(index);
+            if self.due[index] <= due {
+                let name = self.slots[index].name;
+                self.report.once(format!("the model of {name} is late for its own event: a defect of this emulator"));
+                self.due[index] = self.now + 1;
+                self.find_earliest();
+            }
+        }
+        self.now = self.now.max(now);
+    }
+
+    /// Lends a model all it may see.
+    fn call<R>(&mut self, index: usize, run: impl FnOnce(&mut dyn Peripheral, &mut Context) -> R) -> R {
+        let mut context = Context {
+            now: self.now,
+            master_clock_hz: self.master_clock_hz,
+            memory: &mut self.memories,
+            world: &mut self.world,
+            report: &mut self.report,
+            signals: &mut self.signals,
+        };
+        run(&mut *self.slots[index].model, &mut context)
+    }
+
+    /// Looks at a model's lines and next event after it was called.
+    fn refresh(&mut self, index: usize) {
+        let slot = &self.slots[index];
+        let lines = slot.model.interrupts();
+        let mut changes = lines ^ self.lines[index];
+        while changes != 0 {
+            let bit = changes.trailing_zeros();
+            self.changed_lines.push((slot.line + bit as u16, lines >> bit & 1 != 0));
+            changes &= changes - 1;
+        }
+        self.lines[index] = lines;
+        let due = if slot.clock_runs(self.clocks) { slot.model.next_event().unwrap_or(NEVER) } else { NEVER };
+        let before = std::mem::replace(&mut self.due[index], due);
+        if due <= self.earliest {
+            self.earliest = due;
+        } else if before == self.earliest {
+            self.find_earliest();
+        }
+    }
+
+    fn find_earliest(&mut self) {
+        self.earliest = self.due.iter().copied().min().unwrap_or(NEVER);
+    }
+
+    /// Lets the chip hear what models had to say.
+    fn heed_signals(&mut self, instructions: u64) {
+        while !self.signals.is_empty() {
+            for signal in std::mem::take(&mut self.signals) {
+                self.heed(signal, instructions);
+            }
+        }
+    }
+
+    fn heed(&mut self, signal: Signal, instructions: u64) {
+        match signal {
+            Signal::Tioa(_) | Signal::PwmEvent(_) => {
+                if let Some(adc) = self.directory.adc {
+                    self.tell(adc, signal);
+                }
+            }
+            Signal::Flash(address, length) => self.memories.changed.push((address, length)),
+            Signal::BootFlash(flash) => self.boots_from_flash = flash,
+            Signal::Reset(cause) => self.reset = Some(cause),
+            Signal::Pins { .. } => (0..self.slots.len()).for_each(|index| self.tell(index, signal)),
+            Signal::PeripheralClocks(clocks) => {
+                let switched = |slot: &Slot| slot.clock_runs(self.clocks) != slot.clock_runs(clocks);
+                let switched: Vec<usize> =
+                    (0..self.slots.len()).filter(|index| switched(&self.slots[*index])).collect();
+                for &index in &switched {
+                    if self.slots[index].clock_runs(self.clocks) {
+                        self.call(index, |model, context| model.advance(context));
+                    }
+                }
+                self.clocks = clocks;
+                for index in switched {
+                    self.refresh(index);
+                }
+            }
+            Signal::MasterClock(hz) => {
+                for index in 0..self.slots.len() {
+                    if self.slots[index].clock_runs(self.clocks) {
+                        self.call(index, |model, context| model.advance(context));
+                    }
+                }
+                self.master_clock_hz = hz;
+                self.clock.set_hz(instructions, hz);
+                for index in 0..self.slots.len() {
+                    self.tell(index, signal);
+                }
+            }
+        }
+    }
+
+    /// Tells a model of a signal.
+    fn tell(&mut self, index: usize, signal: Signal) {
+        let runs = self.slots[index].clock_runs(self.clocks);
+        self.call(index, |model, context| {
+            if runs {
+                model.advance(context);
+            }
+            model.signal(signal, context);
+        });
+        self.refresh(index);
+    }
+
+    /// The world was changed from outside: lets all models look at it.
+    pub fn look(&mut self, instructions: u64) {
+        for index in 0..self.slots.len() {
+            if self.slots[index].clock_runs(self.clocks) {
+                self.call(index, |model, context| model.advance(context));
+                self.heed_signals(instructions);
+                self.refresh(index);
+            }
+        }
+    }
+
+    /// A register access. APB registers are 32 bits wide: a byte or halfword is a lane of one (datasheet 9.3).
+    fn register(&mut self, index: usize, access: Access) -> u32 {
+        let slot = &self.slots[index];
+        let runs = slot.clock_runs(self.clocks);
+        let offset = (access.address - slot.base) & !3;
+        let shift = 8 * (access.address & 3);
+        let answer = match access.store {
+            Some(_) if !runs => {
+                self.report.once(format!("{} written while its clock is off", slot.name));
+                return 0;
+            }
+            Some(value) => {
+                self.check_programming(index, offset, access);
+                self.call(index, |model, context| {
+                    model.advance(context);
+                    model.write(offset, value << shift, context);
+                });
+                value
+            }
+            None => self.call(index, |model, context| {
+                if runs {
+                    model.advance(context);
+                }
+                model.read(offset, context) >> shift
+            }),
+        };
+        self.heed_signals(access.instructions);
+        self.refresh(index);
+        answer
+    }
+
+    /// A bank that is being programmed cannot be read, by the program neither (datasheet 18.4.1).
+    fn check_programming(&mut self, index: usize, offset: u32, access: Access) {
+        const FCR: u32 = 4;
+        const PROGRAMS: u32 = 0b0101_1011_0011_1110;
+        let Some(bank) = self.directory.eefc.iter().position(|eefc| *eefc == index) else { return };
+        let programs = access.store.is_some_and(|value| PROGRAMS.checked_shr(value & 0xFF).unwrap_or(0) & 1 != 0);
+        let start = FLASH + bank as u32 * BANK;
+        if offset == FCR && programs && (start..start + BANK).contains(&access.pc) {
+            let (name, pc) = (self.slots[index].name, access.pc);
+            self.report.once(format!(
+                "{name}: the program at pc {pc:#010x} programs the bank it runs from: a real chip hangs"
+            ));
+        }
+    }
+
+    /// A store to flash goes to the latch buffer of its bank.
+    fn latch(&mut self, access: Access) -> Option<u32> {
+        let value = access.store?;
+        let address = if access.address < FLASH { access.address + FLASH } else { access.address };
+        let bank = usize::from(address >= FLASH + BANK);
+        self.call(self.directory.eefc[bank], |model, context| model.write(address, value, context));
+        Some(value)
+    }
+
+    fn answer(&mut self, access: Access) -> Option<u32> {
+        let address = access.address;
+        if DWT.contains(&address) {
+            let core_cycles = self.clock.core_cycles(access.instructions);
+            return Some(self.dwt.access(address - DWT.start, access.store, core_cycles));
+        }
+        if let Some(index) = self.directory.find(address) {
+            return Some(self.register(index, access));
+        }
+        if address < FLASH + 2 * BANK { self.latch(access) } else { None }
+    }
+}
+
+impl<W: World> Bus for Chip<W> {
+    fn access(&mut self, access: Access) -> Option<u32> {
+        self.catch_up(self.clock.now(access.instructions), access.instructions);
+        let answer = self.answer(access);
+        if answer.is_none() {
+            let Access { address, pc, .. } = access;
+            let kind = if access.store.is_some() { "store to" } else { "load from" };
+            self.report.once(format!("bus fault: {kind} {address:#010x}, where there is nothing, at pc {pc:#010x}"));
+        }
+        answer
+    }
+
+    fn core_cycles(&self, instructions: u64) -> u64 {
+        self.clock.core_cycles(instructions)
+    }
+
+    fn take_line(&mut self) -> Option<(u16, bool)> {
+        (!self.changed_lines.is_empty()).then(|| self.changed_lines.remove(0))
+    }
+
+    fn take_changed(&mut self) -> Option<(u32, u32)> {
+        self.memories.changed.pop()
+    }
+
+    fn carry_on(&mut self, instructions: u64, event: Option<u64>) -> Option<u32> {
+        if self.reset.is_some() {
+            return None;
+        }
+        let event = event.map_or(NEVER, |event| self.clock.at_core_cycles(event));
+        let next = self.earliest.min(self.limit).min(event);
+        let left = self.clock.instructions_until(instructions, next);
+        (left > 0).then(|| u32::try_from(left).unwrap_or(u32::MAX))
+    }
+}

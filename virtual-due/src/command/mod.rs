@@ -1,0 +1,132 @@
+//! What the command line says, and the run it asks for.
+
+mod pty;
+mod run;
+mod stdio;
+
+use clap::{Parser, Subcommand, ValueEnum};
+use rig_twin::Scenario;
+use run::Run;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use virtual_due::{ElfError, Machine, rig::Rig};
+
+/// An emulated Arduino Due with the simulated arm on its pins.
+#[derive(Debug, Parser)]
+#[command(version)]
+pub struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Run a firmware. Reports, resets and a summary go to stderr.
+    ///
+    /// Exit status: 0 at the end of the run, 1 if the core locked up and nothing reset it, 2 if there is no such firmware.
+    Run(Arguments),
+}
+
+#[derive(Debug, clap::Args)]
+struct Arguments {
+    /// The firmware: an ELF file, as linked for the Due's flash.
+    firmware: PathBuf,
+    /// What the arm does until the firmware drives its regulators.
+    #[arg(long, default_value = "1", value_parser = scenario)]
+    scenario: Scenario,
+    /// Draws the arm's motion and the sensors' noise.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Virtual seconds to run; without it the run lasts until Ctrl-C.
+    #[arg(long, value_parser = seconds)]
+    seconds: Option<f64>,
+    /// As fast as possible, or no faster than real time.
+    #[arg(long, value_enum, default_value = "max")]
+    speed: Speed,
+    /// What the programming port is connected to.
+    #[arg(long, value_enum, default_value = "stdio")]
+    serial: Serial,
+}
+
+/// How virtual time is paced.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Speed {
+    /// As fast as possible.
+    Max,
+    /// As the wall clock.
+    Real,
+}
+
+/// What is on the programming port.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Serial {
+    /// This process' input and output. A file is read at the port's baud rate in virtual time.
+    Stdio,
+    /// A pseudo-terminal, whose path is printed. Opening it resets the board, as it does on a Due.
+    Pty,
+}
+
+/// Why there is no run.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    /// The firmware cannot be read.
+    #[error("{path}: {error}; build the firmware first, and give the path of its ELF file")]
+    Firmware {
+        /// The path as it was given.
+        path: String,
+        /// What the system says.
+        error: std::io::Error,
+    },
+    /// It is no firmware for the Due.
+    #[error("{path}: {error}")]
+    Elf {
+        /// The path as it was given.
+        path: String,
+        /// Why not.
+        error: ElfError,
+    },
+    /// The serial port cannot be had.
+    #[error("serial port: {0}")]
+    Serial(#[from] std::io::Error),
+}
+
+impl Cli {
+    /// Does what was asked.
+    ///
+    /// # Errors
+    ///
+    /// [`Error`] if there is nothing to run, or nothing to talk through.
+    pub fn execute(self) -> Result<ExitCode, Error> {
+        let Command::Run(arguments) = self.command;
+        let machine = machine(&arguments.firmware, Rig::new(arguments.scenario, arguments.seed))?;
+        let paced = arguments.speed == Speed::Real;
+        let mut run = Run::new(machine, arguments.seconds, paced);
+        match arguments.serial {
+            Serial::Stdio => run.execute(&mut stdio::Stdio::new()?)?,
+            Serial::Pty => run.execute(&mut pty::Pty::new()?)?,
+        }
+        Ok(run.summary())
+    }
+}
+
+fn machine(path: &Path, rig: Rig) -> Result<Machine<Rig>, Error> {
+    let shown = || path.display().to_string();
+    let elf = std::fs::read(path).map_err(|error| Error::Firmware { path: shown(), error })?;
+    Machine::new(&elf, rig).map_err(|error| Error::Elf { path: shown(), error })
+}
+
+fn scenario(text: &str) -> Result<Scenario, String> {
+    match text {
+        "1" => Ok(Scenario::One),
+        "2" => Ok(Scenario::Two),
+        "3" => Ok(Scenario::Three),
+        _ => Err("there are scenarios 1, 2 and 3".to_owned()),
+    }
+}
+
+fn seconds(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(seconds) if seconds >= 0.0 && seconds <= 1e9 => Ok(seconds),
+        _ => Err("a number of seconds from 0 to 1e9 is wanted".to_owned()),
+    }
+}

@@ -1,0 +1,75 @@
+//! The serial line on a pseudo-terminal, as other programs know a serial port.
+
+use super::run::{Line, Received};
+use rustix::event::{PollFd, PollFlags, Timespec, poll};
+use rustix::fd::OwnedFd;
+use rustix::fs::{Mode, OFlags, open};
+use rustix::io::{Errno, ioctl_fionbio};
+use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
+use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
+
+/// Our end of a pseudo-terminal.
+pub struct Pty {
+    ours: OwnedFd,
+    open: bool,
+}
+
+impl Pty {
+    /// Opens one, and prints the path of its other end on stderr.
+    pub fn new() -> std::io::Result<Self> {
+        let ours = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY)?;
+        ioctl_fionbio(&ours, true)?;
+        grantpt(&ours)?;
+        unlockpt(&ours)?;
+        let path = ptsname(&ours, Vec::new())?;
+        // Opened and closed once: from then on a hang-up tells that nobody has it open.
+        drop(open(&path, OFlags::RDWR | OFlags::NOCTTY, Mode::empty())?);
+        eprintln!("serial port: {}", path.to_string_lossy());
+        let pty = Self { ours, open: false };
+        pty.make_raw()?;
+        Ok(pty)
+    }
+
+    fn make_raw(&self) -> std::io::Result<()> {
+        let mut modes = tcgetattr(&self.ours)?;
+        modes.make_raw();
+        tcsetattr(&self.ours, OptionalActions::Now, &modes)?;
+        Ok(())
+    }
+
+    /// Whether a program has the other end open.
+    fn is_open(&self) -> std::io::Result<bool> {
+        let mut polled = [PollFd::new(&self.ours, PollFlags::IN)];
+        poll(&mut polled, Some(&Timespec { tv_sec: 0, tv_nsec: 0 }))?;
+        Ok(!polled[0].revents().contains(PollFlags::HUP))
+    }
+}
+
+impl Line for Pty {
+    fn receive(&mut self) -> std::io::Result<Received> {
+        let open = self.is_open()?;
+        let opened = open && !std::mem::replace(&mut self.open, open);
+        if opened {
+            self.make_raw()?;
+        }
+        let mut bytes = vec![0; 4096];
+        let count = match rustix::io::read(&self.ours, &mut bytes) {
+            // Nothing there, or nobody.
+            Err(Errno::AGAIN | Errno::IO) => 0,
+            count => count?,
+        };
+        bytes.truncate(count);
+        Ok(Received { opened, bytes })
+    }
+
+    fn send(&mut self, mut bytes: &[u8]) -> std::io::Result<bool> {
+        // What nobody takes is lost, as the USB bridge loses it.
+        while self.open && !bytes.is_empty() {
+            match rustix::io::write(&self.ours, bytes) {
+                Err(Errno::AGAIN | Errno::IO) => break,
+                count => bytes = &bytes[count?..],
+            }
+        }
+        Ok(true)
+    }
+}

@@ -1,0 +1,127 @@
+//! A run: the board in slices, and what goes in and out between them.
+
+use std::process::ExitCode;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+use virtual_due::rig::Rig;
+use virtual_due::{CYCLES_PER_SECOND, Cycles, Machine};
+
+/// How long the board runs at a stretch.
+const SLICE: Cycles = CYCLES_PER_SECOND / 500;
+/// The UART, which is the programming port.
+const PORT: usize = 0;
+/// The slowest watchdog has bitten by then.
+const HOPELESS: Cycles = 20 * CYCLES_PER_SECOND;
+
+/// The other end of the serial line.
+pub trait Line {
+    /// What came from it.
+    fn receive(&mut self) -> std::io::Result<Received>;
+
+    /// Takes what the board sent; false if nobody will read any more.
+    fn send(&mut self, bytes: &[u8]) -> std::io::Result<bool>;
+}
+
+/// What came over the serial line.
+#[derive(Debug, Default)]
+pub struct Received {
+    /// Somebody opened the port, which resets the board.
+    pub opened: bool,
+    /// The bytes.
+    pub bytes: Vec<u8>,
+}
+
+/// A board at work.
+pub struct Run {
+    machine: Machine<Rig>,
+    end: Option<Cycles>,
+    paced: bool,
+    began: Instant,
+    resets_told: usize,
+    locked_up: Option<Cycles>,
+}
+
+impl Run {
+    /// Of `seconds`, or without end; at most as fast as the wall clock if it is `paced`.
+    pub fn new(machine: Machine<Rig>, seconds: Option<f64>, paced: bool) -> Self {
+        let end = seconds.map(|seconds| (seconds * CYCLES_PER_SECOND as f64) as Cycles);
+        Self { machine, end, paced, began: Instant::now(), resets_told: 0, locked_up: None }
+    }
+
+    /// Runs to the end, or until Ctrl-C or until nobody listens.
+    pub fn execute(&mut self, line: &mut dyn Line) -> std::io::Result<()> {
+        let stop = Arc::new(AtomicBool::new(false));
+        let flag = Arc::clone(&stop);
+        ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed)).map_err(std::io::Error::other)?;
+        let end = self.end.unwrap_or(Cycles::MAX);
+        let mut now = 0;
+        while now < end && !stop.load(Ordering::Relaxed) && !self.is_hopeless() {
+            let Received { opened, bytes } = line.receive()?;
+            if opened {
+                self.machine.press_reset();
+            }
+            if !bytes.is_empty() {
+                self.machine.world_mut().send(PORT, &bytes, now);
+            }
+            now = end.min(now + SLICE);
+            self.machine.run_until(now);
+            self.tell();
+            let sent: Vec<u8> =
+                self.machine.world_mut().take_transmitted(PORT).into_iter().map(|(_, byte)| byte).collect();
+            if !line.send(&sent)? {
+                break;
+            }
+            self.pace(now);
+        }
+        Ok(())
+    }
+
+    /// Whether the core has been locked up for longer than any watchdog takes.
+    fn is_hopeless(&mut self) -> bool {
+        if !self.machine.locked_up() {
+            self.locked_up = None;
+            return false;
+        }
+        let now = self.machine.now();
+        now - *self.locked_up.get_or_insert(now) > HOPELESS
+    }
+
+    fn tell(&mut self) {
+        for report in self.machine.reports() {
+            eprintln!("{report}");
+        }
+        for reset in &self.machine.resets()[self.resets_told..] {
+            eprintln!("reset at {:.6} s: {:?}", seconds(reset.at), reset.cause);
+        }
+        self.resets_told = self.machine.resets().len();
+    }
+
+    /// Waits until the wall clock has come to virtual time `now`.
+    fn pace(&self, now: Cycles) {
+        if self.paced {
+            let due = self.began + Duration::from_secs_f64(seconds(now));
+            std::thread::sleep(due.saturating_duration_since(Instant::now()));
+        }
+    }
+
+    /// Prints what the run was; how the process ends.
+    pub fn summary(&self) -> ExitCode {
+        let machine = &self.machine;
+        let (virtual_s, wall_s) = (machine.seconds(), self.began.elapsed().as_secs_f64());
+        // An instruction takes 1.4 cycles.
+        let load = machine.instructions() as f64 * 1.4 / machine.now().max(1) as f64;
+        eprintln!(
+            "{virtual_s:.3} s in {wall_s:.3} s, {} instructions, load {:.1} %, {} resets, pc {:#010x}",
+            machine.instructions(),
+            100.0 * load,
+            machine.resets().len(),
+            machine.pc()
+        );
+        if machine.locked_up() { ExitCode::FAILURE } else { ExitCode::SUCCESS }
+    }
+}
+
+fn seconds(cycles: Cycles) -> f64 {
+    cycles as f64 / CYCLES_PER_SECOND as f64
+}

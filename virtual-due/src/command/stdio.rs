@@ -1,0 +1,58 @@
+//! The serial line on standard input and output.
+
+use super::run::{Line, Received};
+use std::io::{ErrorKind, Read, Write, stdin, stdout};
+use std::sync::mpsc::{Receiver, channel};
+
+/// Standard input and output.
+pub struct Stdio {
+    input: Receiver<Vec<u8>>,
+}
+
+impl Stdio {
+    /// Begins to read. A file is read whole before the run begins, so that two runs see the same input at the same virtual
+    /// times; from a terminal or pipe, bytes arrive when they come.
+    pub fn new() -> std::io::Result<Self> {
+        let (sender, input) = channel();
+        if is_file()? {
+            let mut bytes = Vec::new();
+            stdin().read_to_end(&mut bytes)?;
+            // The receiver is here.
+            let _ = sender.send(bytes);
+            return Ok(Self { input });
+        }
+        std::thread::spawn(move || {
+            let mut buffer = [0; 4096];
+            while let Ok(count @ 1..) = stdin().read(&mut buffer) {
+                if sender.send(buffer[..count].to_vec()).is_err() {
+                    break;
+                }
+            }
+        });
+        Ok(Self { input })
+    }
+}
+
+/// Whether standard input is an ordinary file.
+fn is_file() -> std::io::Result<bool> {
+    use std::os::fd::AsFd;
+    let input = std::fs::File::from(stdin().as_fd().try_clone_to_owned()?);
+    Ok(input.metadata()?.is_file())
+}
+
+impl Line for Stdio {
+    fn receive(&mut self) -> std::io::Result<Received> {
+        Ok(Received { opened: false, bytes: self.input.try_iter().flatten().collect() })
+    }
+
+    fn send(&mut self, bytes: &[u8]) -> std::io::Result<bool> {
+        if bytes.is_empty() {
+            return Ok(true);
+        }
+        let mut output = stdout().lock();
+        match output.write_all(bytes).and_then(|()| output.flush()) {
+            Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(false),
+            done => done.map(|()| true),
+        }
+    }
+}

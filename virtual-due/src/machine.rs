@@ -1,0 +1,255 @@
+//! The whole board: CPU, chip and world, and time.
+
+use crate::chip::Chip;
+use crate::cpu::{Bus, Cpu, Stop};
+use crate::elf::{Elf, ElfError};
+use crate::engine::Engine;
+use crate::model::{Cause, Cycles, Memory, World};
+
+/// A reset that happened.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Reset {
+    /// What caused it.
+    pub cause: Cause,
+    /// When.
+    pub at: Cycles,
+}
+
+/// An Arduino Due that runs a firmware, in a world.
+///
+/// Two machines of the same firmware and world do the same, in however many pieces they are run.
+///
+/// ```no_run
+/// use rig_twin::Scenario;
+/// use virtual_due::{CYCLES_PER_SECOND, Machine, Rig};
+///
+/// let elf = std::fs::read("firmware.elf")?;
+/// let mut machine = Machine::new(&elf, Rig::new(Scenario::One, 1))?;
+/// machine.run_for(2 * CYCLES_PER_SECOND);
+/// println!("{} instructions, pc {:#x}", machine.instructions(), machine.pc());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub struct Machine<W> {
+    cpu: Engine,
+    chip: Chip<W>,
+    elf: Elf,
+    resets: Vec<Reset>,
+    locked_up: bool,
+    // The world was lent out since the last instruction.
+    touched: bool,
+}
+
+impl<W: World> Machine<W> {
+    /// A board with `elf` in its flash and power just come up.
+    ///
+    /// # Errors
+    ///
+    /// [`ElfError`] if `elf` is not a firmware for the Due.
+    pub fn new(elf: &[u8], world: W) -> Result<Self, ElfError> {
+        let elf = Elf::parse(elf)?;
+        let mut chip = Chip::new(world);
+        for (address, bytes) in &elf.pieces {
+            chip.memories.load(*address, bytes);
+        }
+        let mut cpu = Engine::new();
+        chip.memories.map(&mut cpu);
+        let mut machine = Self { cpu, chip, elf, resets: Vec::new(), locked_up: false, touched: true };
+        machine.reset(Cause::General);
+        machine.resets.clear();
+        Ok(machine)
+    }
+
+    /// Runs until board time `end`; the last instruction may end after it.
+    pub fn run_until(&mut self, end: Cycles) {
+        self.run(end);
+    }
+
+    /// Runs for a number of cycles.
+    pub fn run_for(&mut self, cycles: Cycles) {
+        self.run(self.now() + cycles);
+    }
+
+    /// Runs until the instruction at `address` is next, or until board time `limit`: whether it got there. A CPU that is
+    /// there already runs on to the next time.
+    pub fn run_to(&mut self, address: u32, limit: Cycles) -> bool {
+        let address = address & !1;
+        if !self.cpu.add_breakpoint(address) {
+            return false;
+        }
+        if self.cpu.pc() == address {
+            self.cpu.pass_breakpoint(address);
+        }
+        let stopped = self.run(limit);
+        self.cpu.remove_breakpoint(address);
+        stopped
+    }
+
+    /// Runs until `end`, or a breakpoint: whether there was one.
+    fn run(&mut self, end: Cycles) -> bool {
+        self.chip.limit = end;
+        loop {
+            self.settle();
+            if self.now() >= end {
+                return false;
+            }
+            let instructions = self.cpu.instructions();
+            let budget = self.chip.clock.instructions_until(instructions, self.next_event(end)).max(1);
+            match self.cpu.run(u32::try_from(budget).unwrap_or(u32::MAX), &mut self.chip) {
+                Stop::Returned => {}
+                Stop::Breakpoint => {
+                    self.settle();
+                    return true;
+                }
+                Stop::Waiting => self.sleep(end),
+                Stop::Lockup => {
+                    self.report_lockup();
+                    self.sleep(end);
+                }
+            }
+        }
+    }
+
+    /// Nothing runs before the next event.
+    fn sleep(&mut self, end: Cycles) {
+        if self.chip.reset.is_none() {
+            let next = self.next_event(end);
+            self.chip.clock.sleep_until(self.cpu.instructions(), next);
+        }
+    }
+
+    /// Does what is due before the next instruction.
+    fn settle(&mut self) {
+        let instructions = self.cpu.instructions();
+        self.chip.catch_up(self.chip.clock.now(instructions), instructions);
+        if std::mem::take(&mut self.touched) {
+            self.chip.look(instructions);
+        }
+        if self.cpu.take_reset_request() {
+            self.chip.reset.get_or_insert(Cause::Software);
+        }
+        if let Some(cause) = self.chip.reset {
+            self.reset(cause);
+        }
+        while let Some((start, length)) = self.chip.take_changed() {
+            self.cpu.changed(start, length);
+        }
+        while let Some((line, high)) = self.chip.take_line() {
+            self.cpu.set_line(line, high);
+        }
+        let core_cycles = self.chip.clock.core_cycles(instructions);
+        while self.cpu.next_event().is_some_and(|event| event <= core_cycles) {
+            self.cpu.on_event(core_cycles);
+        }
+    }
+
+    fn next_event(&self, end: Cycles) -> Cycles {
+        let cpu = self.cpu.next_event().map_or(Cycles::MAX, |event| self.chip.clock.at_core_cycles(event));
+        self.chip.next_event().min(cpu).min(end)
+    }
+
+    fn reset(&mut self, cause: Cause) {
+        self.resets.push(Reset { cause, at: self.now() });
+        self.locked_up = false;
+        let (stack_pointer, entry) = self.chip.memories.boot(&mut self.cpu, self.chip.boots_from_flash);
+        if !self.chip.boots_from_flash {
+            let text = "GPNVM bit 1 is clear: the boot loader in ROM runs and waits for a flash tool".to_owned();
+            self.chip.report.once(text);
+        }
+        self.cpu.reset(stack_pointer, entry);
+        self.chip.apply_reset(cause, self.cpu.instructions());
+    }
+
+    fn report_lockup(&mut self) {
+        if !self.locked_up {
+            let (pc, seconds) = (self.cpu.pc(), self.seconds());
+            self.chip
+                .report
+                .once(format!("the core locked up at pc {pc:#010x}, {seconds:.6} s: a fault in a fault's handler"));
+        }
+        self.locked_up = true;
+    }
+
+    /// Presses and releases the reset button, as the USB bridge does when a host opens the programming port.
+    pub fn press_reset(&mut self) {
+        self.reset(Cause::User);
+    }
+
+    /// Board time: cycles of 84 MHz since power-on.
+    pub fn now(&self) -> Cycles {
+        self.chip.clock.now(self.cpu.instructions())
+    }
+
+    /// Board time in seconds.
+    pub fn seconds(&self) -> f64 {
+        self.now() as f64 / crate::model::CYCLES_PER_SECOND as f64
+    }
+
+    /// Instructions retired since power-on, sleep not counted.
+    pub fn instructions(&self) -> u64 {
+        self.cpu.instructions()
+    }
+
+    /// Address of the next instruction.
+    pub fn pc(&self) -> u32 {
+        self.cpu.pc()
+    }
+
+    /// Whether the CPU sleeps until an interrupt.
+    pub fn sleeps(&self) -> bool {
+        self.cpu.waiting()
+    }
+
+    /// Whether the CPU has locked up, and nothing has reset it since.
+    pub fn locked_up(&self) -> bool {
+        self.locked_up
+    }
+
+    /// A symbol's value; a function's is the address of its first instruction.
+    pub fn symbol(&self, name: &str) -> Option<u32> {
+        self.elf.symbol(name)
+    }
+
+    /// Reads memory as a debugger does; `None` where there is none.
+    pub fn peek(&self, address: u32, length: usize) -> Option<Vec<u8>> {
+        let mut bytes = vec![0; length];
+        self.chip.memories.read(address, &mut bytes).then_some(bytes)
+    }
+
+    /// Writes memory, flash too, as a debugger does; false where there is none.
+    pub fn poke(&mut self, address: u32, bytes: &[u8]) -> bool {
+        self.chip.memories.load(address, bytes)
+    }
+
+    /// Reads a word of the core's own registers, 0xE000_E000…: NVIC, SCB, SysTick.
+    pub fn peek_core(&mut self, address: u32) -> Option<u32> {
+        let core_cycles = self.chip.clock.core_cycles(self.cpu.instructions());
+        self.cpu.peek(address, core_cycles)
+    }
+
+    /// Writes a word of the core's own registers as a debugger does; false where there is none.
+    pub fn poke_core(&mut self, address: u32, value: u32) -> bool {
+        let core_cycles = self.chip.clock.core_cycles(self.cpu.instructions());
+        self.cpu.poke(address, value, core_cycles)
+    }
+
+    /// Resets since power-on, the power-on not counted.
+    pub fn resets(&self) -> &[Reset] {
+        &self.resets
+    }
+
+    /// Takes what there is to tell since last asked, about things that this board cannot answer for.
+    pub fn reports(&mut self) -> Vec<String> {
+        self.chip.report.take()
+    }
+
+    /// What is wired to the pins.
+    pub fn world(&self) -> &W {
+        &self.chip.world
+    }
+
+    /// What is wired to the pins.
+    pub fn world_mut(&mut self) -> &mut W {
+        self.touched = true;
+        &mut self.chip.world
+    }
+}

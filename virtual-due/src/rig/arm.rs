@@ -1,0 +1,99 @@
+//! The simulated arm in virtual time, and the pins that command its pressure regulators.
+
+use crate::model::Cycles;
+use rig_twin::{Program, REGULATORS, Rig as Twin, Scenario};
+
+/// The twin's own grid, s and cycles.
+const GRID_S: f64 = 0.002;
+const GRID: Cycles = 168_000;
+
+/// What a regulator reads as 1 (supply pressure of the reference rig).
+const FULL_SCALE_PA: f64 = 280_000.0;
+
+/// What a regulator's pin does.
+#[derive(Debug, Clone, Copy, Default)]
+struct SetPoint {
+    /// The level that PIO drives.
+    driven: Option<bool>,
+    /// High clocks, and clocks of the period, of the PWM.
+    pulsed: Option<(u32, u32)>,
+}
+
+impl SetPoint {
+    /// 0 … 1; a pin that nothing drives vents.
+    fn duty(self) -> f64 {
+        match (self.driven, self.pulsed) {
+            (Some(level), _) => f64::from(u8::from(level)),
+            (None, Some((high, period))) if period != 0 => (f64::from(high) / f64::from(period)).min(1.0),
+            _ => 0.0,
+        }
+    }
+}
+
+/// The arm, its regulators, and who commands them.
+#[derive(Debug, Clone)]
+pub struct Arm {
+    twin: Twin,
+    program: Program,
+    grid_points: u64,
+    set_points: [SetPoint; REGULATORS],
+    /// No regulator pin was ever driven: the scenario's program moves the arm, as a bench supply would.
+    on_bench_supply: bool,
+}
+
+impl Arm {
+    /// At rest, at time 0.
+    pub fn new(scenario: Scenario, seed: u64) -> Self {
+        Self {
+            twin: Twin::new(scenario, seed),
+            program: Program::new(scenario, seed),
+            grid_points: 0,
+            set_points: [SetPoint::default(); REGULATORS],
+            on_bench_supply: true,
+        }
+    }
+
+    /// Brings the arm to the last grid point at or before `now`; an earlier time changes nothing.
+    pub fn advance_to(&mut self, now: Cycles) {
+        while (self.grid_points + 1) * GRID <= now {
+            self.twin.step(GRID_S, self.duties());
+            self.grid_points += 1;
+        }
+    }
+
+    /// What the regulators are commanded now, 0 … 1.
+    fn duties(&self) -> [f64; REGULATORS] {
+        if self.on_bench_supply {
+            self.program.duties(self.grid_points as f64 * GRID_S)
+        } else {
+            self.set_points.map(SetPoint::duty)
+        }
+    }
+
+    /// The same in Pa.
+    pub fn set_points_pa(&self) -> [f64; REGULATORS] {
+        self.duties().map(|duty| duty * FULL_SCALE_PA)
+    }
+
+    /// PIO drives a regulator's pin, or no longer does.
+    pub fn drive(&mut self, regulator: usize, level: Option<bool>) {
+        self.on_bench_supply &= level.is_none();
+        self.set_points[regulator].driven = level;
+    }
+
+    /// The PWM drives a regulator's pin, or no longer does.
+    pub fn pulse(&mut self, regulator: usize, duty: Option<(u32, u32)>) {
+        self.on_bench_supply &= duty.is_none();
+        self.set_points[regulator].pulsed = duty;
+    }
+
+    /// The twin.
+    pub fn twin(&self) -> &Twin {
+        &self.twin
+    }
+
+    /// A conversion of a bend sensor.
+    pub fn convert(&mut self, sensor: usize) -> u16 {
+        self.twin.convert(sensor)
+    }
+}

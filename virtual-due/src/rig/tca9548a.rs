@@ -1,0 +1,89 @@
+//! A TCA9548A, an I²C multiplexer (Texas Instruments SCPS207).
+
+use super::faults::MuxFault;
+
+/// The multiplexer.
+#[derive(Debug, Clone, Default)]
+pub struct Tca9548a {
+    /// The control register: a bit for each channel.
+    control: u8,
+    /// What the channels are: the register as of the last stop condition (SCPS207 8.6.2).
+    connected: u8,
+    held_in_reset: bool,
+}
+
+impl Tca9548a {
+    /// Its address, A2 to A0 low.
+    pub const ADDRESS: u8 = 0x70;
+
+    /// Whether it acknowledges its address.
+    pub fn answers(&self, fault: Option<MuxFault>) -> bool {
+        !self.held_in_reset && fault != Some(MuxFault::Silent)
+    }
+
+    /// A byte written to it; of several the last counts.
+    pub fn write(&mut self, byte: u8, fault: Option<MuxFault>) {
+        if fault.is_none() {
+            self.control = byte;
+        }
+    }
+
+    /// The control register.
+    pub fn read(&self) -> u8 {
+        self.control
+    }
+
+    /// A stop condition connects what the register says.
+    pub fn stop(&mut self) {
+        self.connected = self.control;
+    }
+
+    /// The channels that are connected to the bus, a bit each.
+    pub fn connected(&self) -> u8 {
+        self.connected
+    }
+
+    /// RESET, low active: no channel, as after power-on.
+    pub fn set_reset(&mut self, low: bool) {
+        self.held_in_reset = low;
+        if low {
+            self.control = 0;
+            self.connected = 0;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{MuxFault, Tca9548a};
+
+    #[test]
+    fn channel_is_connected_after_the_stop_condition() {
+        let mut mux = Tca9548a::default();
+        mux.write(0x04, None);
+        assert_eq!((mux.connected(), mux.read()), (0, 0x04));
+        mux.stop();
+        assert_eq!(mux.connected(), 0x04);
+    }
+
+    #[test]
+    fn reset_disconnects_all_and_silences_it() {
+        let mut mux = Tca9548a::default();
+        mux.write(0xFF, None);
+        mux.stop();
+        mux.set_reset(true);
+        assert_eq!((mux.connected(), mux.answers(None)), (0, false));
+        mux.set_reset(false);
+        assert_eq!((mux.read(), mux.answers(None)), (0, true));
+    }
+
+    #[test]
+    fn stuck_one_acknowledges_and_stays_where_it_was() {
+        let mut mux = Tca9548a::default();
+        mux.write(1, None);
+        mux.stop();
+        mux.write(2, Some(MuxFault::Stuck));
+        mux.stop();
+        assert_eq!((mux.connected(), mux.read(), mux.answers(Some(MuxFault::Stuck))), (1, 1, true));
+    }
+}

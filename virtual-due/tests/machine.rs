@@ -1,0 +1,120 @@
+//! The board as a whole, on programs of a few instructions.
+
+use rig_twin::Scenario;
+use virtual_due::{CYCLES_PER_SECOND, Cause, ElfError, Machine, Rig};
+
+const FLASH: u32 = 0x0008_0000;
+const ENTRY: u32 = FLASH + 0x40;
+const MILLISECOND: u64 = CYCLES_PER_SECOND / 1000;
+
+/// An ELF file with these bytes at an address.
+fn elf(address: u32, bytes: &[u8]) -> Vec<u8> {
+    let mut file = b"\x7fELF\x01\x01\x01\0\0\0\0\0\0\0\0\0".to_vec();
+    let halves = |file: &mut Vec<u8>, values: &[u16]| values.iter().for_each(|value| file.extend(value.to_le_bytes()));
+    let words = |file: &mut Vec<u8>, values: &[u32]| values.iter().for_each(|value| file.extend(value.to_le_bytes()));
+    // An executable for ARM, one program header behind this one.
+    halves(&mut file, &[2, 40]);
+    words(&mut file, &[1, ENTRY, 52, 0, 0x0500_0200]);
+    halves(&mut file, &[52, 32, 1, 40, 0, 0]);
+    let length = bytes.len() as u32;
+    words(&mut file, &[1, 84, address, address, length, length, 5, 4]);
+    file.extend(bytes);
+    file
+}
+
+/// A board with this program, which begins at [`ENTRY`] with the stack below 0x2001_0000; every fault enters
+/// `program[fault]`.
+fn board(program: &[u16], fault: usize) -> Machine<Rig> {
+    let handler = ENTRY + 2 * fault as u32 + 1;
+    let mut words = vec![0x2001_0000, ENTRY + 1, handler, handler];
+    words.resize(0x10, 0);
+    let mut bytes: Vec<u8> = words.into_iter().flat_map(u32::to_le_bytes).collect();
+    bytes.extend(program.iter().flat_map(|halfword| halfword.to_le_bytes()));
+    Machine::new(&elf(FLASH, &bytes), Rig::new(Scenario::One, 1)).expect("a firmware for the Due")
+}
+
+/// ldr r0, =address (kept at the end of the program, `at` words behind the entry).
+const fn load_r0(at: u16) -> u16 {
+    0x4800 | at
+}
+
+const SPIN: u16 = 0xE7FE;
+const WFI: u16 = 0xBF30;
+
+#[test]
+fn instructions_take_7_5_of_a_core_cycle_and_sleep_takes_none() {
+    // movs r0, #1; adds r0, r0, r0; adds r0, r0, r0; wfi; b .
+    let mut board = board(&[0x2001, 0x1800, 0x1800, WFI, SPIN], 4);
+    assert!(board.run_to(ENTRY + 6, MILLISECOND));
+    // Three instructions at 4 MHz.
+    assert_eq!((board.instructions(), board.now()), (3, 3 * 7 * 21 / 5));
+    board.run_until(CYCLES_PER_SECOND);
+    assert_eq!((board.instructions(), board.now()), (4, CYCLES_PER_SECOND));
+    assert!(board.sleeps());
+}
+
+#[test]
+fn the_watchdog_resets_a_program_that_does_not_feed_it() {
+    let mut board = board(&[SPIN], 0);
+    board.run_until(33 * CYCLES_PER_SECOND);
+    let resets: Vec<_> = board.resets().iter().map(|reset| (reset.cause, reset.at / CYCLES_PER_SECOND)).collect();
+    assert_eq!(resets, [(Cause::Watchdog, 16), (Cause::Watchdog, 32)]);
+}
+
+#[test]
+fn a_load_from_nothing_is_a_fault_and_is_reported_with_its_pc() {
+    // ldr r0, =0x400A8000; ldr r1, [r0]; b .; movs r7, #1; b .
+    let mut board = board(&[load_r0(2), 0x6801, SPIN, 0x2701, SPIN, 0, 0x8000, 0x400A], 3);
+    assert!(board.run_to(ENTRY + 8, MILLISECOND), "the fault's handler runs");
+    let reports = board.reports();
+    assert_eq!(reports, ["bus fault: load from 0x400a8000, where there is nothing, at pc 0x00080042"]);
+}
+
+#[test]
+fn a_fault_in_a_faults_handler_locks_up_until_reset() {
+    // ldr r0, =0x400A8000; ldr r1, [r0]; b .
+    let mut board = board(&[load_r0(2), 0x6801, SPIN, 0, 0, 0, 0x8000, 0x400A], 0);
+    board.run_until(CYCLES_PER_SECOND);
+    assert!(board.locked_up());
+    board.run_until(17 * CYCLES_PER_SECOND - MILLISECOND);
+    assert_eq!(board.resets().first().map(|reset| reset.cause), Some(Cause::Watchdog));
+}
+
+#[test]
+fn ram_survives_the_reset_button() {
+    let mut board = board(&[WFI, SPIN], 0);
+    board.run_until(MILLISECOND);
+    assert!(board.poke(0x2008_7FFC, &[1, 2, 3, 4]));
+    board.press_reset();
+    board.run_for(MILLISECOND);
+    assert_eq!(board.peek(0x2008_7FFC, 4), Some(vec![1, 2, 3, 4]));
+    assert_eq!(board.resets().iter().map(|reset| reset.cause).collect::<Vec<_>>(), [Cause::User]);
+}
+
+#[test]
+fn code_that_a_debugger_changes_runs_as_changed() {
+    // movs r7, #1; nop; b -4
+    let mut board = board(&[0x2701, 0xBF00, 0xE7FC], 0);
+    board.run_until(10 * MILLISECOND);
+    board.poke(ENTRY + 2, &WFI.to_le_bytes());
+    board.run_for(MILLISECOND);
+    assert!(board.sleeps());
+}
+
+#[test]
+fn a_run_in_pieces_is_the_same_run() {
+    // adds r0, r0, #1; ldr r1, [pc, #8]; ldr r1, [r1]; b back; (RTT_VR)
+    let program = [0x3001, 0x4902, 0x6809, 0xE7FB, 0, 0, 0x1A38, 0x400E];
+    let (mut whole, mut pieces) = (board(&program, 0), board(&program, 0));
+    whole.run_until(100 * MILLISECOND);
+    for piece in 1..=1000 {
+        pieces.run_until(piece * MILLISECOND / 10);
+    }
+    assert_eq!((whole.instructions(), whole.now(), whole.pc()), (pieces.instructions(), pieces.now(), pieces.pc()));
+}
+
+#[test]
+fn firmware_for_another_address_is_refused() {
+    let refused = Machine::new(&elf(0x0800_0000, &[0; 64]), Rig::new(Scenario::One, 1)).err();
+    assert_eq!(refused, Some(ElfError::Outside { address: 0x0800_0000, length: 64 }));
+}
