@@ -31,8 +31,9 @@ const CMR_CPOL: u32 = 1 << 9;
 /// UPDULOCK (datasheet chapter 38, PWM_SCUC).
 const SCUC_UPDULOCK: u32 = 1;
 
-/// Pins of port C that a [`Pwm`] was given.
-static OUTPUT_PINS: AtomicU32 = AtomicU32::new(0);
+/// Pins of port C that a [`Pwm`] was given, by their inactive level.
+static LOW_AT_REST: AtomicU32 = AtomicU32::new(0);
+static HIGH_AT_REST: AtomicU32 = AtomicU32::new(0);
 
 /// A channel and the pin of its output PWML. All eight are on port C, peripheral B.
 #[derive(Debug)]
@@ -145,12 +146,12 @@ impl<const N: usize> Pwm<N> {
             return Err(Error::Period);
         }
         let pins = outputs.iter().fold(0, |pins, output| pins | 1 << output.pin);
-        let (inactive, cpol) = match polarity {
-            Polarity::ActiveHigh => (PinState::Low, 0),
-            Polarity::ActiveLow => (PinState::High, CMR_CPOL),
+        let (inactive, at_rest, cpol) = match polarity {
+            Polarity::ActiveHigh => (PinState::Low, &LOW_AT_REST, 0),
+            Polarity::ActiveLow => (PinState::High, &HIGH_AT_REST, CMR_CPOL),
         };
         gpio::drive(gpio::port('C'), pins, inactive);
-        OUTPUT_PINS.fetch_or(pins, Ordering::Relaxed);
+        at_rest.fetch_or(pins, Ordering::Relaxed);
 
         clocks.enable(pac::Interrupt::PWM);
         // Synchronous channels are defined while they are off; channel 0 gives them its counter, whether or not it has an
@@ -199,11 +200,11 @@ impl<const N: usize> Pwm<N> {
     }
 }
 
-/// Drives every pin that a [`Pwm`] was given low, as GPIO, and stops the PWM. Callable from anywhere, also from fault
-/// handlers; the outputs stay low until the next reset.
+/// Drives every pin that a [`Pwm`] was given to its inactive level, as GPIO, and stops the PWM. Callable from anywhere, also
+/// from fault handlers; the outputs stay inactive until the next reset.
 pub fn disable_all_outputs() {
-    let pins = OUTPUT_PINS.load(Ordering::Relaxed);
-    gpio::drive(gpio::port('C'), pins, PinState::Low);
+    gpio::drive(gpio::port('C'), LOW_AT_REST.load(Ordering::Relaxed), PinState::Low);
+    gpio::drive(gpio::port('C'), HIGH_AT_REST.load(Ordering::Relaxed), PinState::High);
     // SAFETY: the PWM is always there, and its disable register needs no owner: this overrides it on purpose.
     reg::set(unsafe { &(*pac::PWM::ptr()).dis }, 0xFF);
 }

@@ -181,7 +181,7 @@ impl<I: Instance, D: DelayNs> Twi<I, D> {
     }
 
     /// Runs a transfer until its end or until its time is over.
-    async fn run(&mut self, transfer: Transfer, wire_bytes: usize) -> Result<Transfer, Error> {
+    async fn run(&mut self, transfer: &Transfer, wire_bytes: usize) -> Result<(), Error> {
         if !self.lines_come_up().await {
             return Err(Error::Stuck);
         }
@@ -192,20 +192,20 @@ impl<I: Instance, D: DelayNs> Twi<I, D> {
     }
 
     /// Lets the interrupt handler run a transfer against the clock.
-    async fn race(&mut self, transfer: Transfer, budget_us: u32) -> Result<Transfer, Error> {
+    async fn race(&mut self, transfer: &Transfer, budget_us: u32) -> Result<(), Error> {
         // Leaving this function early, also by dropping its future, resets the peripheral.
         let guard = ResetOnDrop::<I>(PhantomData);
         start::<I>(transfer);
         let mut time_over = pin!(self.delay.delay_us(budget_us));
         let result = poll_fn(|context| {
-            if let Some(transfer) = take_finished::<I>(context.waker()) {
-                return Poll::Ready(transfer.result());
+            if let Some(result) = result::<I>(context.waker()) {
+                return Poll::Ready(result);
             }
             time_over.as_mut().poll(context).map(|()| Err(Error::Timeout))
         })
         .await;
         // The chip has ended these with a STOP condition; all others are cut off.
-        if matches!(result, Ok(_) | Err(Error::NackAddress | Error::NackData | Error::Nack)) {
+        if matches!(result, Ok(()) | Err(Error::NackAddress | Error::NackData | Error::Nack)) {
             core::mem::forget(guard);
         }
         result
@@ -222,14 +222,17 @@ impl<I: Instance, D: DelayNs> Twi<I, D> {
 
     async fn write_bytes(&mut self, address: u8, bytes: &[u8]) -> Result<(), Error> {
         let transfer = Transfer::write(address, bytes)?;
-        self.run(transfer, 1 + bytes.len()).await.map(|_| ())
+        self.run(&transfer, 1 + bytes.len()).await
     }
 
     async fn read_bytes(&mut self, address: u8, register: &[u8], bytes: &mut [u8]) -> Result<(), Error> {
         let transfer = Transfer::read(address, register, bytes.len())?;
-        let transfer = self.run(transfer, 2 + register.len() + bytes.len()).await?;
-        bytes.copy_from_slice(transfer.received().get(..bytes.len()).ok_or(Error::Overrun)?);
-        Ok(())
+        self.run(&transfer, 2 + register.len() + bytes.len()).await?;
+        critical_section::with(|token| {
+            let shared = I::shared().borrow_ref(token);
+            bytes.copy_from_slice(shared.transfer.received().get(..bytes.len()).ok_or(Error::Overrun)?);
+            Ok(())
+        })
     }
 }
 
@@ -282,12 +285,12 @@ pub fn on_interrupt<I: Instance>() {
 }
 
 /// Programs a transfer and sets it off (datasheet chapter 33, master mode).
-fn start<I: Instance>(transfer: Transfer) {
+fn start<I: Instance>(transfer: &Transfer) {
     let twi = I::registers();
     critical_section::with(|token| {
         let mut shared = I::shared().borrow_ref_mut(token);
         shared.waker = None;
-        shared.transfer = transfer;
+        shared.transfer = *transfer;
         let direction = if transfer.is_read() { MMR_MREAD } else { 0 };
         reg::set(&twi.mmr, u32::from(transfer.address()) << 16 | direction | transfer.internal_address_size() << 8);
         reg::set(&twi.iadr, transfer.internal_address());
@@ -304,15 +307,15 @@ fn start<I: Instance>(transfer: Transfer) {
     });
 }
 
-/// The transfer if it has ended; otherwise leaves a waker.
-fn take_finished<I: Instance>(waker: &core::task::Waker) -> Option<Transfer> {
+/// How the transfer ended, if it has; otherwise leaves a waker.
+fn result<I: Instance>(waker: &core::task::Waker) -> Option<Result<(), Error>> {
     critical_section::with(|token| {
         let mut shared = I::shared().borrow_ref_mut(token);
-        if shared.transfer.is_finished() {
-            return Some(shared.transfer);
+        let result = shared.transfer.result();
+        if result.is_none() {
+            shared.waker = Some(waker.clone());
         }
-        shared.waker = Some(waker.clone());
-        None
+        result
     })
 }
 

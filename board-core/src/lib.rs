@@ -10,6 +10,7 @@
 //! | [`imus`] | which IMU is read in a tick, and which are to be trusted |
 //! | [`bno055`], [`tca9548a`] | how an IMU, and the multiplexer before it, are spoken to |
 //! | [`Bends`] | which bend sensors are to be trusted |
+//! | [`Arm`] | what the estimator is fed, and when it starts anew |
 //! | [`Link`] | which of the host's requests are done, and what each is answered |
 //! | [`Schedule`] | which messages are due |
 //! | [`Actuator`] | what may move the pressures, and how they end vented |
@@ -20,6 +21,7 @@
 #![no_std]
 
 mod actuation;
+mod arm;
 mod bends;
 pub mod bno055;
 mod boots;
@@ -30,6 +32,7 @@ mod supervisor;
 pub mod tca9548a;
 
 pub use actuation::{Actuator, FULL_SCALE_PA, HOLD_MS, VALID_MS_MAX, VENTED_MS};
+pub use arm::{Arm, TARE_TICKS};
 pub use bends::{Bends, LOSS_TICKS, RAIL_COUNTS, RETURN_TICKS};
 pub use boots::{Boots, CRASHES, UPTIME_WORD, WINDOW_TICKS, WORDS};
 pub use link::{ANEW_TICKS, BURST, Link, PER_TICK};

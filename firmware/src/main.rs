@@ -15,7 +15,6 @@
 #![no_std]
 #![no_main]
 
-mod arm;
 mod board;
 mod identity;
 mod imu_bus;
@@ -45,7 +44,7 @@ mod app {
     use atsam3x8e_hal::pac::TWI1;
     use atsam3x8e_hal::tc::{Mono, prelude::*};
     use atsam3x8e_hal::{reset, twi};
-    use board_core::{Actuator, Schedule};
+    use board_core::{Actuator, Arm, Schedule};
     use rtic_sync::signal::{Signal, SignalReader};
 
     use crate::board::{self, Buffers};
@@ -53,6 +52,7 @@ mod app {
     use crate::parameters::LIMITS_PA;
     use crate::requests::{Control, Requests};
     use crate::shape::Shape;
+    use crate::table::TABLE;
     use crate::tick::{Tick, Ticker};
     use crate::voice::Voice;
 
@@ -68,7 +68,7 @@ mod app {
         ticker: Ticker,
         requests: Requests,
         requests_ticks: SignalReader<'static, Tick>,
-        shape: &'static mut Shape,
+        shape: Shape,
         shape_ticks: SignalReader<'static, Tick>,
     }
 
@@ -76,7 +76,7 @@ mod app {
         buffers: Buffers = Buffers::new(),
         for_requests: Signal<Tick> = Signal::new(),
         for_shape: Signal<Tick> = Signal::new(),
-        place: MaybeUninit<Shape> = MaybeUninit::uninit(),
+        arm: MaybeUninit<Arm> = MaybeUninit::uninit(),
     ])]
     fn init(cx: init::Context) -> (Shared, Local) {
         let board = match board::set_up(cx.device, cx.local.buffers) {
@@ -98,7 +98,7 @@ mod app {
             followers: [to_requests, to_shape],
             late: None,
         };
-        let shape = cx.local.place.write(Shape::new(board.imus, board.hello, safe_mode));
+        let shape = Shape::new(board.imus, cx.local.arm.write(Arm::new(&TABLE)), board.hello, safe_mode);
         // They wait for their first tick, and then for ever; there is room for each once.
         let _ = requests::spawn();
         let _ = shape::spawn();

@@ -43,6 +43,3 @@ pub const STORAGE: Range<u32> = 0x000F_F000..0x0010_0000;
 
 /// Time without feeding after which the watchdog bites, ms. Its clock is ±40 %, so that it is 60 to 140 ms in truth.
 pub const WATCHDOG_MS: u32 = 100;
-
-/// Ticks until the first tare if an IMU does not come up.
-pub const TARE_TICKS: u32 = 200;

@@ -3,12 +3,11 @@
 use atsam3x8e_hal::gpio::{Output, Pin};
 use atsam3x8e_hal::tc::prelude::*;
 use board_core::imus::Imus;
-use board_core::{Actuator, Bends, Due, Task};
+use board_core::{Actuator, Arm, Bends, Due, Task};
 use rtic::Mutex;
 use telemetry::{Actuation, Estimate, Event, Health, Hello, Message, REGULATORS, SEGMENTS, Sample, SensorState};
 
 use crate::SUPERVISOR;
-use crate::arm::Arm;
 use crate::imu_bus::ImuBus;
 use crate::load::Load;
 use crate::parameters::IMUS_US;
@@ -24,7 +23,7 @@ const EVENTS: usize = 16;
 pub struct Shape {
     imus: Imus<ImuBus, Pin<'B', 26, Output>>,
     bends: Bends,
-    arm: Arm,
+    arm: &'static mut Arm,
     hello: Hello,
     /// A boot loop: the pressures stay at zero.
     safe_mode: bool,
@@ -45,17 +44,23 @@ struct Counters {
 /// What one tick found out.
 struct Round {
     sample: Sample,
-    estimate: Option<Estimate>,
+    estimate: Estimate,
     events: heapless::Vec<Event, EVENTS>,
 }
 
 impl Shape {
     /// At boot.
-    pub fn new(imus: Imus<ImuBus, Pin<'B', 26, Output>>, hello: Hello, safe_mode: bool) -> Self {
+    pub fn new(
+        imus: Imus<ImuBus, Pin<'B', 26, Output>>,
+        arm: &'static mut Arm,
+        hello: Hello,
+        safe_mode: bool,
+    ) -> Self {
+        arm.start();
         Self {
             imus,
             bends: Bends::new(),
-            arm: Arm::new(),
+            arm,
             hello,
             safe_mode,
             load: Load::new(),
@@ -144,8 +149,8 @@ impl Shape {
         if due.sample {
             voice.say(&Message::Sample(round.sample));
         }
-        if let (true, Some(estimate)) = (due.estimate, round.estimate) {
-            voice.say(&Message::Estimate(estimate));
+        if due.estimate {
+            voice.say(&Message::Estimate(round.estimate));
         }
         for event in &round.events {
             voice.say(&Message::Event(*event));

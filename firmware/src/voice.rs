@@ -11,8 +11,10 @@ pub struct Voice {
 }
 
 impl Voice {
-    /// Nothing is said yet.
-    pub const fn new(tx: Tx) -> Self {
+    /// Nothing is said yet but a zero, which ends the frame that a reset may have cut short.
+    pub fn new(mut tx: Tx) -> Self {
+        // The line is empty now.
+        let _ = tx.try_write_frame(&[0]);
         Self { tx, encoder: Encoder::new(), dropped: 0 }
     }
 

@@ -12,10 +12,10 @@ const TICK_S: f64 = 0.01;
 pub struct Recorded {
     /// Time since the start, µs.
     pub time_us: u64,
-    /// ADC counts of bend sensors 1a, 1b, … 6b.
-    pub counts: [u16; BEND_SENSORS],
-    /// Quaternion registers w, x, y, z of each IMU, units of 2⁻¹⁴.
-    pub quaternions: [[i16; 4]; SEGMENTS],
+    /// ADC counts of bend sensors 1a, 1b, … 6b; `None`: not read.
+    pub counts: [Option<u16>; BEND_SENSORS],
+    /// Quaternion registers w, x, y, z of each IMU, units of 2⁻¹⁴; `None`: not read.
+    pub quaternions: [Option<[i16; 4]>; SEGMENTS],
     /// True pose of each segment's end.
     pub truth: [EndPose; SEGMENTS],
 }
@@ -80,8 +80,8 @@ impl Iterator for Simulation {
         self.next += 1;
         Some(Recorded {
             time_us: (time_s * 1e6).round() as u64,
-            counts: self.rig.adc_counts(),
-            quaternions: self.rig.imu_quaternions(),
+            counts: self.rig.adc_counts().map(Some),
+            quaternions: self.rig.imu_quaternions().map(Some),
             truth: self.rig.truth(),
         })
     }

@@ -1,21 +1,21 @@
-//! `cargo demo`: the main job from end to end, in the commands that a user types.
+//! `cargo demo`: the main job from end to end. The firmware runs on the emulated board, and what it streams is replayed.
 
-use crate::tool::Tool;
+use crate::board;
+use crate::tool::{Tool, cargo};
 
-/// Duration of each simulated session, s: the paper's.
+/// Board time of the run, s: the paper's.
 const SECONDS: &str = "900";
 
-/// Simulates, calibrates and replays in `target/demo`.
+/// Runs in `target/demo`.
 pub fn run() -> Result<(), String> {
+    board::add_target()?;
     let tool = Tool::build("demo")?;
-    tool.take("calibration-tables/arms/planar-6.toml", "arm.toml")?;
-    tool.run(&format!("simulate --scenario sweep --seconds {SECONDS} --seed 1 -o sweep.csv"))?;
-    tool.run("calibrate sweep.csv --arm arm.toml -o table.toml")?;
-    for scenario in 1..=3 {
-        let seed = 10 + scenario;
-        tool.run(&format!(
-            "simulate --scenario {scenario} --seconds {SECONDS} --seed {seed} -o scenario-{scenario}.csv"
-        ))?;
-    }
-    tool.run("replay scenario-1.csv scenario-2.csv scenario-3.csv --table table.toml")
+    tool.take("calibration-tables/planar-6.toml", "table.toml")?;
+    let session = tool.path("session.csv");
+    println!("\nThe firmware on the virtual Due, scenario I:");
+    cargo(
+        &["run", "--quiet", board::ANY_RUST, "--package", "board-tests", "--bin", "demo", "--", &session, SECONDS],
+        &[],
+    )?;
+    tool.run("replay session.csv --table table.toml")
 }

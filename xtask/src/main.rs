@@ -1,6 +1,8 @@
 //! Developer commands that cargo alone cannot do; `.cargo/config.toml` names them.
 
 mod accept;
+mod bench;
+mod board;
 mod demo;
 mod tool;
 
@@ -11,7 +13,9 @@ fn main() -> ExitCode {
     let done = match command.as_deref() {
         Some("demo") => demo::run(),
         Some("accept") => accept::run(),
-        _ => Err("usage: cargo xtask demo | accept".to_owned()),
+        Some("verify") => board::verify(),
+        Some("bench") => bench::run(),
+        _ => Err("usage: cargo xtask demo | verify | bench | accept".to_owned()),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

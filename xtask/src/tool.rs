@@ -35,6 +35,11 @@ impl Tool {
         check(Command::new(&self.binary).current_dir(&self.folder).args(arguments.split_whitespace()))
     }
 
+    /// A file of the folder.
+    pub fn path(&self, name: &str) -> String {
+        self.folder.join(name).display().to_string()
+    }
+
     /// Copies a file of the workspace into the folder.
     pub fn take(&self, from: &str, to: &str) -> Result<(), String> {
         copy(&root().join(from), &self.folder.join(to))
@@ -57,7 +62,8 @@ fn copy(from: &Path, to: &Path) -> Result<(), String> {
     done.map(|_| ()).map_err(|error| format!("{} to {}: {error}", from.display(), to.display()))
 }
 
-fn check(command: &mut Command) -> Result<(), String> {
+/// Runs a command that must succeed.
+pub fn check(command: &mut Command) -> Result<(), String> {
     match command.status() {
         Ok(status) if status.success() => Ok(()),
         Ok(status) => Err(format!("{}: {status}", command.get_program().display())),

@@ -1,12 +1,19 @@
 //! A board that runs the firmware, and a host at its serial line.
 
-use telemetry::{Command, Decoder, Encoder, Estimate, Event, Health, Hello, MAX_FRAME, Message, Outcome, Request, Sample};
+use rig_twin::{EndPose, Program, REGULATORS, SEGMENTS};
+use telemetry::{
+    Command, Decoder, Encoder, Estimate, Event, Health, Hello, MAX_FRAME, Message, Outcome, Request, Sample,
+    SetPressures,
+};
 use virtual_due::{CYCLES_PER_SECOND, Cycles, Machine, Rig};
 
 use crate::build::firmware;
 
 /// The serial port of the programming port: the UART.
 pub const UART: usize = 0;
+
+/// Pressure of a regulator at full duty, Pa.
+const FULL_SCALE_PA: u32 = 280_000;
 
 /// A message, and when its last byte left the board.
 #[derive(Debug, Clone, PartialEq)]
@@ -26,6 +33,7 @@ pub struct Board {
     next_id: u32,
     received: Vec<Received>,
     bytes: u64,
+    truths: Vec<[EndPose; SEGMENTS]>,
 }
 
 impl Board {
@@ -36,22 +44,40 @@ impl Board {
     #[must_use]
     pub fn new(rig: Rig) -> Self {
         let machine = Machine::new(firmware(), rig).expect("cargo built an ELF for the board");
-        Self { machine, decoder: Decoder::new(), encoder: Encoder::new(), next_id: 1, received: Vec::new(), bytes: 0 }
+        Self {
+            machine,
+            decoder: Decoder::new(),
+            encoder: Encoder::new(),
+            next_id: 1,
+            received: Vec::new(),
+            bytes: 0,
+            truths: Vec::new(),
+        }
     }
 
-    /// Lets time pass, and takes what the board says meanwhile.
-    ///
-    /// # Panics
-    /// If the board says what is no message.
+    /// Lets time pass, and takes what the board says meanwhile. A frame that a reset cut short is counted, and left out.
     pub fn run_ms(&mut self, ms: u64) {
-        self.machine.run_for(ms * CYCLES_PER_SECOND / 1000);
+        let end = self.machine.now() + ms * CYCLES_PER_SECOND / 1000;
+        while self.machine.now() < end {
+            // Pieces shorter than a tick, so that no scan of the ADC is overlooked.
+            self.machine.run_until(end.min(self.machine.now() + CYCLES_PER_SECOND / 200));
+            let (scans, truth) = self.machine.world().last_scan();
+            if scans > self.truths.len() as u64 {
+                self.truths.push(truth);
+            }
+        }
         for (at, byte) in self.machine.world_mut().take_transmitted(UART) {
             self.bytes += 1;
-            if let Some(message) = self.decoder.push(byte) {
-                let message = message.expect("the line is without noise");
+            if let Some(Ok(message)) = self.decoder.push(byte) {
                 self.received.push(Received { at, message });
             }
         }
+    }
+
+    /// The true pose of each segment's end at each tick since power-on.
+    #[must_use]
+    pub fn truths(&self) -> &[[EndPose; SEGMENTS]] {
+        &self.truths
     }
 
     /// Sends a request once, and gives its number.
@@ -73,7 +99,10 @@ impl Board {
         let mut buffer = [0; MAX_FRAME];
         let frame = self.encoder.encode(&request, &mut buffer).expect("every request fits");
         let now = self.machine.now();
-        self.machine.world_mut().send(UART, frame, now);
+        let line = self.machine.world_mut();
+        // Ends whatever noise came before.
+        line.send(UART, &[0], now);
+        line.send(UART, frame, now);
     }
 
     /// Sends a request and gives the answer.
@@ -89,6 +118,25 @@ impl Board {
             _ => None,
         });
         replies.next().expect("a request is answered within 100 ms")
+    }
+
+    /// Arms, and lets the arm swing by the scenario's own program for some seconds, with set-points 20 times a second.
+    ///
+    /// # Panics
+    /// If the board does not arm.
+    pub fn swing(&mut self, program: &Program, seconds: u64) {
+        assert_eq!(self.ask(Command::Arm), Outcome::Ack);
+        let start = self.machine.seconds();
+        for _ in 0..seconds * 20 {
+            self.set_pressures(program.duties(self.machine.seconds() - start));
+            self.run_ms(50);
+        }
+    }
+
+    /// Sends set-points that stand for 200 ms, as shares of the full scale.
+    pub fn set_pressures(&mut self, duties: [f64; REGULATORS]) {
+        let pressures_pa = duties.map(|duty| (duty * f64::from(FULL_SCALE_PA)) as u32);
+        self.send(Command::SetPressures(SetPressures { pressures_pa, valid_ms: 200 }));
     }
 
     /// All that was received, in order.

@@ -27,8 +27,12 @@ pub fn elf(package: &str, binary: &str) -> Vec<u8> {
         .env_remove("PROPRIO_TABLE")
         .status()
         .expect("cargo, which runs this, can be run");
-    assert!(status.success(), "{package} does not build for {TARGET}: is the target installed (rustup target add {TARGET})?");
-    let target = env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), |folder| root.join(PathBuf::from(folder)));
+    assert!(
+        status.success(),
+        "{package} does not build for {TARGET}: is the target installed (rustup target add {TARGET})?"
+    );
+    let target =
+        env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), |folder| root.join(PathBuf::from(folder)));
     let path = target.join(TARGET).join("release").join(binary);
     fs::read(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }

@@ -2,6 +2,10 @@
 
 mod board;
 mod build;
+mod replay;
+mod view;
 
 pub use board::{Board, Received, UART};
 pub use build::{elf, firmware};
+pub use replay::{replay, table};
+pub use view::View;

@@ -1,3 +1,9 @@
 //! What users rely on of the firmware, on the emulated board.
 
 mod boot;
+mod engine;
+mod faults;
+mod pressures;
+mod replay;
+mod requests;
+mod sensors;

@@ -12,7 +12,7 @@
 use std::path::Path;
 
 use calibration_tables::{MAX_WINDOW, NoiseKeys};
-use estimator_core::{Anchor, AnchorRule, Angle, Link, Segment, SegmentEstimate, Turns, chain};
+use estimator_core::{Anchor, Angle, Pace, Pcc, Segment, SegmentEstimate, Slot, Turns, chain};
 use nalgebra::Vector2;
 
 use crate::error::Error;
@@ -67,14 +67,15 @@ pub(super) fn set_filters(session: &Path, table: &mut NamedTable, rate_hz: f64) 
         |segment| Gatherer { segment, anchor: Anchor::new(), orient: Errors::default(), coord: Errors::default() };
     let mut gatherers: Vec<Gatherer> = baked.segments.iter().map(gatherer).collect();
     let mut headings = Errors::default();
-    let (mut misfit, mut tips) = (0.0, 0.0);
+    let (mut pace, mut misfit, mut tips) = (Pace::new(), 0.0, 0.0);
     replay::<f64>(session, table, |row, outcome| {
         if let Some(distance) = truth_misfit(row, baked.segments) {
             (misfit, tips) = (misfit + distance * distance, tips + 1.0);
         }
+        let slot = pace.tick(&baked.anchor);
         let mut sums = Some([0.0, 0.0]);
         for (i, (gatherer, estimate)) in gatherers.iter_mut().zip(&outcome.estimate.segments).enumerate() {
-            let errors = gatherer.add_row(row.true_theta(i), estimate, &baked.anchor);
+            let errors = gatherer.add_row(row.true_theta(i), estimate, slot);
             sums = sums.zip(errors).map(|(sums, errors)| [sums[0] + errors[0], sums[1] + errors[1]]);
             if let Some([imu, bend]) = sums {
                 headings.add(imu * imu, bend * bend, 1.0);
@@ -92,22 +93,22 @@ pub(super) fn set_filters(session: &Path, table: &mut NamedTable, rate_hz: f64) 
 /// Distance of the true tip from the chain of the true bend angles, m.
 fn truth_misfit(row: &Row, segments: &[Segment<f64>]) -> Option<f64> {
     let thetas = segments.iter().enumerate().map(|(i, segment)| (row.true_theta(i), segment));
-    let links = thetas.map(|(theta, segment)| theta.map(|theta| Link::new(Angle::from(theta), segment)));
-    let tip = chain(links).last()??;
+    let links = thetas.map(|(theta, segment)| theta.map(|theta| Pcc::new(segment).link(Angle::from(theta))));
+    let tip = chain(links).last()?.end?;
     let truth = row.truth.get(segments.len() - 1)?.as_ref()?;
     Some((tip - Vector2::new(truth.x_m, truth.y_m)).norm())
 }
 
 impl Gatherer<'_> {
     /// Adds one row; gives the errors of θ by the IMUs and by the bend sensors, rad, where both are known.
-    fn add_row(&mut self, truth: Option<f64>, estimate: &SegmentEstimate<f64>, rule: &AnchorRule) -> Option<[f64; 2]> {
+    fn add_row(&mut self, truth: Option<f64>, estimate: &SegmentEstimate<f64>, slot: Slot) -> Option<[f64; 2]> {
         let imu = estimate.imu_o.map(Angle::rad);
-        self.anchor.push(rule, imu.zip(truth).map(|(imu, truth)| Turns::from_rad(imu - truth)));
+        self.anchor.push(slot, imu.zip(truth).map(|(imu, truth)| Turns::from_rad(imu - truth)));
         let (truth, imu, bend) = (truth?, imu? - self.anchor.offset()?.rad(), estimate.bend?);
 
         let errors = [imu - truth, bend.theta.rad() - truth];
         self.orient.add(errors[0].powi(2), errors[1].powi(2), 1.0);
-        let end = |theta: f64| Link::new(Angle::from(theta), self.segment).end;
+        let end = |theta: f64| Pcc::new(self.segment).link(Angle::from(theta)).end;
         let square = |point: Vector2<f64>| (point - end(truth)).norm_squared();
         self.coord.add(square(end(imu)), square(bend.end), 2.0);
         Some(errors)

@@ -1,4 +1,4 @@
-//! Writes simulated samples as a session.
+//! Writes samples and their truth as a session.
 
 use std::io::{self, Write};
 
@@ -55,17 +55,15 @@ impl<W: Write> SessionWriter<W> {
     pub fn write(&mut self, sample: &Recorded) -> io::Result<()> {
         write!(self.sink, "{}", sample.time_us as f64 / 1e6)?;
         for counts in sample.counts {
-            write!(self.sink, ",{counts}")?;
+            write!(self.sink, ",")?;
+            if let Some(counts) = counts {
+                write!(self.sink, "{counts}")?;
+            }
         }
         for quaternion in sample.quaternions {
             match self.imu {
-                ImuColumns::Deg => write!(self.sink, ",{}", heading_deg(quaternion))?,
-                ImuColumns::Quaternion => {
-                    // 2⁻¹⁴ has a finite decimal form, so that the reading comes back to the bit.
-                    for part in quaternion {
-                        write!(self.sink, ",{}", f64::from(part) / 16_384.0)?;
-                    }
-                }
+                ImuColumns::Deg => write!(self.sink, ",{}", quaternion.map(heading_deg).unwrap_or_default())?,
+                ImuColumns::Quaternion => self.write_quaternion(quaternion)?,
             }
         }
         for end in sample.truth {
@@ -73,6 +71,15 @@ impl<W: Write> SessionWriter<W> {
             write!(self.sink, ",{x_mm:.4},{y_mm:.4},{:.4}", end.heading_rad.to_degrees())?;
         }
         writeln!(self.sink)
+    }
+
+    fn write_quaternion(&mut self, quaternion: Option<[i16; 4]>) -> io::Result<()> {
+        let Some(parts) = quaternion else { return write!(self.sink, ",,,,") };
+        for part in parts {
+            // 2⁻¹⁴ has a finite decimal form, so that the reading comes back to the bit.
+            write!(self.sink, ",{}", f64::from(part) / 16_384.0)?;
+        }
+        Ok(())
     }
 
     /// The sink, when all samples are written.

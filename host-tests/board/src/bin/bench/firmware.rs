@@ -1,0 +1,92 @@
+//! What the whole firmware takes: time, memory, stack.
+
+use std::time::Instant;
+
+use board_tests::{Board, firmware};
+use object::{Object, ObjectSection};
+use rig_twin::Scenario;
+use telemetry::{Command, SetPressures};
+use virtual_due::rig::{Held, ImuFault, MuxFault, Rail};
+use virtual_due::{CYCLES_PER_SECOND, Rig};
+
+use crate::Figure;
+
+/// In flash: what is there at a reset.
+const FLASH: [&str; 4] = [".vector_table", ".text", ".rodata", ".data"];
+/// In RAM, without the stack.
+const STATIC_RAM: [&str; 3] = [".data", ".bss", ".uninit"];
+/// Cycles of an instruction on the emulated board, the mean of Cortex-M3 code from the Due's flash.
+const CYCLES_PER_INSTRUCTION: f64 = 1.4;
+/// What cortex-m-rt's `paint-stack` fills the stack with before anything runs.
+const PAINT: u8 = 0xCC;
+
+/// Of the firmware, alone and in the rig.
+///
+/// # Panics
+/// If it does not run.
+pub fn figures() -> Vec<Figure> {
+    let mut figures = vec![
+        Figure { name: "flash", value: size(&FLASH) },
+        Figure { name: "static_ram", value: size(&STATIC_RAM) },
+        Figure { name: "stack", value: stack_in_trouble() },
+    ];
+    figures.extend(in_good_health());
+    figures
+}
+
+/// Bytes of the firmware's sections of these names.
+fn size(names: &[&str]) -> f64 {
+    let file = object::File::parse(firmware()).expect("cargo built an ELF");
+    let sections = names.iter().filter_map(|name| file.section_by_name(name));
+    sections.map(|section| section.size()).sum::<u64>() as f64
+}
+
+/// A rig in which all works, and all messages at 100 Hz.
+fn in_good_health() -> [Figure; 3] {
+    const SECONDS: u32 = 20;
+    let mut board = Board::new(Rig::new(Scenario::One, 1));
+    board.run_ms(2_000);
+    let (instructions, started) = (board.machine.instructions(), Instant::now());
+    board.run_ms(u64::from(SECONDS) * 1000);
+    let wall = started.elapsed().as_secs_f64();
+    let cycles = (board.machine.instructions() - instructions) as f64 * CYCLES_PER_INSTRUCTION;
+    let available = f64::from(SECONDS) * CYCLES_PER_SECOND as f64;
+    let imu_round = board.healths().map(|health| health.longest_imu_read_us).max().expect("health is told");
+    [
+        Figure { name: "load", value: cycles / available * 100.0 },
+        Figure { name: "imu_round", value: imu_round.into() },
+        Figure { name: "emulator_speed", value: f64::from(SECONDS) / wall },
+    ]
+}
+
+/// The deepest stack, bytes, in a run with all requests and many faults.
+fn stack_in_trouble() -> f64 {
+    let mut board = Board::new(Rig::new(Scenario::One, 1));
+    board.run_ms(2_000);
+    for second in 2..20 {
+        let faults = &mut board.machine.world_mut().faults;
+        match second {
+            3 => faults.imus[1] = ImuFault::Unplugged,
+            5 => faults.imus[1] = ImuFault::None,
+            7 => faults.sda = Some(Held::Clocks(5)),
+            9 => faults.sda = Some(Held::UntilMuxReset),
+            11 => faults.scl = Some(Held::Forever),
+            13 => faults.scl = None,
+            14 => faults.mux = Some(MuxFault::Silent),
+            16 => faults.bend[0] = Some(Rail::High),
+            _ => {}
+        }
+        let pressures_pa = [second * 10_000; 6];
+        let set = Command::SetPressures(SetPressures { pressures_pa, valid_ms: 500 });
+        for command in [Command::Arm, set, Command::Ping, Command::Tare] {
+            board.send(command);
+            board.run_ms(250);
+        }
+    }
+    assert_eq!(board.machine.resets(), [], "a reset paints anew");
+    let [end, start] = ["_stack_end", "_stack_start"].map(|name| board.machine.symbol(name).expect("the linker says"));
+    let stack = board.machine.peek(end, (start - end) as usize).expect("it is in RAM");
+    let untouched = stack.iter().take_while(|byte| **byte == PAINT).count();
+    assert!(untouched > 0, "the stack is painted, and has not overflowed");
+    (stack.len() - untouched) as f64
+}

@@ -1,0 +1,28 @@
+//! `cargo xtask bench`: what the firmware costs, against its budgets.
+
+mod budgets;
+mod firmware;
+mod jitter;
+mod step;
+
+use std::process::ExitCode;
+
+/// Something that was measured.
+pub struct Figure {
+    /// Its name in the budgets' file.
+    pub name: &'static str,
+    /// In the unit that the file states.
+    pub value: f64,
+}
+
+fn main() -> ExitCode {
+    let jitter = Figure { name: "trigger_jitter", value: jitter::cycles() };
+    let figures: Vec<Figure> = step::figures().into_iter().chain(firmware::figures()).chain([jitter]).collect();
+    match budgets::check(&figures) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}

@@ -1,0 +1,87 @@
+//! Instructions of the estimator's step, on the firmware that is nothing else.
+
+use board_tests::elf;
+use object::{Object, ObjectSymbol};
+use rig_twin::Scenario;
+use virtual_due::{CYCLES_PER_SECOND, Machine, Rig};
+
+use crate::Figure;
+
+/// The arms that the firmware steps, in its order, and the samples of each.
+const SEGMENTS: [u32; 5] = [1, 2, 6, 12, 16];
+const STEPS: usize = 1_000;
+/// Of the samples, those of the tare.
+const TARE: usize = 100;
+
+/// What of the compiler's and the core library's does not belong into the step: float arithmetic, float conversions,
+/// 64-bit division, panics.
+const UNWANTED: [&str; 9] =
+    ["__aeabi_f", "__aeabi_d", "__aeabi_i2", "__aeabi_ui2", "__aeabi_l2", "__aeabi_ul2", "divmod", "divdi", "panic"];
+
+/// The cheapest and the dearest step.
+struct Range {
+    least: u64,
+    most: u64,
+}
+
+impl Range {
+    fn of(counts: &[u64]) -> Self {
+        let least = counts.iter().copied().min().unwrap_or_default();
+        Self { least, most: counts.iter().copied().max().unwrap_or_default() }
+    }
+}
+
+/// Of the step.
+///
+/// # Panics
+/// If the firmware does not build, or does not run as it says.
+pub fn figures() -> [Figure; 4] {
+    let elf = elf("board-probe", "step");
+    let mut machine = Machine::new(&elf, Rig::new(Scenario::One, 1)).expect("a firmware for the Due");
+    println!("instructions of a step   at the tare          after it");
+    let arms = SEGMENTS.map(|segments| {
+        let counts = counts(&mut machine);
+        let (tare, after) = counts.split_at(TARE);
+        let (tare, after) = (Range::of(tare), Range::of(after));
+        println!(
+            "{segments:>8} segments     {:>6} to {:>6}  {:>6} to {:>6}",
+            tare.least, tare.most, after.least, after.most
+        );
+        (segments, tare, after)
+    });
+    assert_eq!(machine.resets(), [], "the firmware steps through all arms at once");
+    let [_, _, (_, tare, after), _, _] = &arms;
+    let for_each = |(segments, _, after): &(u32, Range, Range)| after.most as f64 / f64::from(*segments);
+    [
+        Figure { name: "step_instructions", value: tare.most.max(after.most) as f64 },
+        Figure { name: "step_spread", value: (after.most - after.least) as f64 / after.least as f64 * 100.0 },
+        Figure { name: "step_growth", value: for_each(&arms[4]) / for_each(&arms[2]) },
+        Figure { name: "step_routines", value: unwanted(&elf) as f64 },
+    ]
+}
+
+/// Instructions of the next arm's steps, each with the two calls around it.
+fn counts(machine: &mut Machine<Rig>) -> Vec<u64> {
+    let [begins, ends] = ["step_begins", "step_ends"].map(|name| machine.symbol(name).expect("the firmware has it"));
+    let mut run_to = |address| {
+        let limit = machine.now() + CYCLES_PER_SECOND;
+        assert!(machine.run_to(address, limit), "the firmware steps on");
+        machine.instructions()
+    };
+    (0..STEPS)
+        .map(|_| {
+            let before = run_to(begins);
+            run_to(ends) - before
+        })
+        .collect()
+}
+
+/// How many unwanted routines there are, each said.
+fn unwanted(elf: &[u8]) -> usize {
+    let file = object::File::parse(elf).expect("cargo built an ELF");
+    let names = file.symbols().filter_map(|symbol| symbol.name().ok());
+    names
+        .filter(|name| UNWANTED.iter().any(|unwanted| name.contains(unwanted)))
+        .inspect(|name| println!("{name}"))
+        .count()
+}

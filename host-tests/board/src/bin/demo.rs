@@ -1,0 +1,66 @@
+//! The firmware on the emulated board in scenario I: armed, moved, its estimate beside the truth, its stream recorded.
+
+use std::env;
+use std::error::Error;
+use std::fs::File;
+use std::io::BufWriter;
+
+use board_tests::{Board, View, replay};
+use proprio::session::{ImuColumns, SessionWriter};
+use proprio::simulate::Recorded;
+use rig_twin::{Program, Scenario};
+use telemetry::{Command, Outcome};
+use virtual_due::Rig;
+
+const SEED: u64 = 11;
+
+/// Board time from one look to the next, ms; set-points go out as often.
+const LOOK_MS: u64 = 100;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let mut arguments = env::args().skip(1);
+    let (Some(path), Some(seconds)) = (arguments.next(), arguments.next()) else {
+        return Err("usage: demo SESSION.csv SECONDS".into());
+    };
+    let seconds: u64 = seconds.parse()?;
+
+    let mut board = Board::new(Rig::new(Scenario::One, SEED));
+    // Power-on, IMUs, and a tare of one second while the arm rests.
+    board.run_ms(2500);
+    let program = Program::new(Scenario::One, SEED);
+    let mut view = View::new(seconds);
+    if board.ask(Command::Arm) != Outcome::Ack {
+        return Err("the board does not arm".into());
+    }
+    let start_s = board.machine.seconds();
+    for _ in 0..seconds * 1000 / LOOK_MS {
+        board.set_pressures(program.duties(board.machine.seconds() - start_s));
+        board.run_ms(LOOK_MS);
+        view.show(&board);
+    }
+    view.finish();
+
+    record(&board, &path)?;
+    let expected = replay(board.samples());
+    let equal = board.estimates().zip(&expected).filter(|(found, expected)| found == expected).count();
+    println!(
+        "{equal} of {} estimates of the board are, bit for bit, the host's of the same samples",
+        board.estimates().count()
+    );
+    Ok(())
+}
+
+/// The stream since the first tare as a session, with the truth beside it.
+fn record(board: &Board, path: &str) -> Result<(), Box<dyn Error>> {
+    let mut session = SessionWriter::new(BufWriter::new(File::create(path)?), ImuColumns::Quaternion)?;
+    for sample in board.samples().filter(|sample| sample.tare > 0) {
+        let Some(truth) = board.truths().get(sample.tick as usize) else { continue };
+        session.write(&Recorded {
+            time_us: sample.time_us,
+            counts: sample.bend,
+            quaternions: sample.imu,
+            truth: *truth,
+        })?;
+    }
+    Ok(())
+}

@@ -1,0 +1,40 @@
+//! The host's own estimates of what the board has read.
+
+use std::path::Path;
+
+use calibration_tables::ArmFile;
+use estimator_core::{Estimator, Method, Q};
+use telemetry::{Estimate, SEGMENTS, Sample};
+
+/// Ticks a second of the board.
+const RATE_HZ: f64 = 100.0;
+
+/// The reference arm's table, which the firmware has baked in.
+///
+/// # Panics
+/// If the committed file is none.
+#[must_use]
+pub fn table() -> ArmFile {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../calibration-tables/planar-6.toml");
+    ArmFile::load(&path).expect("the reference table is committed")
+}
+
+/// What the host's estimator makes of the samples, in the same fixed point, started anew wherever the board's was.
+///
+/// # Panics
+/// If the reference table is none.
+pub fn replay<'s>(samples: impl Iterator<Item = &'s Sample>) -> Vec<Estimate> {
+    let baked = table().bake::<Q>(RATE_HZ).expect("the reference table bakes");
+    let table = baked.table();
+    let start = || Estimator::<Q, SEGMENTS, 100>::new(&table).expect("the reference arm has six segments");
+    let (mut estimator, mut tare) = (start(), 0);
+    let mut estimates = Vec::new();
+    for sample in samples {
+        if sample.tare != tare {
+            (estimator, tare) = (start(), sample.tare);
+        }
+        let estimate = estimator.step(&sample.into());
+        estimates.push(Estimate::of(sample.tick, &estimator.shape(&estimate, Method::Fusion)));
+    }
+    estimates
+}

@@ -1,0 +1,87 @@
+//! What the board survives, and what it says of it afterwards.
+
+use board_tests::Board;
+use rig_twin::Scenario;
+use telemetry::{Command, Event, Outcome, ResetCause, SetPressures};
+use virtual_due::Rig;
+use virtual_due::rig::Held;
+
+/// The core's register that disables interrupts 0 to 31 (ARMv7-M, B3.4.5).
+const NVIC_ICER0: u32 = 0xE000_E180;
+
+/// Interrupt of TC0's channel 0: the tick.
+const TC0: u32 = 27;
+
+fn ready() -> Board {
+    let mut board = Board::new(Rig::new(Scenario::One, 1));
+    board.run_ms(1500);
+    board
+}
+
+#[test]
+fn the_watchdog_bites_a_stuck_task_and_the_arm_is_vented() {
+    let mut board = ready();
+    assert_eq!(board.ask(Command::Arm), Outcome::Ack);
+    let pressures = SetPressures { pressures_pa: [100_000; 6], valid_ms: 1000 };
+    assert_eq!(board.ask(Command::SetPressures(pressures)), Outcome::Ack);
+    assert!(board.machine.poke_core(NVIC_ICER0, 1 << TC0), "the tick is stuck");
+    board.run_ms(250);
+    assert_eq!(board.machine.world().set_points_pa(), [0.0; 6]);
+    board.run_ms(100);
+    let hello = board.hellos().last().expect("a board greets");
+    assert_eq!((hello.reset, hello.boot), (ResetCause::Watchdog, 2));
+}
+
+#[test]
+fn a_fault_is_told_after_the_reset() {
+    let mut board = ready();
+    // An instruction that no core knows, where the processor goes next when it wakes.
+    let pc = board.machine.pc();
+    assert!(board.machine.poke(pc, &[0x00, 0xDE, 0x00, 0xDE]));
+    board.run_ms(100);
+    let hello = board.hellos().last().expect("a board greets");
+    assert_eq!((hello.reset, hello.boot), (ResetCause::Software, 2));
+    let last = hello.last_panic.as_ref().expect("the fault's last words are kept");
+    assert!(last.contains("HardFault"), "{last}");
+}
+
+#[test]
+fn a_reset_by_the_port_starts_over() {
+    let mut board = ready();
+    board.machine.press_reset();
+    board.run_ms(100);
+    let hello = board.hellos().last().expect("a board greets");
+    assert_eq!((hello.reset, hello.boot), (ResetCause::Pin, 2));
+}
+
+#[test]
+fn a_stuck_bus_costs_the_imus_and_no_tick() {
+    let mut board = ready();
+    board.machine.world_mut().faults.sda = Some(Held::Forever);
+    board.run_ms(1000);
+    let sample = board.samples().last().expect("samples come");
+    assert!(sample.imu.iter().all(Option::is_none) && sample.bend.iter().all(Option::is_some), "{sample:?}");
+    let estimate = board.estimates().last().expect("estimates come");
+    assert!(estimate.segments.iter().all(Option::is_some), "the bend sensors go on");
+    assert_eq!(board.healths().last().expect("health comes").overruns, 0);
+}
+
+#[test]
+fn a_bus_that_a_unit_holds_is_clocked_free() {
+    let mut board = ready();
+    board.machine.world_mut().faults.sda = Some(Held::Clocks(5));
+    board.run_ms(1500);
+    assert!(board.events().any(|event| event == Event::BusRecovery));
+    let sample = board.samples().last().expect("samples come");
+    assert!(sample.imu.iter().all(Option::is_some), "{sample:?}");
+}
+
+#[test]
+fn an_imu_that_browns_out_is_back_within_two_seconds() {
+    let mut board = ready();
+    board.machine.world_mut().brown_out(3);
+    board.run_ms(50);
+    assert!(board.samples().last().expect("samples come").imu[3].is_none());
+    board.run_ms(2000);
+    assert!(board.samples().last().expect("samples come").imu[3].is_some());
+}

@@ -1,0 +1,90 @@
+//! Pressures: only when armed, and never for longer than somebody asks for them.
+
+use board_tests::Board;
+use rig_twin::Scenario;
+use telemetry::{Actuation, Command, Event, Outcome, Refusal, SetPressures};
+use virtual_due::Rig;
+
+/// The right side of all modules at 100 kPa.
+const RIGHT: SetPressures = SetPressures { pressures_pa: [100_000, 0, 100_000, 0, 100_000, 0], valid_ms: 200 };
+
+fn ready() -> Board {
+    let mut board = Board::new(Rig::new(Scenario::One, 1));
+    board.run_ms(2500);
+    board
+}
+
+fn set_points(board: &Board) -> [f64; 6] {
+    board.machine.world().set_points_pa()
+}
+
+#[test]
+fn a_board_comes_up_vented() {
+    assert_eq!(set_points(&ready()), [0.0; 6]);
+}
+
+#[test]
+fn pressures_move_only_when_armed() {
+    let mut board = ready();
+    assert_eq!(board.ask(Command::SetPressures(RIGHT)), Outcome::Nack(Refusal::Disarmed));
+    assert_eq!(set_points(&board), [0.0; 6]);
+}
+
+#[test]
+fn set_pressures_reach_the_regulators() {
+    let mut board = ready();
+    assert_eq!(board.ask(Command::Arm), Outcome::Ack);
+    assert_eq!(board.ask(Command::SetPressures(RIGHT)), Outcome::Ack);
+    for (found, asked) in set_points(&board).into_iter().zip(RIGHT.pressures_pa) {
+        // A step of the PWM is 67 Pa.
+        assert!((found - f64::from(asked)).abs() <= 67.0, "{found} Pa of {asked}");
+    }
+}
+
+#[test]
+fn the_arm_moves_and_the_estimate_follows() {
+    let mut board = ready();
+    assert_eq!(board.ask(Command::Arm), Outcome::Ack);
+    for _ in 0..30 {
+        assert_eq!(board.ask(Command::SetPressures(RIGHT)), Outcome::Ack);
+    }
+    let truth = board.machine.world().truth();
+    let tip = truth[5];
+    assert!(tip.x_m > 0.1, "the arm bends to the right: {tip:?}");
+    let estimate = board.estimates().last().expect("estimates come");
+    let end = estimate.segments[5].expect("the tip is known").end.map(|bits| f64::from(bits) / f64::from(1 << 26));
+    let error_mm = (end[0] - tip.x_m).hypot(end[1] - tip.y_m) * 1000.0;
+    assert!(error_mm < 60.0, "estimate {end:?} m, truth {tip:?}, {error_mm} mm apart");
+}
+
+#[test]
+fn silence_vents_the_arm_within_one_and_a_half_seconds() {
+    let mut board = ready();
+    assert_eq!(board.ask(Command::Arm), Outcome::Ack);
+    board.send(Command::SetPressures(RIGHT));
+    board.run_ms(1500);
+    assert_eq!(set_points(&board), [0.0; 6]);
+    let states: Vec<_> = board.events().filter(|event| matches!(event, Event::Actuation(_))).collect();
+    let expected = [Actuation::Armed, Actuation::Holding, Actuation::Ramping, Actuation::Disarmed];
+    assert_eq!(states, expected.map(Event::Actuation));
+}
+
+#[test]
+fn vented_pressures_stay_until_armed_again() {
+    let mut board = ready();
+    assert_eq!(board.ask(Command::Arm), Outcome::Ack);
+    board.send(Command::SetPressures(RIGHT));
+    board.run_ms(1600);
+    assert_eq!(board.ask(Command::SetPressures(RIGHT)), Outcome::Nack(Refusal::Disarmed));
+    assert_eq!(set_points(&board), [0.0; 6]);
+}
+
+#[test]
+fn disarm_vents_at_once() {
+    let mut board = ready();
+    assert_eq!(board.ask(Command::Arm), Outcome::Ack);
+    assert_eq!(board.ask(Command::SetPressures(RIGHT)), Outcome::Ack);
+    board.send(Command::Disarm);
+    board.run_ms(30);
+    assert_eq!(set_points(&board), [0.0; 6]);
+}

@@ -1,0 +1,77 @@
+//! What the board streams is enough to compute the same, bit for bit, on a host.
+
+use board_tests::{Board, replay};
+use rig_twin::{Program, Scenario};
+use telemetry::{Command, Outcome};
+use virtual_due::Rig;
+
+/// Every estimate of the board is the host's of the same sample.
+fn assert_replays(board: &Board) {
+    let expected = replay(board.samples());
+    let found: Vec<_> = board.estimates().copied().collect();
+    assert!(found.len() > 100, "{} estimates", found.len());
+    // The last sample may have left the board before its estimate.
+    assert!(expected.len() - found.len() <= 1);
+    for (found, expected) in found.iter().zip(&expected) {
+        assert_eq!(found, expected);
+    }
+}
+
+#[test]
+fn every_estimate_is_the_hosts_of_the_same_sample() {
+    let mut board = Board::new(Rig::new(Scenario::One, 5));
+    board.run_ms(2000);
+    board.swing(&Program::new(Scenario::One, 5), 20);
+    assert_replays(&board);
+}
+
+#[test]
+fn every_estimate_is_the_hosts_after_a_tare() {
+    let mut board = Board::new(Rig::new(Scenario::One, 6));
+    board.run_ms(2000);
+    board.swing(&Program::new(Scenario::One, 6), 3);
+    board.run_ms(2500);
+    assert_eq!(board.ask(Command::Tare), Outcome::Ack);
+    board.swing(&Program::new(Scenario::One, 6), 3);
+    assert_eq!(board.samples().last().expect("samples come").tare, 2);
+    assert_replays(&board);
+}
+
+#[test]
+fn the_stream_decodes_without_a_loss() {
+    let mut board = Board::new(Rig::new(Scenario::One, 7));
+    board.run_ms(10_000);
+    let counts = board.counts();
+    assert_eq!((counts.lost, counts.damaged, counts.foreign, counts.unknown), (0, 0, 0, 0));
+    let ticks: Vec<_> = board.samples().map(|sample| sample.tick).collect();
+    assert!(ticks.windows(2).all(|pair| pair[1] == pair[0] + 1), "a tick is missing");
+    assert!(ticks.len() >= 990);
+    let health = board.healths().last().expect("health comes");
+    assert_eq!((health.dropped_frames, health.overruns, health.stale_scans), (0, 0, 0));
+}
+
+#[test]
+fn the_stream_leaves_a_fifth_of_the_line_to_spare() {
+    let mut board = Board::new(Rig::new(Scenario::One, 8));
+    board.run_ms(2000);
+    let before = board.bytes();
+    board.run_ms(10_000);
+    let rate = (board.bytes() - before) / 10;
+    assert!(rate <= 20_000, "{rate} bytes/s");
+}
+
+#[test]
+fn ticks_are_ten_milliseconds_apart_to_the_microsecond() {
+    let mut board = Board::new(Rig::new(Scenario::One, 9));
+    board.run_ms(3000);
+    let times: Vec<_> = board.samples().map(|sample| sample.time_us).collect();
+    assert!(times.windows(2).all(|pair| pair[1] - pair[0] == 10_000));
+}
+
+#[test]
+fn an_estimate_is_made_within_six_milliseconds_of_its_tick() {
+    let mut board = Board::new(Rig::new(Scenario::One, 10));
+    board.run_ms(3000);
+    let longest = board.healths().map(|health| health.longest_tick_us).max().expect("health comes");
+    assert!((1000..6000).contains(&longest), "{longest} µs");
+}

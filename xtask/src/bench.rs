@@ -1,0 +1,10 @@
+//! `cargo xtask bench`: what the firmware costs on the emulated board, against `host-tests/board/budgets.toml`.
+
+use crate::board::{ANY_RUST, add_target};
+use crate::tool::cargo;
+
+/// Builds and runs the benchmark; it fails where something is out of its budget.
+pub fn run() -> Result<(), String> {
+    add_target()?;
+    cargo(&["run", "--quiet", "--release", ANY_RUST, "--package", "board-tests", "--bin", "bench"], &[])
+}

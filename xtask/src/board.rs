@@ -1,0 +1,28 @@
+//! What concerns the board, real or emulated: its target, and the packages that only these commands build.
+
+use std::process::Command;
+
+use crate::tool::{cargo, check};
+
+/// The emulated board's engine says that it wants a newer Rust than it does.
+pub const ANY_RUST: &str = "--ignore-rust-version";
+
+const TARGET: &str = "thumbv7m-none-eabi";
+
+/// Adds the board's target to the toolchain where it is missing.
+pub fn add_target() -> Result<(), String> {
+    let installed = Command::new("rustup").args(["target", "list", "--installed"]).output();
+    match installed {
+        Ok(output) if String::from_utf8_lossy(&output.stdout).lines().any(|line| line == TARGET) => Ok(()),
+        Ok(_) => check(Command::new("rustup").args(["target", "add", TARGET])),
+        Err(error) => Err(format!("rustup: {error}; without it, see to it that the target {TARGET} is installed")),
+    }
+}
+
+/// `cargo verify`: every test, those on the emulated board too.
+pub fn verify() -> Result<(), String> {
+    add_target()?;
+    // The firmware and the probes have no host to be tested on.
+    let others = ["--exclude", "firmware", "--exclude", "board-probe"];
+    cargo(&[&["test", "--workspace", ANY_RUST], &others[..]].concat(), &[])
+}
