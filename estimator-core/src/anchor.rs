@@ -22,7 +22,7 @@ pub struct AnchorRule {
 /// two, its place in the window stays empty; when the whole window is empty, the newest offset holds.
 ///
 /// ```
-/// use estimator_core::{Anchor, AnchorRule, Turns};
+/// use estimator_core::{Anchor, AnchorRule, Pace, Turns};
 ///
 /// let rule = AnchorRule {
 ///     window: 2,
@@ -30,21 +30,52 @@ pub struct AnchorRule {
 ///     sample_rate_millihertz: 10_000,
 ///     threshold: Turns::ZERO,
 /// };
-/// let mut anchor = Anchor::<2>::new();
+/// let (mut pace, mut anchor) = (Pace::new(), Anchor::<2>::new());
 /// for value in [1, 3, 5] {
-///     anchor.push(&rule, Some(Turns::from_bits(value)));
+///     anchor.push(pace.tick(&rule), Some(Turns::from_bits(value)));
 /// }
 /// assert_eq!(anchor.offset(), Some(Turns::from_bits(4)));
 /// ```
 #[derive(Debug, Clone, Copy)]
 pub struct Anchor<const W: usize> {
     window: [Turns; W],
-    oldest: usize,
     mean: Mean,
     group: Mean,
+    offset: Option<Turns>,
+}
+
+/// When a value of the window is complete and which it replaces; the same for the anchors of all segments.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Pace {
     /// How much of the time to the next value has passed: adds the anchor's rate a sample, up to the sample rate.
     phase: u32,
-    offset: Option<Turns>,
+    oldest: u16,
+}
+
+/// What [`Pace`] says of one sample.
+#[derive(Debug, Clone, Copy)]
+pub struct Slot {
+    oldest: u16,
+    complete: bool,
+}
+
+impl Pace {
+    /// At the start of a session.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self { phase: 0, oldest: 0 }
+    }
+
+    /// Takes one sample's time.
+    pub fn tick(&mut self, rule: &AnchorRule) -> Slot {
+        self.phase = self.phase.saturating_add(rule.rate_millihertz);
+        let slot = Slot { oldest: self.oldest, complete: self.phase >= rule.sample_rate_millihertz };
+        if slot.complete {
+            self.phase = (self.phase - rule.sample_rate_millihertz).min(rule.sample_rate_millihertz);
+            self.oldest = if self.oldest + 1 < rule.window { self.oldest + 1 } else { 0 };
+        }
+        slot
+    }
 }
 
 /// Stands in the window for a value that was missing, at half the memory of an `Option`: no arm turns so far.
@@ -82,29 +113,27 @@ impl<const W: usize> Anchor<W> {
     /// An anchor that has seen nothing.
     #[must_use]
     pub const fn new() -> Self {
-        Self { window: [MISSING; W], oldest: 0, mean: Mean::EMPTY, group: Mean::EMPTY, phase: 0, offset: None }
+        Self { window: [MISSING; W], mean: Mean::EMPTY, group: Mean::EMPTY, offset: None }
     }
 
     /// Takes this sample's difference θ_imu,i − θ_bend,i, or `None` where one of the two is unknown.
-    pub fn push(&mut self, rule: &AnchorRule, difference: Option<Turns>) {
-        self.group.add(difference.unwrap_or(MISSING));
-        self.phase = self.phase.saturating_add(rule.rate_millihertz);
-        if self.phase < rule.sample_rate_millihertz {
-            return;
+    ///
+    /// Every sample costs the same, whether it completes a value of the window or not.
+    #[inline]
+    pub fn push(&mut self, Slot { oldest, complete }: Slot, difference: Option<Turns>) {
+        if let Some(difference) = difference {
+            self.group.add(difference);
         }
-        self.phase = (self.phase - rule.sample_rate_millihertz).min(rule.sample_rate_millihertz);
         let newest = self.group.value().unwrap_or(MISSING);
-        self.group = Mean::EMPTY;
-        if let Some(place) = self.window.get_mut(self.oldest) {
-            self.mean.remove(*place);
-            self.mean.add(newest);
-            *place = newest;
+        self.group = if complete { Mean::EMPTY } else { self.group };
+        let Some(place) = self.window.get_mut(usize::from(oldest)) else { return };
+        let value = if complete { newest } else { *place };
+        self.mean.remove(*place);
+        self.mean.add(value);
+        *place = value;
+        if let Some(mean) = self.mean.value() {
+            self.offset = Some(mean);
         }
-        self.oldest += 1;
-        if self.oldest >= usize::from(rule.window) {
-            self.oldest = 0;
-        }
-        self.offset = self.mean.value().or(self.offset);
     }
 
     /// The newest offset; `None` before the first.

@@ -6,7 +6,7 @@
 use core::f64::consts::TAU;
 use core::ops::{Add, Neg, Sub};
 
-use crate::fixed::divide;
+use crate::fixed::{reciprocal, signed_upper_word, upper_word};
 use crate::scalar::{Scalar, TWO_PI};
 
 /// 2⁻³² turns in a turn.
@@ -56,27 +56,40 @@ impl Phase {
 
     /// The direction of the vector (`x`, `y`), counter-clockwise from the x axis in the sense of `atan2(y, x)`, to
     /// 3 nrad, two units; `None` for the zero vector. Constant time but for two branches, without 64-bit division.
+    #[inline]
     #[must_use]
     pub fn atan2(y: i64, x: i64) -> Option<Self> {
-        let longest = x.unsigned_abs().max(y.unsigned_abs());
-        if longest == 0 {
-            return None;
-        }
-        let (abs_y, abs_x) = (scale(y.unsigned_abs(), longest), scale(x.unsigned_abs(), longest));
+        let (abs_y, abs_x) = (y.unsigned_abs(), x.unsigned_abs());
+        // Half of a unit quaternion's vector, in units of 2⁻⁶⁰, unless it is steep.
+        let (abs_y, abs_x) = match abs_y.wrapping_add(abs_x) >> 58 {
+            1..4 => ((abs_y >> 28) as u32, (abs_x >> 28) as u32),
+            _ => scaled(abs_y, abs_x)?,
+        };
         // Fold the first quadrant on |angle| ≤ π/8 about 0, π/4 or π/2, where six terms of atan suffice.
         let (base, num, den) = if abs_y < times_tan_eighth(abs_x) {
-            (0, i64::from(abs_y), abs_x)
+            (0, abs_y as i32, abs_x)
         } else if abs_x < times_tan_eighth(abs_y) {
-            (QUARTER_TURN, -i64::from(abs_x), abs_y)
+            (QUARTER_TURN, (abs_x as i32).wrapping_neg(), abs_y)
         } else {
-            (QUARTER_TURN / 2, i64::from(abs_y) - i64::from(abs_x), abs_x + abs_y)
+            (QUARTER_TURN / 2, abs_y.wrapping_sub(abs_x) as i32, abs_x.wrapping_add(abs_y))
         };
-        let ratio = i64::from(divide(num.unsigned_abs() as u32, den, 31));
-        let first = base + if num < 0 { -atan_turns(ratio) } else { atan_turns(ratio) };
-        let upper = if x < 0 { 2 * QUARTER_TURN - first } else { first };
-        // The cast wraps +½ turn to −½, the same direction.
-        Some(Self((if y < 0 { -upper } else { upper }) as i32))
+        let zeros = den.leading_zeros();
+        let ratio = upper_word(num.unsigned_abs() << zeros, reciprocal(den << zeros));
+        let ratio = atan_turns(ratio.wrapping_add(ROUNDED_DOWN) as i32);
+        let first = base.wrapping_add(if num < 0 { -ratio } else { ratio });
+        // Half a turn is −½, and wraps by itself.
+        let upper = if x < 0 { i32::MIN.wrapping_sub(first) } else { first };
+        Some(Self(if y < 0 { upper.wrapping_neg() } else { upper }))
     }
+}
+
+/// The vector at a length that fits: 31 bits for the longer one; `None` for the zero vector.
+#[cold]
+fn scaled(y: u64, x: u64) -> Option<(u32, u32)> {
+    let longest = x.max(y);
+    let zeros = longest.leading_zeros();
+    let scale = |value: u64| (if zeros > 33 { value << (zeros - 33) } else { value >> (33 - zeros) }) as u32;
+    (longest > 0).then(|| (scale(y), scale(x)))
 }
 
 impl Sub for Phase {
@@ -89,27 +102,27 @@ impl Sub for Phase {
 }
 
 /// A quarter turn in units of 2⁻³² turns.
-const QUARTER_TURN: i64 = 1 << 30;
-
-/// Scales `value` so that `longest` gets 31 bits and a sum of two such values fits in 32.
-fn scale(value: u64, longest: u64) -> u32 {
-    let zeros = longest.leading_zeros();
-    (if zeros > 33 { value << (zeros - 33) } else { value >> (33 - zeros) }) as u32
-}
+const QUARTER_TURN: i32 = 1 << 30;
 
 /// `value · tan(π/8)`, rounded down.
+#[inline]
 fn times_tan_eighth(value: u32) -> u32 {
-    const TAN_EIGHTH: u64 = 1_779_033_704; // √2 − 1 in units of 2⁻³²
-    ((u64::from(value) * TAN_EIGHTH) >> 32) as u32
+    const TAN_EIGHTH: u32 = 1_779_033_704; // √2 − 1 in units of 2⁻³²
+    upper_word(value, TAN_EIGHTH)
 }
 
+/// What atan2 loses by rounding down, on average, in units of 2⁻³¹ of its ratio.
+const ROUNDED_DOWN: u32 = 3;
+
 /// atan of `ratio` (2⁻³¹, 0…tan(π/8)) in units of 2⁻³² turns: minimax polynomial in the square, error 6·10⁻¹⁰ rad.
-fn atan_turns(ratio: i64) -> i64 {
+#[inline]
+fn atan_turns(ratio: i32) -> i32 {
     // Turns in units of 2⁻³³.
-    const TERMS: [i64; 6] = [1_367_130_550, -455_709_838, 273_402_024, -194_685_271, 144_584_902, -82_577_231];
-    let square = (ratio * ratio) >> 31;
-    let sum = TERMS.iter().rev().fold(0, |sum, term| term + ((sum * square) >> 31));
-    (ratio * sum) >> 32
+    const TERMS: [i32; 6] = [1_367_130_550, -455_709_838, 273_402_024, -194_685_271, 144_584_902, -82_577_231];
+    // In units of 2⁻³², so that a product's upper word is what is wanted; tan²(π/8) is under a half.
+    let square = upper_word(2 * ratio as u32, 2 * ratio as u32) as i32;
+    let sum = TERMS.iter().rev().fold(0, |sum, term| term + signed_upper_word(sum, square));
+    signed_upper_word(ratio, sum)
 }
 
 /// An unwrapped angle in units of 2⁻³² turns, over ±2³¹ turns. Clockwise positive.
@@ -172,13 +185,12 @@ impl Turns {
         if count == 0 {
             return Self::ZERO;
         }
-        let (magnitude, divisor) = (self.0.unsigned_abs(), u32::from(count));
-        let (mut quotient, mut rest) = (0_u64, 0_u32);
-        for shift in [48, 32, 16, 0] {
-            let part = (rest << 16) | ((magnitude >> shift) as u32 & 0xFFFF);
-            quotient = (quotient << 16) | u64::from(part / divisor);
-            rest = part % divisor;
-        }
+        let divisor = u32::from(count);
+        let magnitude = self.0.unsigned_abs();
+        let (upper, lower) = ((magnitude >> 32) as u32, magnitude as u32);
+        let part = ((upper % divisor) << 16) | (lower >> 16);
+        let last = ((part % divisor) << 16) | (lower & 0xFFFF);
+        let quotient = (u64::from(upper / divisor) << 32) | u64::from(((part / divisor) << 16) | (last / divisor));
         Self(if self.0 < 0 { (quotient as i64).wrapping_neg() } else { quotient as i64 })
     }
 }

@@ -71,6 +71,6 @@ impl<S: Scalar> BendMap<S> {
         let [b0, b1, b2] = self.coefficients;
         let angle = b0 + u * (b1 + u * b2);
         // Between the two branches of a map that turns back it may be over a turn again.
-        (angle.magnitude() < S::constant(BEYOND_A_TURN)).then_some(angle)
+        angle.is_within(S::constant(BEYOND_A_TURN)).then_some(angle)
     }
 }

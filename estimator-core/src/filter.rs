@@ -1,8 +1,8 @@
 //! One decoupled block of KF_orient or KF_coord (paper, eq. 8 to 12).
 //!
 //! A = I and B u = 0 (sessions need not carry pressures), so each coordinate is a scalar filter, and the coordinates of
-//! one block share their parameters and with them one covariance. Measurements with uncorrelated noise may be taken one
-//! after the other, which replaces the matrix inverse of K = P⁻Hᵀ(H P⁻ Hᵀ + R)⁻¹ by one division each.
+//! one block share their parameters and with them one covariance. As the noise of the two measurements is uncorrelated, the
+//! matrix inverse of K = P⁻Hᵀ(H P⁻ Hᵀ + R)⁻¹ comes down to one division.
 
 use nalgebra::SVector;
 
@@ -31,19 +31,74 @@ pub const COVARIANCE_LIMIT: f64 = 16.0;
 /// The largest H.
 pub const H_LIMIT: f64 = 1.25;
 
+/// What a block's parameters come to for the measurements of one sample, worked out once.
+///
+/// With uncorrelated noise, P = P⁻ / (1 + P⁻ (h_a²/r_a + h_b²/r_b)) and K_a = P h_a / r_a. Multiplied through by the Rs,
+/// so that nothing is large, r = r_a r_b, h² = h_a² r_b + h_b² r_a and k_a = h_a r_b; then u = P⁻ / (r + P⁻ h²) is the only
+/// division of P = u r and x = x⁻ + u (k_a z_a + k_b z_b − h² x⁻).
+#[derive(Debug, Clone, Copy)]
+struct Weights<S> {
+    r: S,
+    h_squared: S,
+    /// Of z_imu, of z_bend and of x⁻ in the correction: k_a, k_b and −h².
+    of: [S; 3],
+}
+
+impl<S: Scalar> Weights<S> {
+    fn both(noise: &Noise<S>) -> Self {
+        const LARGEST: Constant = Constant::new(31.0);
+        const SHARE: Constant = Constant::new(1.0 / COVARIANCE_LIMIT);
+        let h_squared = noise.h_imu * noise.h_imu * noise.r_bend + noise.h_bend * noise.h_bend * noise.r_imu;
+        let of = [noise.h_imu * noise.r_bend, noise.h_bend * noise.r_imu, -h_squared];
+        let weights = Self { r: noise.r_imu * noise.r_bend, h_squared, of };
+        // The common factor is free: half of all fits where P⁻ h² + r would not.
+        let fits = h_squared < (S::constant(LARGEST) - weights.r) * S::constant(SHARE);
+        if fits { weights } else { weights.halved() }
+    }
+
+    fn halved(self) -> Self {
+        let half = |value| value * S::constant(Constant::new(0.5));
+        Self { r: half(self.r), h_squared: half(self.h_squared), of: self.of.map(half) }
+    }
+}
+
+/// A block's parameters, worked out for every set of measurements that a sample can have.
+#[derive(Debug, Clone, Copy)]
+pub struct Gains<S> {
+    q: S,
+    both: Weights<S>,
+    imu: Weights<S>,
+    bend: Weights<S>,
+}
+
+impl<S: Scalar> Gains<S> {
+    /// From a table's parameters.
+    #[must_use]
+    pub fn new(noise: &Noise<S>) -> Self {
+        let Noise { q, r_imu, r_bend, h_imu, h_bend } = *noise;
+        let zero = S::zero();
+        Self {
+            q,
+            both: Weights::both(noise),
+            imu: Weights { r: r_imu, h_squared: h_imu * h_imu, of: [h_imu, zero, -(h_imu * h_imu)] },
+            bend: Weights { r: r_bend, h_squared: h_bend * h_bend, of: [zero, h_bend, -(h_bend * h_bend)] },
+        }
+    }
+}
+
 /// State x (`D` coordinates) and their common covariance P, once there was a measurement.
 ///
 /// [`Q`](crate::Q) stays within 1e-6 rad or m of `f64` while Q is at least 1/1000 of the larger R a sample, a memory of
 /// some thirty samples; a slower filter has too few digits in P (2·10⁻⁵ at 1/10 000).
 ///
 /// ```
-/// use estimator_core::Block;
+/// use estimator_core::{Block, Gains, Noise};
 /// use nalgebra::SVector;
 ///
+/// let gains = Gains::new(&Noise { q: 1.0, r_imu: 1.0, r_bend: 1.0, h_imu: 1.0, h_bend: 1.0 });
 /// let mut block = Block::<f64, 1>::new();
-/// block.update(SVector::from([2.0]), 1.0, 1.0);
-/// block.predict(1.0);
-/// block.update(SVector::from([5.0]), 1.0, 1.0);
+/// block.step(&gains, Some(SVector::from([2.0])), None);
+/// block.step(&gains, Some(SVector::from([5.0])), None);
 /// let (state, covariance) = block.state().expect("it was measured");
 /// assert!((state.x - 4.0).abs() < 1e-12 && (covariance - 2.0 / 3.0).abs() < 1e-12);
 /// ```
@@ -65,29 +120,30 @@ impl<S: Scalar, const D: usize> Block<S, D> {
         self.state
     }
 
-    /// x⁻ = x, P⁻ = P + Q (eq. 8, 9).
-    pub fn predict(&mut self, q: S) {
+    /// Predicts, x⁻ = x, P⁻ = P + Q (eq. 8, 9), and takes the measurements z = H x + noise that there are (eq. 10 to 12).
+    /// The first of them start the filter.
+    #[inline]
+    pub fn step(&mut self, gains: &Gains<S>, imu: Option<SVector<S, D>>, bend: Option<SVector<S, D>>) {
         const LIMIT: Constant = Constant::new(COVARIANCE_LIMIT);
         if let Some((_, p)) = &mut self.state {
             let room = S::constant(LIMIT) - *p;
-            *p += if q < room { q } else { room };
+            *p += if gains.q < room { gains.q } else { room };
         }
-    }
-
-    /// Takes a measurement z = H x + noise of covariance R (eq. 10 to 12). The first one starts the filter: x = z / H,
-    /// P = R / H².
-    pub fn update(&mut self, z: SVector<S, D>, h: S, r: S) {
-        match &mut self.state {
-            None => {
-                let inverse = S::one() / h;
-                self.state = Some((z * inverse, r * inverse * inverse));
-            }
-            Some((x, p)) => {
-                let ratio = *p / (h * h * *p + r);
-                *x += (z - *x * h) * (ratio * h);
-                *p = ratio * r;
-            }
-        }
+        let zeros = SVector::zeros();
+        let (weights, imu, bend) = match (imu, bend) {
+            (Some(imu), Some(bend)) => (&gains.both, imu, bend),
+            (Some(imu), None) => (&gains.imu, imu, zeros),
+            (None, Some(bend)) => (&gains.bend, zeros, bend),
+            (None, None) => return,
+        };
+        let (x, ratio) = match self.state {
+            Some((x, p)) => (x, p / (weights.r + p * weights.h_squared)),
+            None => (zeros, S::one() / weights.h_squared),
+        };
+        let ([imu], [bend], [state]) = (imu.data.0, bend.data.0, x.data.0);
+        let weighed = S::dots::<D, 3>(core::array::from_fn(|k| (weights.of, [imu[k], bend[k], state[k]])));
+        let correction = S::dots::<D, 1>(weighed.map(|weighed| ([ratio], [weighed])));
+        self.state = Some((x + SVector::from(correction), ratio * weights.r));
     }
 }
 

@@ -13,8 +13,8 @@
 //! | [`Sample`], [`ImuReading`] | what a board reads in one tick |
 //! | [`Table`], [`Segment`] | an arm's geometry, maps and filter parameters |
 //! | [`Estimator`], [`Estimate`], [`Method`] | one step of all four methods, and the shape by each |
-//! | [`Arc`], [`Link`], [`chain`] | PCC kinematics |
-//! | [`Heading`], [`Anchor`], [`Block`] | the stages, usable by themselves |
+//! | [`Arc`], [`Pcc`], [`Link`], [`chain`] | PCC kinematics |
+//! | [`Heading`], [`Pace`], [`Anchor`], [`Block`] | the stages, usable by themselves |
 //!
 //! Units: rad, m and s; angles are clockwise positive (towards +x), headings count from the base's y axis.
 //!
@@ -49,14 +49,14 @@ mod sample;
 mod scalar;
 mod table;
 
-pub use anchor::{Anchor, AnchorRule};
+pub use anchor::{Anchor, AnchorRule, Pace, Slot};
 pub use angle::{Angle, Phase, Turns};
 pub use bend::{BendMap, VOLTS_PER_COUNT};
-pub use estimator::{Estimate, Estimator, Fused, Method, SegmentEstimate, SegmentShape, Shape};
-pub use filter::{Block, COVARIANCE_LIMIT, H_LIMIT, Noise};
+pub use estimator::{Estimate, Estimator, Fused, Method, SegmentEstimate, Shape};
+pub use filter::{Block, COVARIANCE_LIMIT, Gains, H_LIMIT, Noise};
 pub use imu::Heading;
 pub use overflow::saturations;
-pub use pcc::{Arc, Link, chain};
+pub use pcc::{Arc, Link, Pcc, SegmentShape, chain};
 pub use q::Q;
 pub use sample::{ImuReading, SENSORS_PER_SEGMENT, Sample};
 pub use scalar::{Constant, Scalar};

@@ -8,7 +8,7 @@ use crate::table::{OffsetAt, Segment};
 
 /// A unit arc that turns by θ: what PCC needs of an angle, smooth through θ = 0.
 ///
-/// sin θ / θ and (1 − cos θ) / θ² are one minimax polynomial each in θ²/4 for |θ| ≤ 2 rad (errors 1.4·10⁻¹² and
+/// sin θ / θ and (1 − cos θ) / θ² are one minimax polynomial each in θ² for |θ| ≤ 2 rad (errors 1.4·10⁻¹² and
 /// 2.2·10⁻¹¹); larger angles are reduced.
 ///
 /// ```
@@ -31,7 +31,14 @@ pub struct Arc<S> {
     pub sin: S,
 }
 
-const SIN_OVER_ANGLE: [Constant; 7] = Constant::array([
+/// Up to this |θ| the polynomials hold, rad.
+const LIMIT: Constant = Constant::new(2.0);
+
+/// Terms of a polynomial in θ²/4, eightfold as [`Scalar::even_polynomial`] takes them.
+type Terms<T> = [T; 7];
+
+/// sin θ / θ.
+const AXIAL: Terms<Constant> = eightfold([
     0.999_999_999_998_558,
     -0.666_666_666_525_055_1,
     0.133_333_331_062_445_16,
@@ -41,26 +48,53 @@ const SIN_OVER_ANGLE: [Constant; 7] = Constant::array([
     6.152_922_495_571_073e-7,
 ]);
 
-const VERSINE_OVER_SQUARE: [Constant; 6] = Constant::array([
+/// (1 − cos θ) / θ².
+const VERSINE: Terms<Constant> = eightfold([
     0.499_999_999_978_359_6,
     -0.166_666_665_104_189_15,
     0.022_222_203_937_815_63,
     -0.001_587_223_271_061_236,
     7.039_481_349_596_013e-5,
     -2.001_239_275_599_844e-6,
+    0.0,
 ]);
 
-fn polynomial<S: Scalar, const K: usize>(terms: &[Constant; K], x: S) -> S {
-    terms.iter().rev().fold(S::zero(), |sum, term| sum * x + S::constant(*term))
+/// cos θ = 1 − θ² (1 − cos θ) / θ².
+const COSINE: Terms<Constant> = {
+    let mut terms = eightfold([1.0; 7]);
+    let mut k = 1;
+    while k < terms.len() {
+        terms[k] = Constant::new(-4.0 * VERSINE[k - 1].value);
+        k += 1;
+    }
+    terms
+};
+
+const fn eightfold(terms: Terms<f64>) -> Terms<Constant> {
+    let mut constants = [Constant::new(0.0); 7];
+    let mut k = 0;
+    while k < terms.len() {
+        constants[k] = Constant::new(8.0 * terms[k]);
+        k += 1;
+    }
+    constants
 }
 
 impl<S: Scalar> Arc<S> {
     /// The unit arc that turns by `theta`, of any size.
     #[must_use]
     pub fn new(theta: Angle<S>) -> Self {
+        if theta.turns == 0 && theta.rest.is_within(S::constant(LIMIT)) {
+            Self::within_2_rad(theta.rest)
+        } else {
+            Self::reduced(theta)
+        }
+    }
+
+    #[cold]
+    fn reduced(Angle { rest, turns }: Angle<S>) -> Self {
         const PI: Constant = Constant::new(core::f64::consts::PI);
-        let Angle { rest, turns } = theta;
-        if turns == 0 && rest.magnitude() <= S::constant(PI) {
+        if turns == 0 && rest.is_within(S::constant(PI)) {
             return Self::within_half_turn(rest);
         }
         // Whole turns leave sine and cosine alone and shrink the chord by r/θ.
@@ -76,25 +110,23 @@ impl<S: Scalar> Arc<S> {
         }
     }
 
+    /// By the double angle: sin 2φ / 2φ = (sin φ / φ) cos φ and (1 − cos 2φ) / 2φ = (sin φ / φ) sin φ.
     fn within_half_turn(theta: S) -> Self {
         const HALF: Constant = Constant::new(0.5);
-        const LIMIT: Constant = Constant::new(2.0);
-        if theta.magnitude() <= S::constant(LIMIT) {
-            return Self::within_2_rad(theta);
-        }
-        // sin 2φ / 2φ = (sin φ / φ) cos φ and (1 − cos 2φ) / 2φ = (sin φ / φ) sin φ.
         let half = Self::within_2_rad(theta * S::constant(HALF));
         let (lateral, axial) = (half.axial * half.sin, half.axial * half.cos);
         Self { lateral, axial, cos: S::one() - theta * lateral, sin: theta * axial }
     }
 
+    #[inline]
     fn within_2_rad(theta: S) -> Self {
-        const HALF: Constant = Constant::new(0.5);
-        let half = theta * S::constant(HALF);
-        let square = half * half;
-        let axial = polynomial(&SIN_OVER_ANGLE, square);
-        let lateral = theta * polynomial(&VERSINE_OVER_SQUARE, square);
-        Self { lateral, axial, cos: S::one() - theta * lateral, sin: theta * axial }
+        let [axial, versine, cos] = [AXIAL, VERSINE, COSINE].map(|terms| terms.map(S::constant));
+        Self {
+            lateral: theta.odd_polynomial(&versine),
+            axial: theta.even_polynomial(&axial),
+            cos: theta.even_polynomial(&cos),
+            sin: theta.odd_polynomial(&axial),
+        }
     }
 }
 
@@ -105,46 +137,131 @@ pub struct Link<S> {
     pub theta: Angle<S>,
     /// End of the segment, curved part and connector, P_i in {S_i}, m.
     pub end: Vector2<S>,
-    /// cos θ_i and sin θ_i, which turn {S_i} into {S_i+1}.
-    pub direction: Vector2<S>,
 }
 
-impl<S: Scalar> Link<S> {
-    /// The link of a segment bent by `theta`: P_i = C_i + D_i with C_i = L ((1 − cos θ)/θ, sin θ/θ), and D_i along the
-    /// tangent where the connector is: d (sin θ, cos θ) at the end, d (0, 1) at the start.
+/// Kinematics of one segment, P_i = C_i + D_i with C_i = L ((1 − cos θ)/θ, sin θ/θ), and D_i along the tangent where the
+/// connector is: d (sin θ, cos θ) at the end, d (0, 1) at the start.
+///
+/// Both coordinates are polynomials like those of [`Arc`], whose terms are worked out once.
+///
+/// ```
+/// use estimator_core::{Angle, Pcc, Segment};
+///
+/// let link = Pcc::<f64>::new(&Segment::bare(0.080, 0.017)).link(Angle::from(0.0));
+/// assert!(link.end.x == 0.0 && (link.end.y - 0.097).abs() < 1e-12);
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pcc<S> {
+    /// L and d.
+    lengths: [S; 2],
+    offset_at: OffsetAt,
+    /// Up to this |θ| the polynomials hold, rad: 2, or 0 where their terms would be out of range.
+    limit: S,
+    /// x / θ.
+    lateral: Terms<S>,
+    /// y.
+    axial: Terms<S>,
+}
+
+impl<S: Scalar> Pcc<S> {
+    /// From a segment's geometry.
     #[must_use]
-    pub fn new(theta: Angle<S>, segment: &Segment<S>) -> Self {
-        let arc = Arc::new(theta);
-        let curve = Vector2::new(segment.length * arc.lateral, segment.length * arc.axial);
-        let connector = match segment.offset_at {
-            OffsetAt::End => Vector2::new(segment.offset * arc.sin, segment.offset * arc.cos),
-            OffsetAt::Start => Vector2::new(S::zero(), segment.offset),
+    pub fn new(segment: &Segment<S>) -> Self {
+        const LONGEST: Constant = Constant::new(1.0);
+        let lengths = [segment.length, segment.offset];
+        let fits = lengths.iter().all(|length| length.is_within(S::constant(LONGEST)));
+        let zeros = [S::zero(); 7];
+        if !fits {
+            return Self { lengths, offset_at: segment.offset_at, limit: S::zero(), lateral: zeros, axial: zeros };
+        }
+        let [axial, versine, cos] = [AXIAL, VERSINE, COSINE].map(|terms| terms.map(S::constant));
+        let one = core::array::from_fn(|k| if k == 0 { S::from_int(8) } else { S::zero() });
+        let (sin, cos) = match segment.offset_at {
+            OffsetAt::End => (axial, cos),
+            OffsetAt::Start => (zeros, one),
         };
-        Self { theta, end: curve + connector, direction: Vector2::new(arc.cos, arc.sin) }
+        let sum = |curve: Terms<S>, connector: Terms<S>| {
+            let mut connector = connector.into_iter();
+            curve.map(|curve| S::dot(lengths, [curve, connector.next().unwrap_or_else(S::zero)]))
+        };
+        let limit = S::constant(LIMIT);
+        Self { lengths, offset_at: segment.offset_at, limit, lateral: sum(versine, sin), axial: sum(axial, cos) }
     }
+
+    /// The segment bent by `theta`, of any size.
+    #[inline]
+    #[must_use]
+    pub fn link(&self, theta: Angle<S>) -> Link<S> {
+        if theta.turns == 0 && theta.rest.is_within(self.limit) {
+            let end = Vector2::new(theta.rest.odd_polynomial(&self.lateral), theta.rest.even_polynomial(&self.axial));
+            Link { theta, end }
+        } else {
+            self.by_arc(theta)
+        }
+    }
+
+    #[cold]
+    fn by_arc(&self, theta: Angle<S>) -> Link<S> {
+        let arc = Arc::new(theta);
+        let (sin, cos) = match self.offset_at {
+            OffsetAt::End => (arc.sin, arc.cos),
+            OffsetAt::Start => (S::zero(), S::one()),
+        };
+        Link {
+            theta,
+            end: Vector2::new(S::dot(self.lengths, [arc.lateral, sin]), S::dot(self.lengths, [arc.axial, cos])),
+        }
+    }
+}
+
+/// One segment of the arm's shape.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SegmentShape<S> {
+    /// Bend angle θ_i.
+    pub theta: Option<Angle<S>>,
+    /// End of the segment in {W}, m.
+    pub end: Option<Vector2<S>>,
 }
 
 /// Chains links from the base on: P_W,i = P_W,i−1 + R(Θ_i−1) P_i, where R(α) maps (x, y) to
 /// (x cos α + y sin α, −x sin α + y cos α). From the first unknown link on, every end is unknown.
 ///
 /// ```
-/// use estimator_core::{chain, Angle, Link, Segment};
+/// use estimator_core::{chain, Angle, Pcc, Segment};
 ///
 /// let segments = [Segment::bare(0.080, 0.017), Segment::bare(0.080, 0.017)];
-/// let straight = segments.iter().map(|segment| Some(Link::<f64>::new(Angle::from(0.0), segment)));
-/// let tip = chain(straight).last().flatten().expect("all links are known");
+/// let straight = segments.iter().map(|segment| Some(Pcc::<f64>::new(segment).link(Angle::from(0.0))));
+/// let tip = chain(straight).last().and_then(|segment| segment.end).expect("all links are known");
 /// assert!(tip.x == 0.0 && (tip.y - 0.194).abs() < 1e-12);
 /// ```
-pub fn chain<S: Scalar>(links: impl Iterator<Item = Option<Link<S>>>) -> impl Iterator<Item = Option<Vector2<S>>> {
+#[inline]
+pub fn chain<S: Scalar>(links: impl Iterator<Item = Option<Link<S>>>) -> impl Iterator<Item = SegmentShape<S>> {
     // Products of cosines and sines instead of the sum of the angles: no trigonometry, and nothing to wrap.
-    let base = Some((Vector2::zeros(), Vector2::new(S::one(), S::zero())));
-    links.scan(base, |before, link| {
-        *before = before.zip(link).map(|((point, heading), link)| {
-            let (cos, sin) = (heading.x, heading.y);
-            let step = Vector2::new(link.end.x * cos + link.end.y * sin, link.end.y * cos - link.end.x * sin);
-            let (c, s) = (link.direction.x, link.direction.y);
-            (point + step, Vector2::new(cos * c - sin * s, sin * c + cos * s))
+    let mut before = Some((Vector2::zeros(), [S::one(), S::zero()]));
+    links.map(move |link| {
+        before = before.zip(link).map(|((point, [cos, sin]), link)| {
+            let [next_cos, next_sin] = direction(link.theta);
+            let ([minus_sin, minus_next_sin], end) = ([-sin, -next_sin], link.end);
+            let [x, y, cos, sin] = S::dots([
+                ([end.x, end.y], [cos, sin]),
+                ([end.x, end.y], [minus_sin, cos]),
+                ([cos, sin], [next_cos, minus_next_sin]),
+                ([cos, sin], [next_sin, next_cos]),
+            ]);
+            (point + Vector2::new(x, y), [cos, sin])
         });
-        Some(before.map(|(point, _)| point))
+        SegmentShape { theta: link.map(|link| link.theta), end: before.map(|(point, _)| point) }
     })
+}
+
+/// cos θ and sin θ.
+#[inline]
+fn direction<S: Scalar>(theta: Angle<S>) -> [S; 2] {
+    if theta.turns == 0 && theta.rest.is_within(S::constant(LIMIT)) {
+        let [axial, cos] = [AXIAL, COSINE].map(|terms| terms.map(S::constant));
+        [theta.rest.even_polynomial(&cos), theta.rest.odd_polynomial(&axial)]
+    } else {
+        let arc = Arc::new(theta);
+        [arc.cos, arc.sin]
+    }
 }

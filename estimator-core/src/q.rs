@@ -5,7 +5,7 @@ use core::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 use num_traits::{One, Zero};
 
 use crate::angle::{Phase, Turns};
-use crate::fixed::divide;
+use crate::fixed::{divide, signed_upper_word};
 use crate::overflow;
 use crate::scalar::{Constant, Scalar, TWO_PI};
 
@@ -64,10 +64,45 @@ impl Q {
         i32::try_from(bits).map_or_else(|_| Self::overflowed(bits < 0), Self)
     }
 
+    /// Σ aₖ bₖ, which has wrapped only where it is out of range still: three products are below 2⁶⁴ − 2⁶² in size.
+    #[inline]
+    fn sum<const K: usize>((a, b): &([Self; K], [Self; K])) -> i64 {
+        const { assert!(K <= 3) };
+        a.iter().zip(b).fold(0, |sum: i64, (a, b)| sum.wrapping_add(i64::from(a.0) * i64::from(b.0)))
+    }
+
+    /// The value of a sum of products that is within ±16, rounded to nearest.
+    #[inline]
+    fn nearest(sum: i64) -> Self {
+        Self(((sum + (1 << (Self::FRACTION_BITS - 1))) >> Self::FRACTION_BITS) as i32)
+    }
+
+    /// The value of any sum of products.
+    #[inline]
+    fn saturated<const K: usize>((a, b): ([Self; K], [Self; K])) -> Self {
+        let rounded = Self::sum(&(a, b)).saturating_add(1 << (Self::FRACTION_BITS - 1)) >> Self::FRACTION_BITS;
+        let quarters = || a.iter().zip(b).map(|(a, b)| (i64::from(a.0) * i64::from(b.0)) >> 2);
+        i32::try_from(rounded).map_or_else(|_| Self::overflowed(quarters().sum::<i64>() < 0), Self)
+    }
+
+    #[cold]
+    fn divided_with_signs(self, other: Self) -> Self {
+        let quotient = i64::from(divide::<{ Self::FRACTION_BITS }>(self.0.unsigned_abs(), other.0.unsigned_abs()));
+        Self::fit(if (self.0 < 0) == (other.0 < 0) { quotient } else { -quotient })
+    }
+
     #[cold]
     fn overflowed(negative: bool) -> Self {
         overflow::count();
         if negative { Self::MIN } else { Self::MAX }
+    }
+
+    /// Σ cₖ (θ²/4)ᵏ in units of 2⁻²⁹, from terms 8 cₖ.
+    #[inline]
+    fn horner<const K: usize>(self, terms: &[Self; K]) -> i32 {
+        // θ²/4 in units of 2⁻³¹: what is wanted of a product is its upper word, doubled.
+        let x = ((i64::from(self.0) * i64::from(self.0)) >> 23) as i32;
+        terms.iter().rev().fold(0, |sum, term| term.0.wrapping_add(signed_upper_word(sum, x) << 1))
     }
 }
 
@@ -94,8 +129,7 @@ impl Mul for Q {
 
     #[inline]
     fn mul(self, other: Self) -> Self {
-        const HALF: i64 = 1 << (Q::FRACTION_BITS - 1);
-        Self::fit((i64::from(self.0) * i64::from(other.0) + HALF) >> Self::FRACTION_BITS)
+        Self::dot([self], [other])
     }
 }
 
@@ -104,8 +138,11 @@ impl Div for Q {
 
     #[inline]
     fn div(self, other: Self) -> Self {
-        let quotient = i64::from(divide(self.0.unsigned_abs(), other.0.unsigned_abs(), Self::FRACTION_BITS));
-        Self::fit(if (self.0 < 0) == (other.0 < 0) { quotient } else { -quotient })
+        if (self.0 | other.0) < 0 {
+            return self.divided_with_signs(other);
+        }
+        let quotient = divide::<{ Self::FRACTION_BITS }>(self.0 as u32, other.0 as u32) as i32;
+        if quotient < 0 { Self::overflowed(false) } else { Self(quotient) }
     }
 }
 
@@ -179,7 +216,9 @@ impl Scalar for Q {
 
     #[inline]
     fn from_fraction(value: i32, shift: u32) -> Self {
-        Self::fit(i64::from(value) << (Self::FRACTION_BITS - shift.min(16)))
+        let zeros = Self::FRACTION_BITS.wrapping_sub(shift);
+        let bits = value.wrapping_shl(zeros);
+        if bits.wrapping_shr(zeros) == value { Self(bits) } else { Self::overflowed(value < 0) }
     }
 
     #[inline]
@@ -197,6 +236,32 @@ impl Scalar for Q {
     fn to_turns(self) -> Turns {
         const TURNS: i64 = 1_367_130_551; // 64/2π in units of 2⁻²⁷
         Turns::from_bits((i64::from(self.0) * TURNS + (1 << 26)) >> 27)
+    }
+
+    #[inline]
+    fn even_polynomial<const K: usize>(self, terms: &[Self; K]) -> Self {
+        Self(self.horner(terms).wrapping_add(4) >> 3)
+    }
+
+    #[inline]
+    fn odd_polynomial<const K: usize>(self, terms: &[Self; K]) -> Self {
+        Self(((i64::from(self.0) * i64::from(self.horner(terms)) + (1 << 28)) >> 29) as i32)
+    }
+
+    #[inline]
+    fn dots<const M: usize, const K: usize>(pairs: [([Self; K], [Self; K]); M]) -> [Self; M] {
+        let sums = pairs.each_ref().map(Self::sum);
+        // The upper word without its sign; all sums in one check, so that they are worked out in one go.
+        let magnitudes = sums.iter().map(|sum| ((sum >> 32) ^ (sum >> 63)) as u32);
+        if magnitudes.fold(0, |all, magnitude| all | magnitude) >> 24 != 0 {
+            return pairs.map(Self::saturated);
+        }
+        sums.map(Self::nearest)
+    }
+
+    #[inline]
+    fn is_within(self, limit: Self) -> bool {
+        -limit.0 < self.0 && self.0 < limit.0
     }
 
     #[inline]

@@ -62,15 +62,18 @@ impl ImuReading {
     }
 }
 
+#[inline]
 fn quaternion_heading(quaternion: [i32; 4]) -> Option<Phase> {
-    const ONE_SQUARED: u64 = 1 << 60;
-    const TOLERANCE: u64 = ONE_SQUARED / 50;
+    /// The square of the norm in units of 2⁻²⁸.
+    const ONE_SQUARED: u32 = 1 << 28;
+    const TOLERANCE: u32 = ONE_SQUARED / 50;
     let [w, x, y, z] = quaternion.map(i64::from);
-    let square = |v: i64| (v * v) as u64;
-    let norm_squared = [w, x, y, z].into_iter().map(square).fold(0, u64::saturating_add);
-    if norm_squared.abs_diff(ONE_SQUARED) > TOLERANCE {
+    // Four times −2³¹ would wrap, to a norm of zero.
+    let y2_z2 = (y * y) as u64 + (z * z) as u64;
+    let norm_squared = ((w * w) as u64 + (x * x) as u64).wrapping_add(y2_z2);
+    if ((norm_squared >> 32) as u32).abs_diff(ONE_SQUARED) > TOLERANCE {
         return None;
     }
     // Half of the formula's numerator and denominator, in units of 2⁻⁶⁰.
-    Phase::atan2(-(w * z + x * y), (1 << 59) - (y * y + z * z))
+    Phase::atan2(-(w * z + x * y), (1 << 59) - y2_z2 as i64)
 }

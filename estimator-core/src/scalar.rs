@@ -27,18 +27,6 @@ impl Constant {
     pub const fn new(value: f64) -> Self {
         Self { value, q: Q::from_f64(value) }
     }
-
-    /// As [`Constant::new`], for the coefficients of a polynomial.
-    #[must_use]
-    pub const fn array<const K: usize>(values: [f64; K]) -> [Self; K] {
-        let mut constants = [Self::new(0.0); K];
-        let mut k = 0;
-        while k < K {
-            constants[k] = Self::new(values[k]);
-            k += 1;
-        }
-        constants
-    }
 }
 
 /// One whole turn, rad.
@@ -105,10 +93,39 @@ pub trait Scalar:
         rest / (rest + Self::constant(TWO_PI) * Self::from_int(turns))
     }
 
-    /// The value without its sign.
+    /// Σ cₖ (θ²/4)ᵏ at this angle θ, |θ| < 2 rad, where `terms` are 8 cₖ and each sum of the last terms is within ±4.
+    ///
+    /// The factor of 8 is for fixed point, which so keeps 29 fractional bits of them.
     #[must_use]
-    fn magnitude(self) -> Self {
-        if self < Self::zero() { -self } else { self }
+    fn even_polynomial<const K: usize>(self, terms: &[Self; K]) -> Self {
+        let x = self * self * Self::constant(Constant::new(0.25));
+        let sum = terms.iter().rev().fold(Self::zero(), |sum, term| sum * x + *term);
+        sum * Self::constant(Constant::new(0.125))
+    }
+
+    /// θ Σ cₖ (θ²/4)ᵏ, as [`Scalar::even_polynomial`].
+    #[must_use]
+    fn odd_polynomial<const K: usize>(self, terms: &[Self; K]) -> Self {
+        self * self.even_polynomial(terms)
+    }
+
+    /// Σ aₖ bₖ of each pair (a, b), of up to three products, each sum rounded once.
+    #[must_use]
+    fn dots<const M: usize, const K: usize>(pairs: [([Self; K], [Self; K]); M]) -> [Self; M] {
+        pairs.map(|(a, b)| a.into_iter().zip(b).fold(Self::zero(), |sum, (a, b)| sum + a * b))
+    }
+
+    /// Σ `a`ₖ `b`ₖ, as [`Scalar::dots`].
+    #[must_use]
+    fn dot<const K: usize>(a: [Self; K], b: [Self; K]) -> Self {
+        let [dot] = Self::dots([(a, b)]);
+        dot
+    }
+
+    /// Whether the value is between −`limit` and `limit`, a positive one.
+    #[must_use]
+    fn is_within(self, limit: Self) -> bool {
+        -limit < self && self < limit
     }
 }
 

@@ -102,7 +102,27 @@ fn numbers<S: Scalar>(samples: &[Sample<3>], tare_samples: u32) -> Vec<f64> {
     numbers
 }
 
+/// Whether `fuse` says the very same of these samples as `step` and `shape`.
+fn fuses_as_it_steps<S: Scalar>(samples: &[Sample<3>], tare_samples: u32) -> bool {
+    let segments = [segment::<S>(2), segment(0), segment(1)];
+    let table = Table { tare_samples, ..table(&segments) };
+    let mut stepped = Estimator::<S, 3, 10>::new(&table).expect("a valid table");
+    let mut fused = stepped.clone();
+    samples.iter().all(|sample| {
+        let estimate = stepped.step(sample);
+        *fused.fuse(sample) == stepped.shape(&estimate, Method::Fusion)
+    })
+}
+
 proptest! {
+    #[test]
+    fn the_fused_shape_alone_is_that_of_the_whole_estimate(
+        samples in prop::collection::vec(any_sample(), 1..60),
+        tare in 0_u32..20,
+    ) {
+        prop_assert!(fuses_as_it_steps::<Q>(&samples, tare) && fuses_as_it_steps::<f64>(&samples, tare));
+    }
+
     #[test]
     fn any_input_gives_finite_floats(samples in prop::collection::vec(any_sample(), 1..60), tare in 0_u32..20) {
         prop_assert!(numbers::<f64>(&samples, tare).into_iter().all(f64::is_finite));
@@ -166,6 +186,18 @@ fn a_missing_imu_leaves_two_angles_unknown_for_that_sample_only() {
         let read: Vec<_> = estimate.segments.iter().map(|segment| segment.imu_read).collect();
         assert_eq!(read, sample.imu.map(|imu| imu.is_some()));
     }
+}
+
+#[test]
+fn a_segment_with_the_second_sensor_alone_reads_that() {
+    let segments = [Segment { bend: [None, Some(sensor())], ..segment::<f64>(0) }];
+    let table = table(&segments);
+    let mut estimator = Estimator::<f64, 1, 10>::new(&table).expect("a valid table");
+    let mut sample = Sample::missing(0);
+    sample.bend[0] = [Some(counts(-1.0)), Some(counts(0.5))];
+    let estimate = estimator.step(&sample).segments[0];
+    assert!((rad(estimate.bend.map(|link| link.theta)) - bent(counts(0.5))).abs() < 1e-12);
+    assert_eq!(estimate.bend_sensors_read, 1);
 }
 
 #[test]

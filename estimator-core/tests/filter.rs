@@ -1,17 +1,31 @@
 //! One filter block against the textbook's matrices.
 
-use estimator_core::{Block, COVARIANCE_LIMIT, H_LIMIT, Q, Scalar};
+use estimator_core::{Block, COVARIANCE_LIMIT, Gains, H_LIMIT, Noise, Q, Scalar};
 use nalgebra::{Matrix2, Matrix4, Matrix4x2, SVector, Vector2, Vector4};
 use proptest::prelude::*;
+
+/// h, r and z of one measurement.
+type Measurement = (f64, f64, Vector2<f64>);
 
 fn point(x: f64, y: f64) -> SVector<f64, 2> {
     SVector::from([x, y])
 }
 
+/// Parameters for a Q, and h and r of the IMU and of the bend sensors.
+fn gains<S: Scalar>(q: f64, imu: (f64, f64), bend: (f64, f64)) -> Gains<S> {
+    let [q, h_imu, r_imu, h_bend, r_bend] = [q, imu.0, imu.1, bend.0, bend.1].map(S::from_f64);
+    Gains::new(&Noise { q, r_imu, r_bend, h_imu, h_bend })
+}
+
+/// Parameters for a Q, and h and r of one sensor, whichever that is.
+fn alone<S: Scalar>(q: f64, h: f64, r: f64) -> Gains<S> {
+    gains(q, (h, r), (h, r))
+}
+
 /// A filter that was started at a point with this covariance.
 fn started(x: Vector2<f64>, p: f64) -> Block<f64, 2> {
     let mut block = Block::new();
-    block.update(x, 1.0, p);
+    block.step(&alone(0.0, 1.0, p), Some(x), None);
     block
 }
 
@@ -21,8 +35,7 @@ fn scalar(block: &Block<f64, 1>) -> (f64, f64) {
 }
 
 prop_compose! {
-    /// h, r and z of one measurement.
-    fn measurement()(h in 0.5..2.0, r in 0.01..30.0, x in -2.0..2.0, y in -2.0..2.0) -> (f64, f64, Vector2<f64>) {
+    fn measurement()(h in 0.5..2.0, r in 0.01..30.0, x in -2.0..2.0, y in -2.0..2.0) -> Measurement {
         (h, r, point(x, y))
     }
 }
@@ -31,18 +44,15 @@ proptest! {
     /// KF_coord by the book: both measurements stacked, K = P⁻Hᵀ(H P⁻ Hᵀ + R)⁻¹. Only floats' rounding differs, grown by
     /// the square of the matrix's condition, up to 6000.
     #[test]
-    fn two_updates_are_one_with_both_measurements_stacked(
+    fn a_step_is_the_book_s_with_both_measurements_stacked(
         p in 0.01..8.0, q in 0.0..8.0, imu in measurement(), bend in measurement()
     ) {
         let x = point(0.3, -0.2);
         let mut block = started(x, p);
-        block.predict(q);
-        for (h, r, z) in [imu, bend] {
-            block.update(z, h, r);
-        }
+        let ((h1, r1, z1), (h2, r2, z2)) = (imu, bend);
+        block.step(&gains(q, (h1, r1), (h2, r2)), Some(z1), Some(z2));
         let (state, covariance) = block.state().expect("it was measured");
 
-        let ((h1, r1, z1), (h2, r2, z2)) = (imu, bend);
         let h = Matrix4x2::new(h1, 0.0, 0.0, h1, h2, 0.0, 0.0, h2);
         let r = Matrix4::from_diagonal(&Vector4::new(r1, r1, r2, r2));
         let z = Vector4::new(z1.x, z1.y, z2.x, z2.y);
@@ -55,27 +65,31 @@ proptest! {
     }
 
     #[test]
-    fn the_order_of_the_measurements_does_not_matter(p in 0.01..20.0, imu in measurement(), bend in measurement()) {
-        let by = |order: [(f64, f64, Vector2<f64>); 2]| {
+    fn two_measurements_at_once_are_one_after_the_other(p in 0.01..16.0, imu in measurement(), bend in measurement()) {
+        let gains = gains(0.0, (imu.0, imu.1), (bend.0, bend.1));
+        let by = |steps: &[[bool; 2]]| {
             let mut block = started(point(0.0, 1.0), p);
-            for (h, r, z) in order {
-                block.update(z, h, r);
+            for [with_imu, with_bend] in steps {
+                block.step(&gains, with_imu.then_some(imu.2), with_bend.then_some(bend.2));
             }
             block.state().expect("it was measured")
         };
-        let ((x, p), (other_x, other_p)) = (by([imu, bend]), by([bend, imu]));
-        prop_assert!((x - other_x).norm() < 1e-10 && (p - other_p).abs() < 1e-10);
+        let (x, p) = by(&[[true, true]]);
+        for (other_x, other_p) in [by(&[[true, false], [false, true]]), by(&[[false, true], [true, false]])] {
+            prop_assert!((x - other_x).norm() < 1e-10 && (p - other_p).abs() < 1e-10);
+        }
     }
 
     #[test]
-    fn coordinates_do_not_couple(p in 0.01..20.0, (h, r, z) in measurement()) {
+    fn coordinates_do_not_couple(p in 0.01..16.0, imu in measurement(), bend in measurement()) {
+        let gains = gains(0.0, (imu.0, imu.1), (bend.0, bend.1));
         let mut both = started(point(0.5, -0.5), p);
-        both.update(z, h, r);
+        both.step(&gains, Some(imu.2), Some(bend.2));
         let (x, p_both) = both.state().expect("it was measured");
         for (axis, start) in [(0, 0.5), (1, -0.5)] {
             let mut one = Block::<f64, 1>::new();
-            one.update(SVector::from([start]), 1.0, p);
-            one.update(SVector::from([z[axis]]), h, r);
+            one.step(&alone(0.0, 1.0, p), Some(SVector::from([start])), None);
+            one.step(&gains, Some(SVector::from([imu.2[axis]])), Some(SVector::from([bend.2[axis]])));
             prop_assert_eq!(scalar(&one), (x[axis], p_both));
         }
     }
@@ -83,23 +97,34 @@ proptest! {
     #[test]
     fn the_first_measurement_starts_the_filter((h, r, z) in measurement()) {
         let mut block = Block::new();
-        block.update(z, h, r);
+        block.step(&alone(1.0, h, r), None, Some(z));
         let (x, p) = block.state().expect("it was measured");
         prop_assert!((x - z / h).norm() < 1e-12 && (p - r / (h * h)).abs() < 1e-12);
     }
 
     #[test]
+    fn two_first_measurements_start_it_at_their_weighed_mean(imu in measurement(), bend in measurement()) {
+        let ((h1, r1, z1), (h2, r2, z2)) = (imu, bend);
+        let mut block = Block::new();
+        block.step(&gains(1.0, (h1, r1), (h2, r2)), Some(z1), Some(z2));
+        let (x, p) = block.state().expect("it was measured");
+        let information = h1 * h1 / r1 + h2 * h2 / r2;
+        prop_assert!((x - (z1 * (h1 / r1) + z2 * (h2 / r2)) / information).norm() < 1e-12);
+        prop_assert!((p - 1.0 / information).abs() < 1e-12);
+    }
+
+    #[test]
     fn a_missing_measurement_leaves_the_state_and_grows_the_covariance(p in 0.01..8.0, q in 0.0..8.0) {
         let mut block = started(point(0.5, -0.5), p);
-        block.predict(q);
+        block.step(&alone(q, 1.0, 1.0), None, None);
         let (x, grown) = block.state().expect("it was measured");
         prop_assert_eq!((x, grown), (point(0.5, -0.5), p + q));
     }
 
     #[test]
-    fn a_measurement_never_grows_the_covariance(p in 0.01..31.0, (h, r, z) in measurement()) {
+    fn a_measurement_never_grows_the_covariance(p in 0.01..16.0, (h, r, z) in measurement()) {
         let mut block = started(point(0.0, 0.0), p);
-        block.update(z, h, r);
+        block.step(&alone(0.0, h, r), Some(z), None);
         let (_, after) = block.state().expect("it was measured");
         prop_assert!(after < p && after > 0.0);
     }
@@ -110,8 +135,8 @@ proptest! {
     fn a_fixed_point_update_is_the_floats(p in 0.1..10.0, h in 0.5..1.5, r in 0.1..5.0, x in -2.0..2.0, z in -2.0..2.0) {
         fn run<S: Scalar>(x: f64, p: f64, z: f64, h: f64, r: f64) -> [f64; 2] {
             let mut block = Block::<S, 1>::new();
-            block.update(SVector::from([S::from_f64(x)]), S::one(), S::from_f64(p));
-            block.update(SVector::from([S::from_f64(z)]), S::from_f64(h), S::from_f64(r));
+            block.step(&alone(0.0, 1.0, p), Some(SVector::from([S::from_f64(x)])), None);
+            block.step(&alone(0.0, h, r), Some(SVector::from([S::from_f64(z)])), None);
             let (x, p) = block.state().expect("it was measured");
             [x.x.to_f64(), p.to_f64()]
         }
@@ -124,25 +149,25 @@ proptest! {
 #[test]
 fn a_filter_without_a_measurement_has_no_state() {
     let mut block = Block::<f64, 1>::new();
-    block.predict(1.0);
+    block.step(&alone(1.0, 1.0, 1.0), None, None);
     assert_eq!(block.state(), None);
 }
 
 #[test]
 fn time_before_the_first_measurement_does_not_count() {
     let mut block = Block::<f64, 1>::new();
-    block.predict(5.0);
-    block.update(SVector::from([0.25]), 1.0, 0.5);
+    block.step(&alone(5.0, 1.0, 0.5), None, None);
+    block.step(&alone(5.0, 1.0, 0.5), Some(SVector::from([0.25])), None);
     assert_eq!(scalar(&block), (0.25, 0.5));
 }
 
 #[test]
 fn the_covariance_grows_to_the_limit_and_no_further() {
     let mut block = Block::<f64, 1>::new();
-    block.update(SVector::from([0.0]), 1.0, 1.0);
     let step = COVARIANCE_LIMIT * 0.4;
+    block.step(&alone(step, 1.0, 1.0), Some(SVector::from([0.0])), None);
     let growth = [0; 5].map(|_| {
-        block.predict(step);
+        block.step(&alone(step, 1.0, 1.0), None, None);
         scalar(&block).1
     });
     let expected = [1.0 + step, 1.0 + 2.0 * step, COVARIANCE_LIMIT, COVARIANCE_LIMIT, COVARIANCE_LIMIT];
@@ -152,9 +177,10 @@ fn the_covariance_grows_to_the_limit_and_no_further() {
 #[test]
 fn fixed_point_covariance_reaches_the_limit_however_large_its_growth() {
     let mut block = Block::<Q, 1>::new();
-    block.update(SVector::from([Q::from_f64(0.5)]), Q::from_f64(1.0), Q::from_f64(1.0));
+    let gains = alone(Q::MAX.to_f64(), 1.0, 1.0);
+    block.step(&gains, Some(SVector::from([Q::from_f64(0.5)])), None);
     for _ in 0..3 {
-        block.predict(Q::MAX);
+        block.step(&gains, None, None);
     }
     let (x, p) = block.state().expect("it was measured");
     assert_eq!((x.x, p), (Q::from_f64(0.5), Q::from_f64(COVARIANCE_LIMIT)));
@@ -164,9 +190,8 @@ fn fixed_point_covariance_reaches_the_limit_however_large_its_growth() {
 #[test]
 fn after_an_outage_fixed_point_takes_a_measurement_as_floats_do() {
     let mut block = Block::<Q, 1>::new();
-    block.update(SVector::from([Q::from_f64(0.0)]), Q::from_f64(1.0), Q::from_f64(1.0));
-    block.predict(Q::from_f64(COVARIANCE_LIMIT));
-    block.update(SVector::from([Q::from_f64(1.0)]), Q::from_f64(H_LIMIT), Q::from_f64(1.0));
+    block.step(&alone(0.0, 1.0, 1.0), Some(SVector::from([Q::from_f64(0.0)])), None);
+    block.step(&alone(COVARIANCE_LIMIT, H_LIMIT, 1.0), Some(SVector::from([Q::from_f64(1.0)])), None);
     let (x, _) = block.state().expect("it was measured");
     let gain = COVARIANCE_LIMIT * H_LIMIT / (COVARIANCE_LIMIT * H_LIMIT * H_LIMIT + 1.0);
     assert!((x.x.to_f64() - gain).abs() < 4.0 / 67_108_864.0, "{} instead of {gain}", x.x.to_f64());

@@ -2,7 +2,7 @@
 
 use std::f64::consts::{FRAC_2_PI, FRAC_PI_2, PI, TAU};
 
-use estimator_core::{Angle, Arc, Link, OffsetAt, Q, Scalar, Segment, Turns, chain};
+use estimator_core::{Angle, Arc, Link, OffsetAt, Pcc, Q, Scalar, Segment, Turns, chain};
 use nalgebra::Vector2;
 use proptest::prelude::*;
 
@@ -73,8 +73,8 @@ proptest! {
     #[test]
     fn a_straight_arm_is_as_long_as_its_parts(parts in prop::collection::vec((0.01..0.2, 0.0..0.05, any::<bool>()), 1..=16)) {
         let segments: Vec<_> = parts.iter().map(|&(length, offset, start)| segment::<Q>(length, offset, start)).collect();
-        let straight = segments.iter().map(|segment| Some(Link::new(Angle::from(Q::from_bits(0)), segment)));
-        let tip = chain(straight).last().flatten().expect("all links are known");
+        let straight = segments.iter().map(|segment| Some(link(Q::from_bits(0), segment)));
+        let tip = chain(straight).last().and_then(|segment| segment.end).expect("all links are known");
         let length = segments.iter().fold(Q::from_bits(0), |sum, segment| sum + segment.length + segment.offset);
         prop_assert_eq!(tip, Vector2::new(Q::from_bits(0), length));
     }
@@ -83,8 +83,8 @@ proptest! {
     /// a direction turns all that follows.
     #[test]
     fn a_chain_is_the_sum_of_rotated_links(links in prop::collection::vec((0.01..0.2, 0.0..0.05, any::<bool>(), -3.0..3.0_f64), 1..=16)) {
-        let link = |&(length, offset, start, theta)| Some(Link::<f64>::new(Angle::from(theta), &segment(length, offset, start)));
-        let ends: Vec<_> = chain(links.iter().map(link)).collect();
+        let link = |&(length, offset, start, theta)| Some(link::<f64>(theta, &segment(length, offset, start)));
+        let ends: Vec<_> = chain(links.iter().map(link)).map(|segment| segment.end).collect();
         let (mut heading, mut x, mut y) = (0.0_f64, 0.0, 0.0);
         for (end, &(length, offset, start, theta)) in ends.iter().zip(&links) {
             let [lateral, axial, cos, sin] = formula(theta);
@@ -97,6 +97,38 @@ proptest! {
             prop_assert!((end.x - x).hypot(end.y - y) <= 16.0 * 0.25 * 16.0 * FLOAT_ERROR);
         }
     }
+
+    /// The polynomials of a link add up those of its arc, whose errors they share.
+    #[test]
+    fn a_float_link_is_the_formula(rad in prop_oneof![-2.1..2.1, -7.0..7.0], parts in parts()) {
+        let error = (link(rad, &segment::<f64>(parts.0, parts.1, parts.2)).end - end_by_formula(rad, parts)).norm();
+        prop_assert!(error <= (parts.0 + parts.1) * 2.0 * FLOAT_ERROR, "{} m at {} rad", error, rad);
+    }
+
+    /// Lengths are rounded to half a step, and θ too.
+    #[test]
+    fn a_fixed_point_link_is_the_formula(rad in prop_oneof![-2.1..2.1, -7.0..7.0], parts in parts()) {
+        let end = link(Q::from_f64(rad), &segment(parts.0, parts.1, parts.2)).end.map(Q::to_f64);
+        let error = (end - end_by_formula(Q::from_f64(rad).to_f64(), parts)).norm();
+        let scale = if parts.0 + parts.1 < 0.5 { 1.0 } else { parts.0 + parts.1 };
+        prop_assert!(error <= 2.0 * scale * FIXED_ERROR_FAR, "{} m at {} rad", error, rad);
+    }
+}
+
+/// Length, offset and its side, for a segment of the usual size or one too long for polynomials.
+fn parts() -> impl Strategy<Value = (f64, f64, bool)> {
+    prop_oneof![(0.01..0.3, 0.0..0.1, any::<bool>()), (0.5..2.0, 0.0..2.0, any::<bool>())]
+}
+
+/// P_i in {S_i}.
+fn end_by_formula(theta: f64, (length, offset, start): (f64, f64, bool)) -> Vector2<f64> {
+    let [lateral, axial, cos, sin] = formula(theta);
+    let connector = if start { Vector2::new(0.0, offset) } else { Vector2::new(offset * sin, offset * cos) };
+    Vector2::new(length * lateral, length * axial) + connector
+}
+
+fn link<S: Scalar>(theta: S, segment: &Segment<S>) -> Link<S> {
+    Pcc::new(segment).link(Angle::from(theta))
 }
 
 fn segment<S: Scalar>(length: f64, offset: f64, start: bool) -> Segment<S> {
@@ -144,26 +176,48 @@ fn a_vanishing_arc_is_exact() {
     }
 }
 
+/// Each side is rounded by itself.
+#[test]
+fn a_link_does_not_step_where_its_polynomials_end() {
+    let sides = |seam: f64| [seam - LSB, seam, seam + LSB];
+    for segment in [segment::<Q>(0.1, 0.02, false), segment(0.1, 0.02, true)] {
+        for ends in
+            [2.0, -2.0].map(|seam| sides(seam).map(|theta| link(Q::from_f64(theta), &segment).end.map(Q::to_f64)))
+        {
+            assert!((ends[1] - ends[0]).norm() <= 2.0 * LSB + FIXED_ERROR);
+            assert!((ends[2] - ends[1]).norm() <= 2.0 * LSB + FIXED_ERROR);
+        }
+    }
+}
+
+/// Where a segment ends that is bent by a quarter turn, and by how much a straight one of 1 m leads on from there.
+fn quarter_turn(start: bool) -> [Vector2<f64>; 2] {
+    let links = [link(FRAC_PI_2, &segment(0.1, 0.02, start)), link(0.0, &segment(1.0, 0.0, false))];
+    let ends: Vec<_> = chain(links.into_iter().map(Some)).map(|segment| segment.end.expect("all is known")).collect();
+    [ends[0], ends[1] - ends[0]]
+}
+
 /// A quarter turn of 0.1 m ends 2/π of it to the right and ahead; its tangent then is the x axis.
 #[test]
 fn a_connector_at_the_end_follows_the_curves_tangent() {
-    let link = Link::new(Angle::from(FRAC_PI_2), &segment::<f64>(0.1, 0.02, false));
+    let [end, tangent] = quarter_turn(false);
     let curve = 0.1 * FRAC_2_PI;
-    assert!((link.end - Vector2::new(curve + 0.02, curve)).norm() < FLOAT_ERROR);
-    assert!((link.direction - Vector2::new(0.0, 1.0)).norm() < FLOAT_ERROR);
+    assert!((end - Vector2::new(curve + 0.02, curve)).norm() < FLOAT_ERROR);
+    assert!((tangent - Vector2::new(1.0, 0.0)).norm() < FLOAT_ERROR);
 }
 
 #[test]
 fn a_connector_at_the_start_keeps_the_bases_tangent() {
-    let link = Link::new(Angle::from(FRAC_PI_2), &segment::<f64>(0.1, 0.02, true));
+    let [end, tangent] = quarter_turn(true);
     let curve = 0.1 * FRAC_2_PI;
-    assert!((link.end - Vector2::new(curve, curve + 0.02)).norm() < FLOAT_ERROR);
-    assert!((link.direction - Vector2::new(0.0, 1.0)).norm() < FLOAT_ERROR);
+    assert!((end - Vector2::new(curve, curve + 0.02)).norm() < FLOAT_ERROR);
+    assert!((tangent - Vector2::new(1.0, 0.0)).norm() < FLOAT_ERROR);
 }
 
 #[test]
 fn beyond_an_unknown_link_every_end_is_unknown() {
-    let link = |theta: f64| Some(Link::new(Angle::from(theta), &segment(0.1, 0.0, false)));
-    let known: Vec<_> = chain([link(0.1), link(0.2), None, link(0.3)].into_iter()).map(|end| end.is_some()).collect();
+    let link = |theta: f64| Some(link(theta, &segment(0.1, 0.0, false)));
+    let links = [link(0.1), link(0.2), None, link(0.3)];
+    let known: Vec<_> = chain(links.into_iter()).map(|segment| segment.end.is_some()).collect();
     assert_eq!(known, [true, true, false, false]);
 }

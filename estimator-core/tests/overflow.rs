@@ -88,7 +88,7 @@ fn a_session_with_turns_and_turns_of_drift_counts_nothing() {
 fn a_table_out_of_range_is_noticed() {
     let segment = Segment { length: Q::from_f64(30.0), offset: Q::from_f64(30.0), ..Segment::bare(1.0, 1.0) };
     let straight = || {
-        let _ = estimator_core::Link::new(estimator_core::Angle::from(Q::zero()), &segment);
+        let _ = estimator_core::Pcc::new(&segment).link(estimator_core::Angle::from(Q::zero()));
     };
     assert_eq!(counted(straight), 1);
 }

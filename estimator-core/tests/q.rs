@@ -51,6 +51,14 @@ proptest! {
     }
 
     #[test]
+    fn sums_of_products_are_rounded_once_and_saturate(a in [q(), q(), q()], b in [q(), q(), q()]) {
+        let sum = a.iter().zip(b).map(|(a, b)| wide(*a) * wide(b)).sum::<i128>();
+        let expected = saturated((2 * sum + ONE).div_euclid(2 * ONE));
+        prop_assert_eq!(Q::dot(a, b), expected);
+        prop_assert_eq!(Q::dots([(a, b), ([Q::one(), Q::zero(), Q::zero()], a)]), [expected, a[0]]);
+    }
+
+    #[test]
     fn divides_to_nearest_with_halves_away_from_zero_and_saturates(a in q(), b in q()) {
         if b.is_zero() {
             return Ok(());
@@ -73,7 +81,8 @@ proptest! {
     #[test]
     fn orders_as_the_numbers_do(a in q(), b in q()) {
         prop_assert_eq!(a.cmp(&b), wide(a).cmp(&wide(b)));
-        prop_assert_eq!(wide(Scalar::magnitude(a)), wide(a).abs().min(i128::from(i32::MAX)));
+        let limit = Q::from_bits((b.to_bits() | 1).saturating_abs());
+        prop_assert_eq!(a.is_within(limit), wide(a).abs() < wide(limit));
     }
 
     #[test]
@@ -133,6 +142,13 @@ fn a_float_out_of_range_saturates_and_nan_is_zero() {
     assert_eq!(Q::from_f64(-33.0), Q::MIN);
     assert_eq!(Q::from_f64(f64::INFINITY), Q::MAX);
     assert_eq!(Q::from_f64(f64::NAN), Q::zero());
+}
+
+#[test]
+fn sums_of_the_largest_products_saturate() {
+    for (a, b, expected) in [(Q::MIN, Q::MIN, Q::MAX), (Q::MIN, Q::MAX, Q::MIN), (Q::MAX, Q::MAX, Q::MAX)] {
+        assert_eq!((Q::dot([a], [b]), Q::dot([a; 2], [b; 2]), Q::dot([a; 3], [b; 3])), (expected, expected, expected));
+    }
 }
 
 #[test]

@@ -206,7 +206,7 @@ impl<W: World> Chip<W> {
         self.refresh(index);
     }
 
-    /// The world was changed from outside: lets all models look at it.
+    /// Brings all models up to now: the world was, or may be, looked at or changed from outside.
     pub fn look(&mut self, instructions: u64) {
         for index in 0..self.slots.len() {
             if self.slots[index].clock_runs(self.clocks) {

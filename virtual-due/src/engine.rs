@@ -25,12 +25,12 @@ pub const DWT: std::ops::Range<u32> = 0xE000_1000..0xE000_1008;
 /// The engine tells time in ns. Its timer counts at a fixed 84 MHz of it, so that a core cycle, however long it is, goes
 /// by the name of 250/21 ns; rounded up, so that the engine's own rounding down gives the cycle back.
 fn nanos(core_cycles: u64) -> VirtualNanos {
-    VirtualNanos((u128::from(core_cycles) * 250).div_ceil(21) as u64)
+    VirtualNanos(core_cycles / 21 * 250 + (core_cycles % 21 * 250).div_ceil(21))
 }
 
 /// The first core cycle whose name is `nanos` or later.
 fn core_cycles(at: VirtualNanos) -> u64 {
-    let floor = (u128::from(at.0) * 21 / 250) as u64;
+    let floor = at.0 / 250 * 21 + at.0 % 250 * 21 / 250;
     if nanos(floor) >= at { floor } else { floor + 1 }
 }
 
@@ -43,7 +43,14 @@ pub struct Engine {
     fresh: Option<Vec<u8>>,
     // Instructions before the last reset; loading a state sets the engine's own count back.
     before: u64,
+    // When translations from RAM were last dropped, in instructions.
+    swept: u64,
 }
+
+/// As long as a page of RAM has been translated from, the engine takes each store to it the long way, and variables are
+/// often beside a routine that ran once. Now and then such translations are dropped; what runs is translated again.
+const SWEEP: u64 = 5_000_000;
+const RAM: std::ops::Range<u32> = 0x2000_0000..0x2010_1000;
 
 impl Engine {
     /// A core with nothing mapped.
@@ -63,7 +70,7 @@ impl Engine {
         config.mpu_regions = MpuRegions::Eight;
         config.cpuid = CPUID;
         let processor = processor(&config, Endian::Little).expect("the SAM3X8E's core is one that the engine makes");
-        Self { mapped: Mapped::new(processor), fresh: None, before: 0 }
+        Self { mapped: Mapped::new(processor), fresh: None, before: 0, swept: 0 }
     }
 
     /// Maps memory at an address.
@@ -74,6 +81,10 @@ impl Engine {
 
 impl Cpu for Engine {
     fn run(&mut self, budget: u32, bus: &mut dyn Bus) -> Stop {
+        if self.instructions() - self.swept > SWEEP {
+            self.swept = self.instructions();
+            self.changed(RAM.start, RAM.len() as u32);
+        }
         let (exit, _) = self.mapped.processor_mut().run(budget, &mut Lent { bus, before: self.before });
         match exit {
             Exit::Waiting => Stop::Waiting,

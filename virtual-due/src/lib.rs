@@ -14,8 +14,9 @@
 //! nothing. The models follow the datasheet of the SAM3X/A (Atmel 11057C), whatever firmware runs; what they leave out is
 //! reported once. Two runs of the same firmware, world and input do the same.
 //!
-//! Not modelled: HSMCI, SPI, SSC, EMAC, CAN, DMAC, DACC and the memory controllers read as zero; the native USB port
-//! never sees a host; flash wait states and the bus matrix cost no time; alarms of the RTC.
+//! Not modelled: HSMCI, EMAC, CAN, DMAC and the memory controllers read as zero; SPI, SSC and DACC are ready at once for
+//! what goes nowhere; the native USB port never sees a host; flash wait states and the bus matrix cost no time; alarms of
+//! the RTC.
 
 mod chip;
 mod clock;

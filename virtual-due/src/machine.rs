@@ -90,6 +90,7 @@ impl<W: World> Machine<W> {
         loop {
             self.settle();
             if self.now() >= end {
+                self.chip.look(self.cpu.instructions());
                 return false;
             }
             let instructions = self.cpu.instructions();
@@ -98,6 +99,7 @@ impl<W: World> Machine<W> {
                 Stop::Returned => {}
                 Stop::Breakpoint => {
                     self.settle();
+                    self.chip.look(self.cpu.instructions());
                     return true;
                 }
                 Stop::Waiting => self.sleep(end),
@@ -217,6 +219,7 @@ impl<W: World> Machine<W> {
 
     /// Writes memory, flash too, as a debugger does; false where there is none.
     pub fn poke(&mut self, address: u32, bytes: &[u8]) -> bool {
+        self.cpu.changed(address, bytes.len() as u32);
         self.chip.memories.load(address, bytes)
     }
 

@@ -30,6 +30,9 @@ enum Command {
 #[derive(Debug, clap::Args)]
 struct Arguments {
     /// The firmware: an ELF file, as linked for the Due's flash.
+    ///
+    /// Cargo leaves it as target/thumbv7m-none-eabi/release/NAME; the Arduino tools as NAME.ino.elf, beside the .bin (with
+    /// `arduino-cli compile --fqbn arduino:sam:arduino_due_x_dbg --output-dir DIR`, in DIR).
     firmware: PathBuf,
     /// What the arm does until the firmware drives its regulators.
     #[arg(long, default_value = "1", value_parser = scenario)]
@@ -103,7 +106,11 @@ impl Cli {
         let mut run = Run::new(machine, arguments.seconds, paced);
         match arguments.serial {
             Serial::Stdio => run.execute(&mut stdio::Stdio::new()?)?,
-            Serial::Pty => run.execute(&mut pty::Pty::new()?)?,
+            Serial::Pty => {
+                let mut pty = pty::Pty::new()?;
+                eprintln!("serial port: {}", pty.path());
+                run.execute(&mut pty)?;
+            }
         }
         Ok(run.summary())
     }
@@ -126,7 +133,7 @@ fn scenario(text: &str) -> Result<Scenario, String> {
 
 fn seconds(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
-        Ok(seconds) if seconds >= 0.0 && seconds <= 1e9 => Ok(seconds),
+        Ok(seconds) if (0.0..=1e9).contains(&seconds) => Ok(seconds),
         _ => Err("a number of seconds from 0 to 1e9 is wanted".to_owned()),
     }
 }

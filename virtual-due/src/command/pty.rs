@@ -11,23 +11,30 @@ use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
 /// Our end of a pseudo-terminal.
 pub struct Pty {
     ours: OwnedFd,
+    /// Of the other end.
+    path: String,
     open: bool,
 }
 
 impl Pty {
-    /// Opens one, and prints the path of its other end on stderr.
+    /// Opens one.
     pub fn new() -> std::io::Result<Self> {
         let ours = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY)?;
         ioctl_fionbio(&ours, true)?;
         grantpt(&ours)?;
         unlockpt(&ours)?;
         let path = ptsname(&ours, Vec::new())?;
+        let path = path.to_string_lossy().into_owned();
         // Opened and closed once: from then on a hang-up tells that nobody has it open.
-        drop(open(&path, OFlags::RDWR | OFlags::NOCTTY, Mode::empty())?);
-        eprintln!("serial port: {}", path.to_string_lossy());
-        let pty = Self { ours, open: false };
+        drop(open(path.as_str(), OFlags::RDWR | OFlags::NOCTTY, Mode::empty())?);
+        let pty = Self { ours, path, open: false };
         pty.make_raw()?;
         Ok(pty)
+    }
+
+    /// Where other programs find its other end.
+    pub fn path(&self) -> &str {
+        &self.path
     }
 
     fn make_raw(&self) -> std::io::Result<()> {
@@ -48,7 +55,8 @@ impl Pty {
 impl Line for Pty {
     fn receive(&mut self) -> std::io::Result<Received> {
         let open = self.is_open()?;
-        let opened = open && !std::mem::replace(&mut self.open, open);
+        let was_open = std::mem::replace(&mut self.open, open);
+        let opened = open && !was_open;
         if opened {
             self.make_raw()?;
         }
@@ -71,5 +79,28 @@ impl Line for Pty {
             }
         }
         Ok(true)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Line, Mode, OFlags, Pty, open};
+
+    #[test]
+    fn each_opening_is_told_once_and_bytes_for_nobody_are_lost() {
+        let mut pty = Pty::new().expect("a pseudo-terminal");
+        let path = pty.path().to_owned();
+        let open_it = || open(path.as_str(), OFlags::RDWR | OFlags::NOCTTY, Mode::empty()).expect("its other end");
+        for _ in 0..2 {
+            assert!(!pty.receive().expect("nobody").opened);
+            pty.send(b"lost").expect("nobody");
+            let theirs = open_it();
+            assert!(pty.receive().expect("somebody").opened);
+            assert!(!pty.receive().expect("somebody").opened);
+            pty.send(b"seen").expect("somebody");
+            let mut bytes = [0; 16];
+            let count = rustix::io::read(&theirs, &mut bytes).expect("four bytes");
+            assert_eq!(bytes[..count], *b"seen");
+        }
     }
 }

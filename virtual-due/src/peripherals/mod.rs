@@ -15,6 +15,7 @@ mod rstc;
 mod rtc;
 mod rtt;
 mod serial;
+mod spi;
 mod supc;
 mod tc;
 mod ticks;
@@ -71,10 +72,11 @@ fn timer(name: &'static str, base: u32, line: u16, block: usize) -> Slot {
 pub fn all(memories: &Memories) -> Vec<Slot> {
     let mut slots = system_controller(memories);
     slots.extend([
-        clocked("HSMCI", 0x4000_0000, 21, Unmodelled("HSMCI")),
-        clocked("SSC", 0x4000_4000, 26, Unmodelled("SSC")),
-        clocked("SPI0", 0x4000_8000, 24, Unmodelled("SPI0")),
-        clocked("SPI1", 0x4000_C000, 25, Unmodelled("SPI1")),
+        clocked("HSMCI", 0x4000_0000, 21, Unmodelled::new("HSMCI")),
+        // SSC_SR: TXRDY and TXEMPTY.
+        clocked("SSC", 0x4000_4000, 26, Unmodelled::ready("SSC", 0x40, 0b11)),
+        clocked("SPI0", 0x4000_8000, 24, spi::Spi::new("SPI0")),
+        clocked("SPI1", 0x4000_C000, 25, spi::Spi::new("SPI1")),
         timer("TC0", 0x4008_0000, 27, 0),
         timer("TC1", 0x4008_4000, 30, 1),
         timer("TC2", 0x4008_8000, 33, 2),
@@ -86,13 +88,14 @@ pub fn all(memories: &Memories) -> Vec<Slot> {
         clocked("USART2", 0x400A_0000, 19, usart::Usart::new(3)),
         clocked("USART3", 0x400A_4000, 20, usart::Usart::new(4)),
         clocked("UOTGHS", 0x400A_C000, 40, uotghs::Uotghs::new()),
-        clocked("EMAC", 0x400B_0000, 42, Unmodelled("EMAC")),
-        clocked("CAN0", 0x400B_4000, 43, Unmodelled("CAN0")),
-        clocked("CAN1", 0x400B_8000, 44, Unmodelled("CAN1")),
+        clocked("EMAC", 0x400B_0000, 42, Unmodelled::new("EMAC")),
+        clocked("CAN0", 0x400B_4000, 43, Unmodelled::new("CAN0")),
+        clocked("CAN1", 0x400B_8000, 44, Unmodelled::new("CAN1")),
         clocked("TRNG", 0x400B_C000, 41, trng::Trng::new()),
         clocked("ADC", 0x400C_0000, 37, adc::Adc::new()),
-        clocked("DMAC", 0x400C_4000, 39, Unmodelled("DMAC")),
-        clocked("DACC", 0x400C_8000, 38, Unmodelled("DACC")),
+        clocked("DMAC", 0x400C_4000, 39, Unmodelled::new("DMAC")),
+        // DACC_ISR: TXRDY, EOC, ENDTX and TXBUFE.
+        clocked("DACC", 0x400C_8000, 38, Unmodelled::ready("DACC", 0x30, 0b1111)),
     ]);
     slots
 }
@@ -100,8 +103,8 @@ pub fn all(memories: &Memories) -> Vec<Slot> {
 fn system_controller(memories: &Memories) -> Vec<Slot> {
     let eefc = |bank: usize| eefc::Eefc::new(bank, Rc::clone(&memories.flash[bank]), FLASH + bank as u32 * BANK);
     let mut slots = vec![
-        system("SMC", 0x400E_0000, 0x200, 9, Unmodelled("SMC")),
-        system("SDRAMC", 0x400E_0200, 0x200, 10, Unmodelled("SDRAMC")),
+        system("SMC", 0x400E_0000, 0x200, 9, Unmodelled::new("SMC")),
+        system("SDRAMC", 0x400E_0200, 0x200, 10, Unmodelled::new("SDRAMC")),
         system("MATRIX", 0x400E_0400, 0x200, 0, matrix::Matrix::new()),
         system("PMC", 0x400E_0600, 0x200, 5, pmc::Pmc::new()),
         Slot { gate: 1 << 8, ..system("UART", 0x400E_0800, 0x140, 8, uart::Uart::new(0)) },

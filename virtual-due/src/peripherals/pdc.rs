@@ -185,6 +185,11 @@ impl Pdc {
         Some(u32::from_le_bytes(bytes))
     }
 
+    /// Data left in the current transmit buffer; zero where the channel is off.
+    pub fn transmit_left(&self) -> u16 {
+        if self.transmit.enabled { self.transmit.counter } else { 0 }
+    }
+
     /// ENDRX: RCR has reached zero since RCR or RNCR was last written with anything else.
     pub fn end_of_receive(&self) -> bool {
         self.receive.ended

@@ -85,6 +85,8 @@ pub struct Serial {
     shifting: Option<(u8, Cycles)>,
     /// Until then the line rests.
     line_free: Cycles,
+    /// From one byte of the PDC's to the next, where nothing but the line sees the bytes leave.
+    unseen_pace: Option<Cycles>,
     received: u8,
     /// RXRDY and the error bits.
     latched: u32,
@@ -104,6 +106,7 @@ impl Serial {
             holding: None,
             shifting: None,
             line_free: 0,
+            unseen_pace: None,
             received: 0,
             latched: 0,
             next_reception: None,
@@ -179,6 +182,8 @@ impl Serial {
 
     /// Lets the PDC and the shift register take what waits for them, and looks for what arrives next.
     pub fn serve(&mut self, format: Format, context: &mut Context) {
+        let unseen = format.mode == ChannelMode::Normal && self.interrupt_mask & (TXRDY | TXEMPTY) == 0;
+        self.unseen_pace = unseen.then_some(format.byte_time + format.guard_time);
         self.pass_on_received(context);
         self.load(context.now, format, context);
         self.receive(format, context);
@@ -219,25 +224,26 @@ impl Serial {
         }
     }
 
-    /// Nothing on the pin is heard while the receiver is off, in local loopback, or without a baud rate.
+    /// What arrives while nothing hears it is lost: with the receiver off, or cut off from its pin.
     fn receive(&mut self, format: Format, context: &mut Context) {
         self.next_reception = None;
-        let repeats = format.mode == ChannelMode::RemoteLoopback;
-        if format.byte_time == 0 || format.mode == ChannelMode::LocalLoopback || !(self.receiver_on || repeats) {
+        if format.byte_time == 0 {
             return;
         }
+        let repeats = matches!(format.mode, ChannelMode::AutomaticEcho | ChannelMode::RemoteLoopback);
+        let hears = self.receiver_on && matches!(format.mode, ChannelMode::Normal | ChannelMode::AutomaticEcho);
         loop {
             match context.world.receive(self.port, format.byte_time, context.now) {
                 Reception::Idle => return,
                 Reception::At(at) => {
-                    self.next_reception = Some(at);
+                    self.next_reception = (hears || repeats).then_some(at);
                     return;
                 }
                 Reception::Byte(byte) => {
-                    if matches!(format.mode, ChannelMode::AutomaticEcho | ChannelMode::RemoteLoopback) {
+                    if repeats {
                         context.world.transmitted(self.port, byte, context.now);
                     }
-                    if !repeats {
+                    if hears {
                         self.arrive(byte & format.mask, context.now, context);
                     }
                 }
@@ -269,9 +275,15 @@ impl Serial {
         self.last_reception.take()
     }
 
-    /// When a byte will have been sent or received.
+    /// When a byte will have been sent or received; of the bytes that the PDC sends unseen, only when it has taken the
+    /// last of its buffer. [`advance`](Self::advance) sends those between at their own times.
     pub fn next_event(&self) -> Option<Cycles> {
-        let sent = self.shifting.map(|(_, end)| end);
+        let sent = self.shifting.map(|(_, end)| match self.unseen_pace {
+            Some(pace) if self.holding.is_some() && self.transmitter_on => {
+                end + u64::from(self.pdc.transmit_left().saturating_sub(1)) * pace
+            }
+            _ => end,
+        });
         [sent, self.next_reception].into_iter().flatten().min()
     }
 

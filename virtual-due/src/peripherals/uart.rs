@@ -152,6 +152,35 @@ mod tests {
         assert_ne!(bench.read(SR) & TXEMPTY, 0);
     }
 
+    /// A hundred bytes by PDC.
+    fn sending(interrupts: u32) -> Bench<Uart> {
+        let mut bench = port();
+        for (offset, value) in [(IER, interrupts), (0x108, bench.memory.base), (0x10C, 100), (0x120, 1 << 8)] {
+            bench.write(offset, value);
+        }
+        bench
+    }
+
+    #[test]
+    fn bytes_by_pdc_are_no_events_but_leave_at_their_own_times() {
+        let mut bench = sending(ENDTX);
+        // THR takes the last byte as the shift register takes the one before.
+        assert_eq!(bench.model.next_event(), Some(98 * BYTE));
+        bench.now = 50 * BYTE;
+        assert_eq!(bench.read(0x10C), 48);
+        assert_eq!(sent(&bench), (1..=50).map(|count| (0, count * BYTE)).collect::<Vec<_>>());
+        bench.run(48 * BYTE - 1);
+        assert!(!bench.model.interrupt());
+        bench.run(1);
+        assert!(bench.model.interrupt());
+    }
+
+    #[test]
+    fn bytes_by_pdc_are_events_where_their_interrupt_is_enabled() {
+        assert_eq!(sending(TXEMPTY).model.next_event(), Some(BYTE));
+        assert_eq!(sending(TXRDY).model.next_event(), Some(BYTE));
+    }
+
     #[test]
     fn unread_byte_is_overrun_and_reported_until_status_is_reset() {
         let mut bench = port();
@@ -166,6 +195,19 @@ mod tests {
         assert_eq!(bench.read(SR) & (RXRDY | OVRE), OVRE);
         bench.write(CR, 1 << 8);
         assert_eq!(bench.read(SR) & (RXRDY | OVRE), 0);
+    }
+
+    #[test]
+    fn what_arrives_while_the_receiver_is_off_is_lost() {
+        let mut bench = port();
+        bench.write(CR, 1 << 5);
+        bench.world.arriving.extend([(BYTE, b'x'), (3 * BYTE, b'y')]);
+        bench.run(2 * BYTE);
+        bench.write(CR, 1 << 4);
+        assert_eq!(bench.read(SR) & RXRDY, 0);
+        bench.run(BYTE);
+        assert_eq!(bench.read(SR) & (RXRDY | OVRE), RXRDY);
+        assert_eq!(bench.read(RHR), b'y'.into());
     }
 
     #[test]

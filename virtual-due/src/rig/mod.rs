@@ -63,6 +63,8 @@ pub struct Rig {
     wires: Wires,
     ports: [Port; PORTS],
     no_devices: NoDevices,
+    scans: u64,
+    truth_at_scan: [EndPose; SEGMENTS],
 }
 
 impl Rig {
@@ -70,6 +72,7 @@ impl Rig {
     pub fn new(scenario: Scenario, seed: u64) -> Self {
         let arm = Arm::new(scenario, seed);
         let sensors = Sensors::new(arm.twin().imu_quaternions());
+        let truth_at_scan = arm.twin().truth();
         Self {
             faults: Faults::default(),
             now: 0,
@@ -78,6 +81,8 @@ impl Rig {
             wires: Wires::default(),
             ports: std::array::from_fn(|_| Port::default()),
             no_devices: NoDevices,
+            scans: 0,
+            truth_at_scan,
         }
     }
 
@@ -92,6 +97,12 @@ impl Rig {
     /// True world pose of each segment's end, at the last 2 ms before the latest time that the rig knows.
     pub fn truth(&self) -> [EndPose; SEGMENTS] {
         self.arm.twin().truth()
+    }
+
+    /// How often bend sensor 1a was converted, and the truth at the last time: what a sample's estimate is to be held
+    /// against.
+    pub fn last_scan(&self) -> (u64, [EndPose; SEGMENTS]) {
+        (self.scans, self.truth_at_scan)
     }
 
     /// What the regulators are commanded, Pa: module 1 right, left, module 2 right, left, module 3 right, left.
@@ -126,6 +137,10 @@ impl World for Rig {
         self.advance_to(now);
         let Some(sensor) = BEND_CHANNELS.iter().position(|wired| *wired == channel) else { return 0 };
         let counts = self.arm.convert(sensor);
+        if sensor == 0 {
+            self.scans += 1;
+            self.truth_at_scan = self.truth();
+        }
         match self.faults.bend[sensor] {
             None => counts,
             Some(Rail::Low) => 0,

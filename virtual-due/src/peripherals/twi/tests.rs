@@ -4,6 +4,7 @@ use crate::peripherals::bench::{Bench, OnBus};
 
 const CR: u32 = 0x00;
 const MMR: u32 = 0x04;
+const SMR: u32 = 0x08;
 const IADR: u32 = 0x0C;
 const CWGR: u32 = 0x10;
 const SR: u32 = 0x20;
@@ -14,6 +15,9 @@ const THR: u32 = 0x34;
 const START: u32 = 1 << 0;
 const STOP: u32 = 1 << 1;
 const MSEN: u32 = 1 << 2;
+const MSDIS: u32 = 1 << 3;
+const SVEN: u32 = 1 << 4;
+const SVDIS: u32 = 1 << 5;
 const QUICK: u32 = 1 << 6;
 const SWRST: u32 = 1 << 7;
 
@@ -297,4 +301,44 @@ fn software_reset_ends_a_frame_that_hangs() {
     bench.run(BYTE);
     bench.write(CR, SWRST);
     assert_eq!((status(&mut bench), bench.read(CWGR), bench.model.next_event()), (TXCOMP, 0, None));
+}
+
+#[test]
+fn start_up_through_slave_mode_leaves_a_master_and_is_not_reported() {
+    let mut bench = master(DEVICE);
+    for command in [SVEN, SWRST, SVDIS | MSDIS, MSEN] {
+        bench.write(CR, command);
+    }
+    for (offset, value) in [(CWGR, (96 << 8) + 106), (MMR, DEVICE), (THR, 0x11)] {
+        bench.write(offset, value);
+    }
+    bench.run(ADDRESS);
+    assert_eq!(status(&mut bench), TXRDY);
+    assert!(bench.report.take().is_empty());
+}
+
+#[test]
+fn slave_with_an_address_is_reported() {
+    let mut bench = master(DEVICE);
+    bench.write(SMR, 0x10 << 16);
+    bench.write(CR, SVEN);
+    assert_eq!(bench.report.take().len(), 1);
+}
+
+#[test]
+fn stop_that_is_asked_for_while_the_last_byte_comes_ends_the_read_behind_it() {
+    let mut bench = master(DEVICE | MREAD);
+    bench.world.device.to_read.extend([1, 2, 3]);
+    bench.write(CR, START);
+    let mut read = Vec::new();
+    for byte in 0..3 {
+        if byte == 2 {
+            bench.write(CR, STOP);
+        }
+        bench.run_until(ADDRESS + 2 * BYTE, |bench| status(bench) & RXRDY != 0);
+        read.push(bench.read(RHR));
+    }
+    bench.run_until(2 * BIT, |bench| status(bench) & TXCOMP != 0);
+    assert_eq!(read, [1, 2, 3]);
+    assert_eq!(bench.world.device.seen, [OnBus::Start(0x28, true), OnBus::Read, OnBus::Read, OnBus::Read, OnBus::Stop]);
 }
