@@ -1,6 +1,6 @@
 //! Bakes the arm's table into the firmware, and finds out which revision of the source this is.
 //!
-//! `PROPRIO_TABLE` names the table's TOML file; without it, it is the reference arm's.
+//! `PROPRIO_TABLE` names the table's TOML file, from the workspace's folder; without it, it is the reference arm's.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -14,7 +14,7 @@ const RATE_HZ: f64 = 100.0;
 
 fn main() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
-    let path = env::var_os("PROPRIO_TABLE").map_or_else(|| root.join("calibration-tables/planar-6.toml"), PathBuf::from);
+    let path = root.join(env::var_os("PROPRIO_TABLE").unwrap_or_else(|| "calibration-tables/planar-6.toml".into()));
     println!("cargo::rerun-if-env-changed=PROPRIO_TABLE");
     println!("cargo::rerun-if-changed={}", path.display());
     println!("cargo::rerun-if-changed={}", root.join("memory.x").display());
@@ -33,8 +33,8 @@ fn main() {
 
 /// The table's source, with the arm's name and the checksum that `Hello` carries.
 fn table(path: &Path) -> Result<String, String> {
-    let file = ArmFile::load(path).map_err(|error| format!("PROPRIO_TABLE: {error}"))?;
-    let baked = file.bake::<Q>(RATE_HZ).map_err(|error| format!("PROPRIO_TABLE: {error}"))?;
+    let file = ArmFile::load(path).map_err(|error| format!("PROPRIO_TABLE {}: {error}", path.display()))?;
+    let baked = file.bake::<Q>(RATE_HZ).map_err(|error| format!("PROPRIO_TABLE {}: {error}", path.display()))?;
     Ok(format!(
         "{}\n/// Name of the arm.\npub const ARM: &str = {:?};\n\n/// Checksum of the table.\npub const CHECKSUM: u32 = {:#010x};\n",
         baked.to_rust(),
@@ -45,6 +45,7 @@ fn table(path: &Path) -> Result<String, String> {
 
 fn revision(root: &Path) -> String {
     let output = Command::new("git").current_dir(root).args(["rev-parse", "--short=12", "HEAD"]).output();
-    let text = output.ok().filter(|output| output.status.success()).and_then(|output| String::from_utf8(output.stdout).ok());
+    let text =
+        output.ok().filter(|output| output.status.success()).and_then(|output| String::from_utf8(output.stdout).ok());
     text.map_or_else(|| "unknown".to_owned(), |text| text.trim().to_owned())
 }

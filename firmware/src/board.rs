@@ -8,11 +8,11 @@ use atsam3x8e_hal::pwm::{self, Output, Period, Polarity, Prescaler, Pwm};
 use atsam3x8e_hal::tc::{self, Mono, Trigger};
 use atsam3x8e_hal::twi::Twi;
 use atsam3x8e_hal::uart::{self, Rx, Tx};
-use atsam3x8e_hal::watchdog::Watchdog;
+use atsam3x8e_hal::watchdog::{self, Watchdog};
 use atsam3x8e_hal::{clock, crash, eefc, gpio, reset};
+use board_core::Boots;
 use board_core::imus::Imus;
 use board_core::tca9548a::{self, Tca9548a};
-use board_core::Boots;
 use embedded_hal::digital::PinState;
 use telemetry::{BEND_SENSORS, Hello, REGULATORS};
 
@@ -60,24 +60,31 @@ pub struct Board {
 }
 
 /// Why the board does not come up. Each is a fault of the hardware or of [`parameters`](crate::parameters).
-#[derive(Debug)]
+#[derive(Debug, thiserror::Error)]
 pub enum Error {
-    Clock(clock::Error),
-    Watchdog(atsam3x8e_hal::watchdog::Error),
-    Timer(tc::Error),
-    Adc(adc::Error),
-    Pwm(pwm::Error),
-    Uart(uart::Error),
-    Flash(eefc::Error),
+    #[error("clock: {0}")]
+    Clock(#[from] clock::Error),
+    #[error("watchdog: {0}")]
+    Watchdog(#[from] watchdog::Error),
+    #[error("timer: {0}")]
+    Timer(#[from] tc::Error),
+    #[error("ADC: {0}")]
+    Adc(#[from] adc::Error),
+    #[error("PWM: {0}")]
+    Pwm(#[from] pwm::Error),
+    #[error("UART: {0}")]
+    Uart(#[from] uart::Error),
+    #[error("flash: {0}")]
+    Flash(#[from] eefc::Error),
 }
 
 /// Takes the chip and gives the board, vented and with its trigger running.
 pub fn set_up(device: Peripherals, buffers: &'static mut Buffers) -> Result<Board, Error> {
     crash::on_fault(outputs_safe);
     // First of all, so that whatever hangs below is cut off.
-    let watchdog = Watchdog::start(device.WDT, WATCHDOG_MS).map_err(Error::Watchdog)?;
+    let watchdog = Watchdog::start(device.WDT, WATCHDOG_MS)?;
     let cause = identity::reset_cause(reset::cause(&device.RSTC));
-    let clocks = clock::configure(device.PMC, &device.EFC0, &device.EFC1).map_err(Error::Clock)?;
+    let clocks = clock::configure(device.PMC, &device.EFC0, &device.EFC1)?;
     let (a, b, c) = (device.PIOA.split(clocks), device.PIOB.split(clocks), device.PIOC.split(clocks));
 
     let regulators = [
@@ -89,10 +96,10 @@ pub fn set_up(device: Peripherals, buffers: &'static mut Buffers) -> Result<Boar
         Output::from(c.pc4),
     ];
     let period = Period { prescaler: Prescaler::Div1, counts: PWM_COUNTS };
-    let regulators = Pwm::new(device.PWM, regulators, period, Polarity::ActiveHigh, clocks).map_err(Error::Pwm)?;
+    let regulators = Pwm::new(device.PWM, regulators, period, Polarity::ActiveHigh, clocks)?;
 
-    let mut flash = eefc::Flash::new(device.EFC0, device.EFC1, STORAGE).map_err(Error::Flash)?;
-    let chip = flash.unique_id().map_err(Error::Flash)?;
+    let mut flash = eefc::Flash::new(device.EFC0, device.EFC1, STORAGE)?;
+    let chip = flash.unique_id()?;
     let mut backup = Backup::new(device.GPBR);
     let last_panic = crash::take();
     let boots = Boots::start(kept::read(&backup), cause, last_panic.is_some());
@@ -101,7 +108,7 @@ pub fn set_up(device: Peripherals, buffers: &'static mut Buffers) -> Result<Boar
 
     let (rx, tx) = (a.pa8.into_peripheral_a(), a.pa9.into_peripheral_a());
     let uart = uart::new(device.UART, rx, tx, BAUD, &mut buffers.transmit, &mut buffers.receive, clocks);
-    let (tx, rx) = uart.map_err(Error::Uart)?;
+    let (tx, rx) = uart?;
 
     let twi = Twi::new(device.TWI1, b.pb12.into_peripheral_a(), b.pb13.into_peripheral_a(), Mono, clocks);
     let mux = Tca9548a::new(tca9548a::ADDRESS, Some(b.pb26.into_output(PinState::High)));
@@ -110,8 +117,8 @@ pub fn set_up(device: Peripherals, buffers: &'static mut Buffers) -> Result<Boar
     let channels = tc::split(device.TC0, clocks);
     Mono::start(channels.channel1);
     let adc = Adc::new(device.ADC, BEND_CHANNELS, adc::Trigger::Tc0Channel0, &mut buffers.scan, clocks);
-    let adc = adc.map_err(Error::Adc)?;
+    let adc = adc?;
     let start_us = Mono::now_us();
-    let trigger = Trigger::start(channels.channel0, TICK_HZ, SCAN_US).map_err(Error::Timer)?;
+    let trigger = Trigger::start(channels.channel0, TICK_HZ, SCAN_US)?;
     Ok(Board { watchdog, trigger, start_us, adc, regulators, imus, tx, rx, backup, boots, hello })
 }

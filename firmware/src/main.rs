@@ -81,7 +81,7 @@ mod app {
     fn init(cx: init::Context) -> (Shared, Local) {
         let board = match board::set_up(cx.device, cx.local.buffers) {
             Ok(board) => board,
-            Err(error) => panic!("the board does not come up: {error:?}"),
+            Err(error) => panic!("the board does not come up: {error}"),
         };
         defmt::info!("boot {} of {}", board.boots.number(), board.hello.firmware.as_str());
         let (to_requests, requests_ticks) = cx.local.for_requests.split();

@@ -50,12 +50,7 @@ struct Round {
 
 impl Shape {
     /// At boot.
-    pub fn new(
-        imus: Imus<ImuBus, Pin<'B', 26, Output>>,
-        arm: &'static mut Arm,
-        hello: Hello,
-        safe_mode: bool,
-    ) -> Self {
+    pub fn new(imus: Imus<ImuBus, Pin<'B', 26, Output>>, arm: &'static mut Arm, hello: Hello, safe_mode: bool) -> Self {
         arm.start();
         Self {
             imus,
@@ -104,7 +99,7 @@ impl Shape {
         due.hello |= self.last_tick.is_none();
         self.last_tick = Some(tick.number);
         voice.lock(|voice| {
-            self.say(voice, &round, &due);
+            self.say(voice, &round, due);
             if due.health {
                 let health = self.health(tick.number, voice.dropped(), damaged_frames, actuation, pressures_pa);
                 voice.say(&Message::Health(health));
@@ -135,13 +130,12 @@ impl Shape {
             self.arm.tare();
             let _ = events.push(Event::Tare(tick.number));
         }
-        let sample =
-            Sample { tick: tick.number, time_us: tick.time_us, tare: self.arm.tares(), bend, imu: judged.imu };
+        let sample = Sample { tick: tick.number, time_us: tick.time_us, tare: self.arm.tares(), bend, imu: judged.imu };
         let estimate = self.arm.step(&sample);
         Round { sample, estimate, events }
     }
 
-    fn say(&self, voice: &mut Voice, round: &Round, due: &Due) {
+    fn say(&self, voice: &mut Voice, round: &Round, due: Due) {
         if due.hello {
             voice.say(&Message::Hello(self.hello.clone()));
         }
@@ -161,7 +155,8 @@ impl Shape {
     /// are all lost.
     fn is_degraded(&self) -> bool {
         let no_imu = self.imus.health().iter().all(|imu| imu.state != SensorState::Ok);
-        let has_sensors = |segment: usize| TABLE.segments.get(segment).is_some_and(|s| s.bend.iter().any(Option::is_some));
+        let has_sensors =
+            |segment: usize| TABLE.segments.get(segment).is_some_and(|s| s.bend.iter().any(Option::is_some));
         no_imu || (0..SEGMENTS).any(|segment| has_sensors(segment) && self.bends.segment_is_lost(segment))
     }
 

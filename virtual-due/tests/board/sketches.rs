@@ -40,7 +40,8 @@ fn analog_write_of_255_on_pin_6_gives_the_first_regulator_full_pressure() {
     );
     board.run_until(MILLISECOND);
     assert!(board.sleeps());
-    assert_eq!(board.world().set_points_pa(), [280_000.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
+    let kilopascals = board.world().set_points_pa().map(|pa| (pa / 1000.0).round() as u32);
+    assert_eq!(kilopascals, [280, 0, 0, 0, 0, 0]);
     assert_eq!(board.reports(), Vec::<String>::new());
 }
 

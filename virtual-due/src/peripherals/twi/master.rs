@@ -44,6 +44,8 @@ enum Then {
     GoOn,
     Stop,
     Start,
+    /// A frame, and the end of that one after its first byte.
+    StartAndStop,
 }
 
 /// The master of one TWI.
@@ -159,10 +161,14 @@ impl Master {
         }
     }
 
-    /// STOP ends the frame after the byte under way, and after the one in THR.
+    /// STOP ends the frame after the byte under way, and after the one in THR; behind a START that still waits, the frame
+    /// that this begins.
     pub fn stop(&mut self, context: &mut Context) {
         if let Some(frame) = self.frame {
-            self.then = Then::Stop;
+            self.then = match self.then {
+                Then::Start | Then::StartAndStop => Then::StartAndStop,
+                Then::GoOn | Then::Stop => Then::Stop,
+            };
             if frame.step == Step::Hold {
                 self.next_to_device(context.now, context);
             }
@@ -296,11 +302,7 @@ impl Master {
 
     /// The next byte of a read, unless STOP was asked for meanwhile: then this one was not acknowledged.
     fn next_from_device(&mut self, at: Cycles, context: &mut Context) {
-        match self.then {
-            Then::Stop => self.go_on(Step::Stop, at, context),
-            Then::Start => self.begin_frame(false, context),
-            Then::GoOn => self.go_on(Step::Read, at, context),
-        }
+        self.after_byte(Step::Read, at, context);
     }
 
     /// The next byte of a write is taken from THR, which is then ready for another.
@@ -310,10 +312,19 @@ impl Master {
             self.go_on(Step::Write(byte), at, context);
             return;
         }
+        self.after_byte(Step::Hold, at, context);
+    }
+
+    /// What was asked for, or else `step`.
+    fn after_byte(&mut self, step: Step, at: Cycles, context: &mut Context) {
         match self.then {
+            Then::GoOn => self.go_on(step, at, context),
             Then::Stop => self.go_on(Step::Stop, at, context),
             Then::Start => self.begin_frame(false, context),
-            Then::GoOn => self.go_on(Step::Hold, at, context),
+            Then::StartAndStop => {
+                self.begin_frame(false, context);
+                self.then = Then::Stop;
+            }
         }
     }
 

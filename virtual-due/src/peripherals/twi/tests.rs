@@ -342,3 +342,18 @@ fn stop_that_is_asked_for_while_the_last_byte_comes_ends_the_read_behind_it() {
     assert_eq!(read, [1, 2, 3]);
     assert_eq!(bench.world.device.seen, [OnBus::Start(0x28, true), OnBus::Read, OnBus::Read, OnBus::Read, OnBus::Stop]);
 }
+
+#[test]
+fn one_byte_is_read_behind_a_write_without_a_stop_between() {
+    let mut bench = master(DEVICE);
+    bench.world.device.to_read.push_back(0xA0);
+    bench.write(THR, 0x00);
+    bench.run(ADDRESS);
+    bench.write(MMR, DEVICE | MREAD);
+    bench.write(CR, START | STOP);
+    bench.run(BYTE + ADDRESS + BYTE + BIT);
+    assert_eq!(status(&mut bench) & (TXCOMP | RXRDY), TXCOMP | RXRDY);
+    assert_eq!(bench.read(RHR), 0xA0);
+    let read = [OnBus::Start(0x28, true), OnBus::Read, OnBus::Stop];
+    assert_eq!(bench.world.device.seen, [&[OnBus::Start(0x28, false), OnBus::Write(0)], &read[..]].concat());
+}
