@@ -10,9 +10,10 @@
 //!                                     World: rig/…, the arm with its sensors and regulators
 //! ```
 //!
-//! Time is virtual: cycles of 84 MHz since power-on. An instruction takes 1.4 cycles of the core clock (a busy wait of
-//! two instructions a turn, which take three cycles on silicon, ends 7 % early), and sleep costs nothing. The models follow the datasheet of the SAM3X/A (Atmel 11057C), whatever firmware runs; what they leave out is
-//! reported once. Two runs of the same firmware, world and input do the same.
+//! Time is virtual: cycles of 84 MHz since power-on. An instruction takes 1.4 cycles of the core clock, so that a busy wait
+//! of two instructions a turn, three cycles on silicon, ends 7 % early; sleep costs nothing. The models follow the datasheet
+//! of the SAM3X/A (Atmel 11057C), whatever firmware runs; what they leave out is reported once. Two runs of the same
+//! firmware, world and input do the same.
 //!
 //! Not modelled: HSMCI, EMAC, CAN, DMAC and the memory controllers read as zero; SPI, SSC and DACC are ready at once for
 //! what goes nowhere; the native USB port never sees a host; flash wait states and the bus matrix cost no time; alarms of

@@ -139,6 +139,12 @@ impl Board {
         self.send(Command::SetPressures(SetPressures { pressures_pa, valid_ms: 200 }));
     }
 
+    /// Whether no regulator is commanded any pressure.
+    #[must_use]
+    pub fn is_vented(&self) -> bool {
+        self.machine.world().set_points_pa().iter().all(|pressure_pa| *pressure_pa < 1.0)
+    }
+
     /// All that was received, in order.
     #[must_use]
     pub fn received(&self) -> &[Received] {
