@@ -81,6 +81,11 @@ impl Pace {
 /// Stands in the window for a value that was missing, at half the memory of an `Option`: no arm turns so far.
 const MISSING: Turns = Turns::from_bits(i64::MIN);
 
+/// By the upper word alone, which is as far.
+fn is_missing(value: Turns) -> bool {
+    (value.bits() >> 32) as i32 == i32::MIN
+}
+
 #[derive(Debug, Clone, Copy)]
 struct Mean {
     sum: Turns,
@@ -91,14 +96,14 @@ impl Mean {
     const EMPTY: Self = Self { sum: Turns::ZERO, count: 0 };
 
     fn add(&mut self, value: Turns) {
-        if value != MISSING {
+        if !is_missing(value) {
             self.sum = self.sum + value;
             self.count += 1;
         }
     }
 
     fn remove(&mut self, value: Turns) {
-        if value != MISSING {
+        if !is_missing(value) {
             self.sum = self.sum - value;
             self.count -= 1;
         }

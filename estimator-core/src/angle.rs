@@ -177,6 +177,12 @@ impl Turns {
         Self(self.0.saturating_abs())
     }
 
+    /// Whether the angle without its sign is over `limit`, which has none.
+    #[must_use]
+    pub const fn exceeds(self, limit: Self) -> bool {
+        self.0.unsigned_abs() > limit.0 as u64
+    }
+
     /// `self / count`, rounded towards zero, for `count` of 1 to 65 535; zero for a `count` of 0.
     ///
     /// Schoolbook division by 16-bit digits: the Cortex-M3 divides 32 bits in hardware, 64 bits it does not.
@@ -191,7 +197,9 @@ impl Turns {
         let part = ((upper % divisor) << 16) | (lower >> 16);
         let last = ((part % divisor) << 16) | (lower & 0xFFFF);
         let quotient = (u64::from(upper / divisor) << 32) | u64::from(((part / divisor) << 16) | (last / divisor));
-        Self(if self.0 < 0 { (quotient as i64).wrapping_neg() } else { quotient as i64 })
+        // The sign again, word by word.
+        let sign = self.0 >> 63;
+        Self((quotient as i64 ^ sign).wrapping_sub(sign))
     }
 }
 

@@ -8,6 +8,9 @@ pub const VOLTS_PER_COUNT: f64 = 3.3 / 4095.0;
 /// Over a whole turn by more than rounding, rad.
 const BEYOND_A_TURN: Constant = Constant::new(6.3);
 
+/// Just under the ±32 of [`Scalar::quadratic`].
+const LARGEST: f64 = 31.9;
+
 /// Largest reading of a 12-bit ADC.
 const MAX_COUNTS: u16 = 4095;
 
@@ -26,7 +29,8 @@ pub struct BendMap<S> {
     pub shift: u8,
     /// b0, b1, b2, rad.
     pub coefficients: [S; 3],
-    /// Lowest and highest counts at which |θ| is within a whole turn.
+    /// Lowest and highest counts at which |θ| is within a whole turn, and u and b1 + b2 u in the range of
+    /// [`Scalar::quadratic`].
     pub readable: [u16; 2],
 }
 
@@ -41,9 +45,12 @@ impl<S: Scalar> BendMap<S> {
         let v0 = f64::from(center) * VOLTS_PER_COUNT;
         let scale = f64::from(1_u32 << shift) * VOLTS_PER_COUNT;
         let coefficients = [(c2 * v0 + c1) * v0 + c0, (2.0 * c2 * v0 + c1) * scale, c2 * scale * scale];
+        let [_, b1, b2] = coefficients;
         let is_angle = |counts: &u16| {
             let v = f64::from(*counts) * VOLTS_PER_COUNT;
-            ((c2 * v + c1) * v + c0).abs() <= core::f64::consts::TAU
+            let u = (v - v0) / scale;
+            let fits = u.abs().max((b1 + b2 * u).abs()) < LARGEST;
+            fits && ((c2 * v + c1) * v + c0).abs() <= core::f64::consts::TAU
         };
         let lowest = (0..=MAX_COUNTS).find(is_angle).unwrap_or(MAX_COUNTS);
         let highest = (0..=MAX_COUNTS).rev().find(is_angle).unwrap_or(0);
@@ -67,9 +74,8 @@ impl<S: Scalar> BendMap<S> {
         if counts < lowest || counts > highest {
             return None;
         }
-        let u = S::from_fraction(i32::from(counts) - i32::from(self.center), u32::from(self.shift));
-        let [b0, b1, b2] = self.coefficients;
-        let angle = b0 + u * (b1 + u * b2);
+        let from_center = i32::from(counts) - i32::from(self.center);
+        let angle = S::quadratic(from_center, u32::from(self.shift), &self.coefficients);
         // Between the two branches of a map that turns back it may be over a turn again.
         angle.is_within(S::constant(BEYOND_A_TURN)).then_some(angle)
     }

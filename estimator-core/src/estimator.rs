@@ -9,7 +9,7 @@ use crate::filter::{Block, Gains};
 use crate::imu::Heading;
 use crate::pcc::{Link, Pcc, SegmentShape, chain};
 use crate::sample::{ImuReading, SENSORS_PER_SEGMENT, Sample};
-use crate::scalar::{Constant, Scalar};
+use crate::scalar::Scalar;
 use crate::table::{Segment, Table, TableError};
 
 /// By what the shape is known.
@@ -175,9 +175,11 @@ impl<'t, S: Scalar, const N: usize, const W: usize> Estimator<'t, S, N, W> {
     ///
     /// The numbers are those of [`Estimator::shape`] by [`Method::Fusion`], to the bit.
     pub fn fuse(&mut self, sample: &Sample<N>) -> &Shape<S, N> {
-        let (fused, tick) = self.parts();
+        self.parts().1.estimates(sample).for_each(drop);
+        // Over the states again, which leaves more of the registers to each of the two.
+        let Self { states, fused, .. } = self;
         fused.clear();
-        for segment in chain(tick.estimates(sample).map(|estimate| estimate.fusion.map(|fused| fused.link))) {
+        for segment in chain(states.iter().map(|state| state.fused().map(|fused| fused.link))) {
             let _ = fused.push(segment); // There is room for all segments: `new` has checked.
         }
         fused
@@ -223,7 +225,7 @@ impl<'a, S: Scalar, const W: usize> Tick<'a, S, W> {
             let theta_imu = raw.zip(difference.zero).map(|(raw, zero)| raw - zero);
             let theta_corrected = theta_imu.filter(|_| has_bend_sensors).map(|theta| {
                 let offset = state.anchor.offset().zip(difference.zero).map(|(offset, zero)| offset - zero);
-                offset.filter(|offset| offset.magnitude() > rule.threshold).map_or(theta, |o| theta - o)
+                offset.filter(|offset| offset.exceeds(rule.threshold)).map_or(theta, |o| theta - o)
             });
 
             let thetas = [theta_bend.map(Angle::from), theta_corrected.map(Angle::from)];
@@ -261,14 +263,13 @@ impl Tangent {
 /// θ_bend,i, the mean of the segment's sensors that were read, and their number.
 #[inline]
 fn bend_angle<S: Scalar>(segment: &Segment<S>, counts: [Option<u16>; SENSORS_PER_SEGMENT]) -> (Option<S>, u8) {
-    const HALF: Constant = Constant::new(0.5);
     let mut counts = counts.into_iter();
     let angles = segment.bend.each_ref().map(|map| {
         let counts = counts.next().flatten();
         map.as_ref()?.angle(counts?)
     });
     match angles.into() {
-        (Some(a), Some(b)) => (Some((a + b) * S::constant(HALF)), 2),
+        (Some(a), Some(b)) => (Some((a + b).half()), 2),
         (Some(one), None) | (None, Some(one)) => (Some(one), 1),
         (None, None) => (None, 0),
     }
@@ -298,6 +299,12 @@ impl<S: Scalar, const W: usize> State<S, W> {
         let theta = |link: Link<S>| SVector::from([link.theta.rest]);
         self.orient.step(&self.orient_gains, imu_c.map(theta), bend.map(theta));
         self.coord.step(&self.coord_gains, imu_c.map(|link| link.end), bend.map(|link| link.end));
+        self.fused()
+    }
+
+    /// What the filters say now.
+    #[inline]
+    fn fused(&self) -> Option<Fused<S>> {
         let ((theta, theta_variance), (end, end_variance)) = self.orient.state().zip(self.coord.state())?;
         Some(Fused { link: Link { theta: Angle::from(theta.x), end }, theta_variance, end_variance })
     }

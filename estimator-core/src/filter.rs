@@ -28,6 +28,8 @@ pub struct Noise<S> {
 /// what it says anyway, and with H up to [`H_LIMIT`] the sum H² P + R stays below 32, where [`Q`](crate::Q) ends.
 pub const COVARIANCE_LIMIT: f64 = 16.0;
 
+const LIMIT: Constant = Constant::new(COVARIANCE_LIMIT);
+
 /// The largest H.
 pub const H_LIMIT: f64 = 1.25;
 
@@ -57,8 +59,7 @@ impl<S: Scalar> Weights<S> {
     }
 
     fn halved(self) -> Self {
-        let half = |value| value * S::constant(Constant::new(0.5));
-        Self { r: half(self.r), h_squared: half(self.h_squared), of: self.of.map(half) }
+        Self { r: self.r.half(), h_squared: self.h_squared.half(), of: self.of.map(S::half) }
     }
 }
 
@@ -66,6 +67,8 @@ impl<S: Scalar> Weights<S> {
 #[derive(Debug, Clone, Copy)]
 pub struct Gains<S> {
     q: S,
+    /// Up to this P there is room for q.
+    room: S,
     both: Weights<S>,
     imu: Weights<S>,
     bend: Weights<S>,
@@ -79,6 +82,7 @@ impl<S: Scalar> Gains<S> {
         let zero = S::zero();
         Self {
             q,
+            room: S::constant(LIMIT) - q,
             both: Weights::both(noise),
             imu: Weights { r: r_imu, h_squared: h_imu * h_imu, of: [h_imu, zero, -(h_imu * h_imu)] },
             bend: Weights { r: r_bend, h_squared: h_bend * h_bend, of: [zero, h_bend, -(h_bend * h_bend)] },
@@ -124,10 +128,8 @@ impl<S: Scalar, const D: usize> Block<S, D> {
     /// The first of them start the filter.
     #[inline]
     pub fn step(&mut self, gains: &Gains<S>, imu: Option<SVector<S, D>>, bend: Option<SVector<S, D>>) {
-        const LIMIT: Constant = Constant::new(COVARIANCE_LIMIT);
         if let Some((_, p)) = &mut self.state {
-            let room = S::constant(LIMIT) - *p;
-            *p += if gains.q < room { gains.q } else { room };
+            *p = if *p < gains.room { *p + gains.q } else { S::constant(LIMIT) };
         }
         let zeros = SVector::zeros();
         let (weights, imu, bend) = match (imu, bend) {
@@ -137,13 +139,12 @@ impl<S: Scalar, const D: usize> Block<S, D> {
             (None, None) => return,
         };
         let (x, ratio) = match self.state {
-            Some((x, p)) => (x, p / (weights.r + p * weights.h_squared)),
+            Some((x, p)) => (x, p.quotient(weights.r, weights.h_squared)),
             None => (zeros, S::one() / weights.h_squared),
         };
         let ([imu], [bend], [state]) = (imu.data.0, bend.data.0, x.data.0);
-        let weighed = S::dots::<D, 3>(core::array::from_fn(|k| (weights.of, [imu[k], bend[k], state[k]])));
-        let correction = S::dots::<D, 1>(weighed.map(|weighed| ([ratio], [weighed])));
-        self.state = Some((x + SVector::from(correction), ratio * weights.r));
+        let [p] = S::bounded_dots([([ratio], [weights.r])]);
+        self.state = Some((SVector::from(S::corrected(state, ratio, &weights.of, [imu, bend])), p));
     }
 }
 

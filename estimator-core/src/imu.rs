@@ -75,6 +75,7 @@ impl<S: Scalar> Heading<S> {
 }
 
 impl<S: Scalar> Tare<S> {
+    #[cold]
     fn add(&mut self, heading: Option<Turns>) {
         self.ticks_left -= 1;
         let Some(heading) = heading else { return };
@@ -85,6 +86,7 @@ impl<S: Scalar> Tare<S> {
         self.sin = self.sin + deviation.sin.to_turns();
     }
 
+    #[cold]
     fn mean(&self) -> Option<Turns> {
         let deviation = Phase::atan2(self.sin.bits(), self.cos.bits())?;
         Some(self.first? + Turns::from(deviation))

@@ -31,10 +31,10 @@ pub struct Arc<S> {
     pub sin: S,
 }
 
-/// Up to this |θ| the polynomials hold, rad.
-const LIMIT: Constant = Constant::new(2.0);
+/// Up to this |θ| the polynomials hold, rad: a step of [`Q`](crate::Q) under 2.
+const LIMIT: Constant = Constant::new(2.0 - 1.0 / 67_108_864.0);
 
-/// Terms of a polynomial in θ²/4, eightfold as [`Scalar::even_polynomial`] takes them.
+/// Terms of a polynomial in θ²/8, eightfold as [`Scalar::polynomials`] takes them.
 type Terms<T> = [T; 7];
 
 /// sin θ / θ.
@@ -61,20 +61,21 @@ const VERSINE: Terms<Constant> = eightfold([
 
 /// cos θ = 1 − θ² (1 − cos θ) / θ².
 const COSINE: Terms<Constant> = {
-    let mut terms = eightfold([1.0; 7]);
+    let mut terms = [Constant::new(8.0); 7];
     let mut k = 1;
     while k < terms.len() {
-        terms[k] = Constant::new(-4.0 * VERSINE[k - 1].value);
+        terms[k] = Constant::new(-8.0 * VERSINE[k - 1].value);
         k += 1;
     }
     terms
 };
 
+/// From the terms in θ²/4.
 const fn eightfold(terms: Terms<f64>) -> Terms<Constant> {
     let mut constants = [Constant::new(0.0); 7];
     let mut k = 0;
     while k < terms.len() {
-        constants[k] = Constant::new(8.0 * terms[k]);
+        constants[k] = Constant::new((8_u32 << k) as f64 * terms[k]);
         k += 1;
     }
     constants
@@ -118,15 +119,11 @@ impl<S: Scalar> Arc<S> {
         Self { lateral, axial, cos: S::one() - theta * lateral, sin: theta * axial }
     }
 
-    #[inline]
     fn within_2_rad(theta: S) -> Self {
-        let [axial, versine, cos] = [AXIAL, VERSINE, COSINE].map(|terms| terms.map(S::constant));
-        Self {
-            lateral: theta.odd_polynomial(&versine),
-            axial: theta.even_polynomial(&axial),
-            cos: theta.even_polynomial(&cos),
-            sin: theta.odd_polynomial(&axial),
-        }
+        let [axial_terms, versine, cos] = [AXIAL, VERSINE, COSINE].map(|terms| terms.map(S::constant));
+        let (lateral, axial) = theta.polynomials(&versine, &axial_terms);
+        let (sin, cos) = theta.polynomials(&axial_terms, &cos);
+        Self { lateral, axial, cos, sin }
     }
 }
 
@@ -167,7 +164,7 @@ impl<S: Scalar> Pcc<S> {
     /// From a segment's geometry.
     #[must_use]
     pub fn new(segment: &Segment<S>) -> Self {
-        const LONGEST: Constant = Constant::new(1.0);
+        const LONGEST: Constant = Constant::new(0.7);
         let lengths = [segment.length, segment.offset];
         let fits = lengths.iter().all(|length| length.is_within(S::constant(LONGEST)));
         let zeros = [S::zero(); 7];
@@ -193,8 +190,8 @@ impl<S: Scalar> Pcc<S> {
     #[must_use]
     pub fn link(&self, theta: Angle<S>) -> Link<S> {
         if theta.turns == 0 && theta.rest.is_within(self.limit) {
-            let end = Vector2::new(theta.rest.odd_polynomial(&self.lateral), theta.rest.even_polynomial(&self.axial));
-            Link { theta, end }
+            let (x, y) = theta.rest.polynomials(&self.lateral, &self.axial);
+            Link { theta, end: Vector2::new(x, y) }
         } else {
             self.by_arc(theta)
         }
@@ -238,30 +235,38 @@ pub struct SegmentShape<S> {
 pub fn chain<S: Scalar>(links: impl Iterator<Item = Option<Link<S>>>) -> impl Iterator<Item = SegmentShape<S>> {
     // Products of cosines and sines instead of the sum of the angles: no trigonometry, and nothing to wrap.
     let mut before = Some((Vector2::zeros(), [S::one(), S::zero()]));
+    let direction = Direction::new();
     links.map(move |link| {
         before = before.zip(link).map(|((point, [cos, sin]), link)| {
-            let [next_cos, next_sin] = direction(link.theta);
-            let ([minus_sin, minus_next_sin], end) = ([-sin, -next_sin], link.end);
-            let [x, y, cos, sin] = S::dots([
-                ([end.x, end.y], [cos, sin]),
-                ([end.x, end.y], [minus_sin, cos]),
-                ([cos, sin], [next_cos, minus_next_sin]),
-                ([cos, sin], [next_sin, next_cos]),
-            ]);
+            let (next_sin, next_cos) = direction.of(link.theta);
+            let (minus_sin, end) = (-sin, link.end);
+            let [x, y] = S::dots([([end.x, end.y], [cos, sin]), ([end.x, end.y], [minus_sin, cos])]);
+            let [cos, sin] =
+                S::bounded_dots([([cos, minus_sin], [next_cos, next_sin]), ([cos, sin], [next_sin, next_cos])]);
             (point + Vector2::new(x, y), [cos, sin])
         });
         SegmentShape { theta: link.map(|link| link.theta), end: before.map(|(point, _)| point) }
     })
 }
 
-/// cos θ and sin θ.
-#[inline]
-fn direction<S: Scalar>(theta: Angle<S>) -> [S; 2] {
-    if theta.turns == 0 && theta.rest.is_within(S::constant(LIMIT)) {
-        let [axial, cos] = [AXIAL, COSINE].map(|terms| terms.map(S::constant));
-        [theta.rest.even_polynomial(&cos), theta.rest.odd_polynomial(&axial)]
-    } else {
-        let arc = Arc::new(theta);
-        [arc.cos, arc.sin]
+/// sin θ and cos θ.
+struct Direction<S> {
+    sin: Terms<S>,
+    cos: Terms<S>,
+}
+
+impl<S: Scalar> Direction<S> {
+    fn new() -> Self {
+        Self { sin: AXIAL.map(S::constant), cos: COSINE.map(S::constant) }
+    }
+
+    #[inline]
+    fn of(&self, theta: Angle<S>) -> (S, S) {
+        if theta.turns == 0 && theta.rest.is_within(S::constant(LIMIT)) {
+            theta.rest.polynomials(&self.sin, &self.cos)
+        } else {
+            let arc = Arc::new(theta);
+            (arc.sin, arc.cos)
+        }
     }
 }

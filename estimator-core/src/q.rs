@@ -5,7 +5,7 @@ use core::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 use num_traits::{One, Zero};
 
 use crate::angle::{Phase, Turns};
-use crate::fixed::{divide, signed_upper_word};
+use crate::fixed::{divide, nearly_divide};
 use crate::overflow;
 use crate::scalar::{Constant, Scalar, TWO_PI};
 
@@ -64,25 +64,64 @@ impl Q {
         i32::try_from(bits).map_or_else(|_| Self::overflowed(bits < 0), Self)
     }
 
-    /// Σ aₖ bₖ, which has wrapped only where it is out of range still: three products are below 2⁶⁴ − 2⁶² in size.
+    /// Half of the last bit that remains of a sum of products.
+    const HALF: i64 = 1 << (Self::FRACTION_BITS - 1);
+
+    /// `start` + Σ aₖ bₖ, wrapped.
     #[inline]
-    fn sum<const K: usize>((a, b): &([Self; K], [Self; K])) -> i64 {
+    fn sum<const K: usize>(start: i64, (a, b): &([Self; K], [Self; K])) -> i64 {
+        a.iter().zip(b).fold(start, |sum, (a, b)| sum.wrapping_add(i64::from(a.0) * i64::from(b.0)))
+    }
+
+    /// What is under [`Self::ROOM`] where a sum fits, also of several in one. Three products are below 2⁶⁴ − 2⁶² in size, so
+    /// that no sum fits only because it has wrapped.
+    #[inline]
+    fn excess(sum: i64) -> u32 {
+        ((sum >> 32) as u32).wrapping_add(Self::ROOM / 2)
+    }
+
+    const ROOM: u32 = 1 << Self::FRACTION_BITS;
+
+    /// The value as a sum of products is held, in units of 2⁻⁵².
+    #[inline]
+    fn wide(self) -> i64 {
+        // Word by word, which the compiler does not see by itself.
+        let upper = self.0 >> (32 - Self::FRACTION_BITS);
+        (i64::from(upper) << 32) | i64::from((self.0 << Self::FRACTION_BITS) as u32)
+    }
+
+    /// The value of a sum that fits.
+    #[inline]
+    fn narrow(sum: i64) -> Self {
+        Self((sum >> Self::FRACTION_BITS) as i32)
+    }
+
+    /// [`Scalar::dots`] where a sum may be out of range. Out of line and by value, so that nothing is kept for it before.
+    #[cold]
+    #[inline(never)]
+    fn saturated_dots<const M: usize, const K: usize>(pairs: [([Self; K], [Self; K]); M]) -> [Self; M] {
         const { assert!(K <= 3) };
-        a.iter().zip(b).fold(0, |sum: i64, (a, b)| sum.wrapping_add(i64::from(a.0) * i64::from(b.0)))
+        pairs.map(|pair| {
+            let sum = Self::sum(Self::HALF, &pair);
+            if Self::excess(sum) < Self::ROOM {
+                return Self::narrow(sum);
+            }
+            let (a, b) = pair;
+            let quarters = a.iter().zip(b).map(|(a, b)| (i64::from(a.0) * i64::from(b.0)) >> 2);
+            Self::overflowed(quarters.sum::<i64>() < 0)
+        })
     }
 
-    /// The value of a sum of products that is within ±16, rounded to nearest.
-    #[inline]
-    fn nearest(sum: i64) -> Self {
-        Self(((sum + (1 << (Self::FRACTION_BITS - 1))) >> Self::FRACTION_BITS) as i32)
-    }
-
-    /// The value of any sum of products.
-    #[inline]
-    fn saturated<const K: usize>((a, b): ([Self; K], [Self; K])) -> Self {
-        let rounded = Self::sum(&(a, b)).saturating_add(1 << (Self::FRACTION_BITS - 1)) >> Self::FRACTION_BITS;
-        let quarters = || a.iter().zip(b).map(|(a, b)| (i64::from(a.0) * i64::from(b.0)) >> 2);
-        i32::try_from(rounded).map_or_else(|_| Self::overflowed(quarters().sum::<i64>() < 0), Self)
+    /// [`Scalar::corrected`] as [`Self::saturated_dots`].
+    #[cold]
+    #[inline(never)]
+    fn saturated_corrected<const D: usize>(
+        x: [Self; D],
+        ratio: Self,
+        weights: &[Self; 3],
+        [a, b]: [[Self; D]; 2],
+    ) -> [Self; D] {
+        core::array::from_fn(|k| x[k] + ratio * Self::dot(*weights, [a[k], b[k], x[k]]))
     }
 
     #[cold]
@@ -97,12 +136,14 @@ impl Q {
         if negative { Self::MIN } else { Self::MAX }
     }
 
-    /// Σ cₖ (θ²/4)ᵏ in units of 2⁻²⁹, from terms 8 cₖ.
+    /// Σ cₖ xᵏ in units of 2⁻²⁹, from terms 8 cₖ and x in units of 2⁻³².
     #[inline]
-    fn horner<const K: usize>(self, terms: &[Self; K]) -> i32 {
-        // θ²/4 in units of 2⁻³¹: what is wanted of a product is its upper word, doubled.
-        let x = ((i64::from(self.0) * i64::from(self.0)) >> 23) as i32;
-        terms.iter().rev().fold(0, |sum, term| term.0.wrapping_add(signed_upper_word(sum, x) << 1))
+    fn horner<const K: usize>(x: i32, terms: &[Self; K]) -> i32 {
+        // The lower word of a product is left in the sum, where it rounds as well as a half would: a term is one `smlal`.
+        let sum = terms.iter().rev().fold(1 << 31, |sum: i64, term| {
+            ((i64::from(term.0) << 32) | (sum & 0xFFFF_FFFF)).wrapping_add((sum >> 32) * i64::from(x))
+        });
+        (sum >> 32) as i32
     }
 }
 
@@ -238,30 +279,66 @@ impl Scalar for Q {
         Turns::from_bits((i64::from(self.0) * TURNS + (1 << 26)) >> 27)
     }
 
-    #[inline]
-    fn even_polynomial<const K: usize>(self, terms: &[Self; K]) -> Self {
-        Self(self.horner(terms).wrapping_add(4) >> 3)
-    }
-
-    #[inline]
-    fn odd_polynomial<const K: usize>(self, terms: &[Self; K]) -> Self {
-        Self(((i64::from(self.0) * i64::from(self.horner(terms)) + (1 << 28)) >> 29) as i32)
+    // Out of line, as the compiler spoils a sum of constants whose signs it sees.
+    #[inline(never)]
+    fn polynomials<const K: usize>(self, odd: &[Self; K], even: &[Self; K]) -> (Self, Self) {
+        // θ²/8 in units of 2⁻³².
+        let x = ((i64::from(self.0) * i64::from(self.0)) >> 23) as i32;
+        let (odd, even) = (Self::horner(x, odd), Self::horner(x, even));
+        (Self(((i64::from(self.0) * i64::from(odd) + (1 << 28)) >> 29) as i32), Self(even.wrapping_add(4) >> 3))
     }
 
     #[inline]
     fn dots<const M: usize, const K: usize>(pairs: [([Self; K], [Self; K]); M]) -> [Self; M] {
-        let sums = pairs.each_ref().map(Self::sum);
-        // The upper word without its sign; all sums in one check, so that they are worked out in one go.
-        let magnitudes = sums.iter().map(|sum| ((sum >> 32) ^ (sum >> 63)) as u32);
-        if magnitudes.fold(0, |all, magnitude| all | magnitude) >> 24 != 0 {
-            return pairs.map(Self::saturated);
+        let sums = pairs.each_ref().map(|pair| Self::sum(Self::HALF, pair));
+        // All in one check, so that they are worked out in one go.
+        if sums.iter().fold(0, |all, sum| all | Self::excess(*sum)) >= Self::ROOM {
+            return Self::saturated_dots(pairs);
         }
-        sums.map(Self::nearest)
+        sums.map(Self::narrow)
+    }
+
+    #[inline]
+    fn bounded_dots<const M: usize, const K: usize>(pairs: [([Self; K], [Self; K]); M]) -> [Self; M] {
+        pairs.each_ref().map(|pair| Self::narrow(Self::sum(0, pair)))
+    }
+
+    #[inline]
+    fn half(self) -> Self {
+        Self((self.0 >> 1) + (self.0 & 1))
+    }
+
+    #[inline]
+    fn quadratic(value: i32, shift: u32, [c0, c1, c2]: &[Self; 3]) -> Self {
+        let u = Self(value.wrapping_shl(Self::FRACTION_BITS.wrapping_sub(shift)));
+        let slope = c1.0.wrapping_add(Self::narrow(i64::from(c2.0) * i64::from(u.0)).0);
+        let sum = Self::sum(c0.wide() + Self::HALF, &([u], [Self(slope)]));
+        if Self::excess(sum) < Self::ROOM { Self::narrow(sum) } else { Self::overflowed(sum < 0) }
+    }
+
+    // It is called twice a segment; out of line, saving registers is a fifth of it.
+    #[expect(clippy::inline_always, reason = "measured")]
+    #[inline(always)]
+    fn quotient(self, r: Self, h: Self) -> Self {
+        let den = Self::narrow(r.wide() + i64::from(self.0) * i64::from(h.0));
+        nearly_divide::<{ Self::FRACTION_BITS }>(self.0 as u32, den.0 as u32)
+            .map_or_else(|| self / den, |bits| Self(bits as i32))
+    }
+
+    #[inline]
+    fn corrected<const D: usize>(x: [Self; D], ratio: Self, weights: &[Self; 3], [a, b]: [[Self; D]; 2]) -> [Self; D] {
+        let innovations: [i64; D] = core::array::from_fn(|k| Self::sum(0, &(*weights, [a[k], b[k], x[k]])));
+        let sums: [i64; D] =
+            core::array::from_fn(|k| Self::sum(x[k].wide() + Self::HALF, &([ratio], [Self::narrow(innovations[k])])));
+        if innovations.iter().chain(&sums).fold(0, |all, sum| all | Self::excess(*sum)) >= Self::ROOM {
+            return Self::saturated_corrected(x, ratio, weights, [a, b]);
+        }
+        sums.map(Self::narrow)
     }
 
     #[inline]
     fn is_within(self, limit: Self) -> bool {
-        -limit.0 < self.0 && self.0 < limit.0
+        self.0 ^ (self.0 >> 31) < limit.0
     }
 
     #[inline]

@@ -93,20 +93,16 @@ pub trait Scalar:
         rest / (rest + Self::constant(TWO_PI) * Self::from_int(turns))
     }
 
-    /// Σ cₖ (θ²/4)ᵏ at this angle θ, |θ| < 2 rad, where `terms` are 8 cₖ and each sum of the last terms is within ±4.
+    /// θ Σ aₖ (θ²/8)ᵏ and Σ bₖ (θ²/8)ᵏ at this angle θ, |θ| < 2 rad, where `odd` are 8 aₖ, `even` 8 bₖ, and each sum of the
+    /// last terms is within ±4.
     ///
     /// The factor of 8 is for fixed point, which so keeps 29 fractional bits of them.
     #[must_use]
-    fn even_polynomial<const K: usize>(self, terms: &[Self; K]) -> Self {
-        let x = self * self * Self::constant(Constant::new(0.25));
-        let sum = terms.iter().rev().fold(Self::zero(), |sum, term| sum * x + *term);
-        sum * Self::constant(Constant::new(0.125))
-    }
-
-    /// θ Σ cₖ (θ²/4)ᵏ, as [`Scalar::even_polynomial`].
-    #[must_use]
-    fn odd_polynomial<const K: usize>(self, terms: &[Self; K]) -> Self {
-        self * self.even_polynomial(terms)
+    fn polynomials<const K: usize>(self, odd: &[Self; K], even: &[Self; K]) -> (Self, Self) {
+        let eighth = Self::constant(Constant::new(0.125));
+        let x = self * self * eighth;
+        let sum = |terms: &[Self; K]| terms.iter().rev().fold(Self::zero(), |sum, term| sum * x + *term) * eighth;
+        (self * sum(odd), sum(even))
     }
 
     /// Σ aₖ bₖ of each pair (a, b), of up to three products, each sum rounded once.
@@ -122,10 +118,41 @@ pub trait Scalar:
         dot
     }
 
-    /// Whether the value is between −`limit` and `limit`, a positive one.
+    /// Σ aₖ bₖ of each pair (a, b) as [`Scalar::dots`], where each sum is known to be within ±16; it may be rounded down.
+    #[must_use]
+    fn bounded_dots<const M: usize, const K: usize>(pairs: [([Self; K], [Self; K]); M]) -> [Self; M] {
+        Self::dots(pairs)
+    }
+
+    /// Half of the value.
+    #[must_use]
+    fn half(self) -> Self {
+        self * Self::constant(Constant::new(0.5))
+    }
+
+    /// c0 + c1 u + c2 u² at the fraction u = `value` / 2^`shift`, where u and c1 + c2 u are within ±32.
+    #[must_use]
+    fn quadratic(value: i32, shift: u32, [c0, c1, c2]: &[Self; 3]) -> Self {
+        let u = Self::from_fraction(value, shift);
+        *c0 + u * (*c1 + u * *c2)
+    }
+
+    /// `self / (r + self · h)`, where none is negative and the divisor is within ±32, to a step of the representation.
+    #[must_use]
+    fn quotient(self, r: Self, h: Self) -> Self {
+        self / (r + self * h)
+    }
+
+    /// `x` + `ratio` · (w0 a + w1 b + w2 x) of each `x` and its `a` and `b`.
+    #[must_use]
+    fn corrected<const D: usize>(x: [Self; D], ratio: Self, weights: &[Self; 3], [a, b]: [[Self; D]; 2]) -> [Self; D] {
+        core::array::from_fn(|k| x[k] + ratio * Self::dot(*weights, [a[k], b[k], x[k]]))
+    }
+
+    /// Whether −`limit` ≤ `self` < `limit`, a positive one.
     #[must_use]
     fn is_within(self, limit: Self) -> bool {
-        -limit < self && self < limit
+        -limit <= self && self < limit
     }
 }
 

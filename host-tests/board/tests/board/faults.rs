@@ -33,19 +33,6 @@ fn the_watchdog_bites_a_stuck_task_and_the_arm_is_vented() {
 }
 
 #[test]
-fn a_fault_is_told_after_the_reset() {
-    let mut board = ready();
-    // An instruction that no core knows, where the processor goes next when it wakes.
-    let pc = board.machine.pc();
-    assert!(board.machine.poke(pc, &[0x00, 0xDE, 0x00, 0xDE]));
-    board.run_ms(100);
-    let hello = board.hellos().last().expect("a board greets");
-    assert_eq!((hello.reset, hello.boot), (ResetCause::Software, 2));
-    let last = hello.last_panic.as_ref().expect("the fault's last words are kept");
-    assert!(last.contains("HardFault"), "{last}");
-}
-
-#[test]
 fn a_reset_by_the_port_starts_over() {
     let mut board = ready();
     board.machine.press_reset();
