@@ -6,6 +6,7 @@
 //! | `interrupted` | the same while a fast interrupt strikes everywhere |
 //! | `preemption` | in which order tasks of three priorities run |
 //! | `step` | the estimator's step and nothing else, for the benchmark |
+//! | `growth` | the same for arms of 1 to 16 segments |
 #![no_std]
 
 pub mod arithmetic;
@@ -18,3 +19,5 @@ pub mod random;
 fn panic(_: &core::panic::PanicInfo) -> ! {
     loop {}
 }
+#[cfg(target_os = "none")]
+pub mod step;

@@ -1,159 +1,20 @@
 //! The estimator's step and nothing else: no line, no clock, and neither floats nor panics anywhere.
 //!
-//! For arms of 1, 2, 6, 12 and 16 segments, [`STEPS`] samples each. `step_begins` and `step_ends` are called right before
-//! and after each step, for a debugger to stop at.
+//! For arms of six segments, as the firmware has it, 1000 samples each.
 #![no_std]
 #![no_main]
 
 use atsam3x8e_hal::pac::Peripherals;
-use board_probe::random::Random;
-use estimator_core::{
-    AnchorRule, Angle, Arc, BendMap, Estimator, ImuReading, Noise, OffsetAt, Phase, Q, SENSORS_PER_SEGMENT, Sample,
-    Scalar, Segment, Table, Turns,
-};
-
-/// Samples of each arm, those of the tare included.
-const STEPS: u32 = 1_000;
-const TARE: u32 = 100;
-const WINDOW: usize = 100;
-
-const CENTER: u16 = 2_048;
-/// A sensor bends by 2.2 rad over 2¹⁰ counts.
-const RANGE: u8 = 10;
-const RAD_PER_RANGE: f64 = 2.2;
-
-const MAP: BendMap<Q> = BendMap {
-    center: CENTER,
-    shift: RANGE,
-    coefficients: [Q::from_f64(0.01), Q::from_f64(RAD_PER_RANGE), Q::from_f64(0.03)],
-    readable: [0, 4095],
-};
-
-const NOISE: Noise<Q> = Noise {
-    q: Q::from_f64(0.01),
-    r_imu: Q::from_f64(1.0),
-    r_bend: Q::from_f64(0.4),
-    h_imu: Q::from_f64(1.0),
-    h_bend: Q::from_f64(1.02),
-};
-
-const SEGMENT: Segment<Q> = Segment {
-    length: Q::from_f64(0.080),
-    offset: Q::from_f64(0.017),
-    offset_at: OffsetAt::End,
-    bend: [Some(MAP); SENSORS_PER_SEGMENT],
-    reference: Turns::ZERO,
-    orient: NOISE,
-    coord: NOISE,
-};
-
-static SEGMENTS: [Segment<Q>; 16] = [SEGMENT; 16];
-
-const fn table(segments: usize) -> Table<'static, Q> {
-    let anchor = AnchorRule {
-        window: WINDOW as u16,
-        rate_millihertz: 10_000,
-        sample_rate_millihertz: 100_000,
-        threshold: Turns::from_bits(5_965_232),
-    };
-    Table { segments: SEGMENTS.split_at(segments).0, tare_samples: TARE, anchor }
-}
-
-static TABLES: [Table<'static, Q>; 5] = [table(1), table(2), table(6), table(12), table(16)];
+use board_probe::step::{TABLES, steps};
 
 #[cortex_m_rt::entry]
 fn main() -> ! {
     if let Some(device) = Peripherals::take() {
         atsam3x8e_hal::watchdog::disable(device.WDT);
     }
-    let [one, two, six, twelve, sixteen] = &TABLES;
-    steps::<1>(one);
-    steps::<2>(two);
+    let [_, _, six, _, _] = &TABLES;
     steps::<6>(six);
-    steps::<12>(twelve);
-    steps::<16>(sixteen);
     loop {
         cortex_m::asm::wfi();
     }
-}
-
-/// All steps of one arm.
-#[inline(never)]
-fn steps<const N: usize>(table: &'static Table<'static, Q>) {
-    // Made where it stays: the stack has no room for a copy.
-    let mut estimator = Estimator::<Q, N, WINDOW>::unstarted(table);
-    if estimator.start().is_err() {
-        return;
-    }
-    let mut arm = Arm::<N>::new();
-    for _ in 0..STEPS {
-        let sample = arm.sample();
-        step_begins((&raw const sample).cast());
-        let shape = estimator.fuse(&sample);
-        step_ends((&raw const shape).cast());
-    }
-}
-
-/// The next instruction after its return is the step's first.
-#[inline(never)]
-#[unsafe(no_mangle)]
-extern "C" fn step_begins(sample: *const u8) {
-    core::hint::black_box(sample);
-}
-
-/// The instruction before its call was the step's last.
-#[inline(never)]
-#[unsafe(no_mangle)]
-extern "C" fn step_ends(shape: *const u8) {
-    core::hint::black_box(shape);
-}
-
-/// An arm whose segments each bend at random, slowly enough for its headings to be followed.
-struct Arm<const N: usize> {
-    random: Random,
-    angles: [Phase; N],
-}
-
-impl<const N: usize> Arm<N> {
-    fn new() -> Self {
-        Self { random: Random::new(0x1234_5678), angles: [Phase::from_bits(0); N] }
-    }
-
-    /// The next sample, in which every reading is present.
-    fn sample(&mut self) -> Sample<N> {
-        let mut sample = Sample::missing(0);
-        let mut heading = 0_i32;
-        let readings = sample.bend.iter_mut().zip(&mut sample.imu);
-        for (angle, (bend, imu)) in self.angles.iter_mut().zip(readings) {
-            *angle = walk(*angle, &mut self.random);
-            for counts in bend {
-                *counts = Some(counts_at(*angle).wrapping_add_signed(self.random.below(17) as i16 - 8));
-            }
-            heading = heading.wrapping_add(angle.bits());
-            *imu = Some(quaternion(heading));
-        }
-        sample
-    }
-}
-
-/// At most 20 mrad on, within 1.9 rad.
-fn walk(angle: Phase, random: &mut Random) -> Phase {
-    const STEP: u32 = 13_671_305;
-    const LIMIT: i32 = 1_298_774_022;
-    let stride = random.below(2 * STEP) as i32 - STEP as i32;
-    Phase::from_bits(angle.bits().saturating_add(stride).clamp(-LIMIT, LIMIT))
-}
-
-/// What a bend sensor reads at an angle.
-fn counts_at(angle: Phase) -> u16 {
-    const RANGES_PER_RAD: Q = Q::from_f64(1.0 / RAD_PER_RANGE);
-    let range = Q::from_phase(angle) * RANGES_PER_RAD;
-    CENTER.wrapping_add_signed((range.to_bits() >> (Q::FRACTION_BITS - u32::from(RANGE))) as i16)
-}
-
-/// What a BNO055 reads at a heading, clockwise, in units of 2⁻³² turns.
-fn quaternion(heading: i32) -> ImuReading {
-    let half = Arc::new(Angle { rest: Q::from_phase(Phase::from_bits(heading >> 1)), turns: 0 });
-    // Of 26 fractional bits it gives 14.
-    ImuReading::from_bno055([(half.cos.to_bits() >> 12) as i16, 0, 0, (-half.sin.to_bits() >> 12) as i16])
 }

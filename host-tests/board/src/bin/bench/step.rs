@@ -36,10 +36,25 @@ impl Range {
 /// # Panics
 /// If the firmware does not build, or does not run as it says.
 pub fn figures() -> [Figure; 5] {
-    let elf = elf("board-probe", "step");
-    let mut machine = Machine::new(&elf, Rig::new(Scenario::One, 1)).expect("a firmware for the Due");
-    println!("instructions of a step   at the tare          after it");
-    let arms = SEGMENTS.map(|segments| {
+    let growth = arms("growth", &SEGMENTS);
+    let [(_, tare, after)] = &arms("step", &[6])[..] else { panic!("the firmware steps one arm") };
+    let for_each =
+        |arm: usize| growth.get(arm).map_or(f64::NAN, |(segments, _, after)| after.most as f64 / f64::from(*segments));
+    [
+        Figure { name: "step_instructions", value: after.most as f64 },
+        Figure { name: "step_in_tare", value: tare.most as f64 },
+        Figure { name: "step_spread", value: (after.most - after.least) as f64 / after.least as f64 * 100.0 },
+        Figure { name: "step_growth", value: for_each(4) / for_each(2) },
+        Figure { name: "step_routines", value: unwanted(&elf("board-probe", "step")) as f64 },
+    ]
+}
+
+/// Segments, steps in the tare and steps after it, of each arm that a firmware steps.
+fn arms(binary: &str, segments: &[u32]) -> Vec<(u32, Range, Range)> {
+    let mut machine =
+        Machine::new(&elf("board-probe", binary), Rig::new(Scenario::One, 1)).expect("a firmware for the Due");
+    println!("instructions of a step   in the tare          after it");
+    let arm = |segments: &u32| {
         let counts = counts(&mut machine);
         let (tare, after) = counts.split_at(TARE);
         let (tare, after) = (Range::of(tare), Range::of(after));
@@ -47,18 +62,11 @@ pub fn figures() -> [Figure; 5] {
             "{segments:>8} segments     {:>6} to {:>6}  {:>6} to {:>6}",
             tare.least, tare.most, after.least, after.most
         );
-        (segments, tare, after)
-    });
+        (*segments, tare, after)
+    };
+    let arms = segments.iter().map(arm).collect();
     assert_eq!(machine.resets(), [], "the firmware steps through all arms at once");
-    let [_, _, (_, tare, after), _, _] = &arms;
-    let for_each = |(segments, _, after): &(u32, Range, Range)| after.most as f64 / f64::from(*segments);
-    [
-        Figure { name: "step_instructions", value: after.most as f64 },
-        Figure { name: "step_in_tare", value: tare.most as f64 },
-        Figure { name: "step_spread", value: (after.most - after.least) as f64 / after.least as f64 * 100.0 },
-        Figure { name: "step_growth", value: for_each(&arms[4]) / for_each(&arms[2]) },
-        Figure { name: "step_routines", value: unwanted(&elf) as f64 },
-    ]
+    arms
 }
 
 /// Instructions of the next arm's steps, each with the two calls around it.
