@@ -171,7 +171,7 @@ impl<'t, S: Scalar, const N: usize, const W: usize> Estimator<'t, S, N, W> {
         Estimate { time_us: sample.time_us, segments: all(self.parts().1.estimates(sample)) }
     }
 
-    /// Takes one sample as [`Estimator::step`] does and gives the fused shape alone: a sixth cheaper than both on the board.
+    /// Takes one sample as [`Estimator::step`] does and gives the fused shape alone, which costs the board less than both.
     ///
     /// The numbers are those of [`Estimator::shape`] by [`Method::Fusion`], to the bit.
     pub fn fuse(&mut self, sample: &Sample<N>) -> &Shape<S, N> {
