@@ -7,7 +7,7 @@ use std::process::Command;
 use std::{env, fs};
 
 use calibration_tables::ArmFile;
-use estimator_core::Q;
+use estimator_core::{Estimator, Q};
 
 /// Samples a second.
 const RATE_HZ: f64 = 100.0;
@@ -35,6 +35,9 @@ fn main() {
 fn table(path: &Path) -> Result<String, String> {
     let file = ArmFile::load(path).map_err(|error| format!("PROPRIO_TABLE {}: {error}", path.display()))?;
     let baked = file.bake::<Q>(RATE_HZ).map_err(|error| format!("PROPRIO_TABLE {}: {error}", path.display()))?;
+    // The room that board-core's Arm has.
+    Estimator::<Q, 6, 100>::new(&baked.table())
+        .map_err(|error| format!("PROPRIO_TABLE {}: {error}", path.display()))?;
     Ok(format!(
         "{}\n/// Name of the arm.\npub const ARM: &str = {:?};\n\n/// Checksum of the table.\npub const CHECKSUM: u32 = {:#010x};\n",
         baked.to_rust(),

@@ -164,7 +164,7 @@ impl Board {
     }
 
     /// All samples, in order.
-    pub fn samples(&self) -> impl Iterator<Item = &Sample> {
+    pub fn samples(&self) -> impl DoubleEndedIterator<Item = &Sample> {
         self.received.iter().filter_map(|received| match &received.message {
             Message::Sample(sample) => Some(sample),
             _ => None,
@@ -172,7 +172,7 @@ impl Board {
     }
 
     /// All estimates, in order.
-    pub fn estimates(&self) -> impl Iterator<Item = &Estimate> {
+    pub fn estimates(&self) -> impl DoubleEndedIterator<Item = &Estimate> {
         self.received.iter().filter_map(|received| match &received.message {
             Message::Estimate(estimate) => Some(estimate),
             _ => None,
@@ -180,7 +180,7 @@ impl Board {
     }
 
     /// All health messages, in order.
-    pub fn healths(&self) -> impl Iterator<Item = &Health> {
+    pub fn healths(&self) -> impl DoubleEndedIterator<Item = &Health> {
         self.received.iter().filter_map(|received| match &received.message {
             Message::Health(health) => Some(health),
             _ => None,
@@ -188,7 +188,7 @@ impl Board {
     }
 
     /// All events, in order.
-    pub fn events(&self) -> impl Iterator<Item = Event> {
+    pub fn events(&self) -> impl DoubleEndedIterator<Item = Event> {
         self.received.iter().filter_map(|received| match &received.message {
             Message::Event(event) => Some(*event),
             _ => None,
@@ -196,7 +196,7 @@ impl Board {
     }
 
     /// All greetings, in order.
-    pub fn hellos(&self) -> impl Iterator<Item = &Hello> {
+    pub fn hellos(&self) -> impl DoubleEndedIterator<Item = &Hello> {
         self.received.iter().filter_map(|received| match &received.message {
             Message::Hello(hello) => Some(hello),
             _ => None,

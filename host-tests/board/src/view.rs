@@ -2,6 +2,7 @@
 
 use std::io::{IsTerminal, Write, stdout};
 
+use estimator_core::Q;
 use telemetry::SegmentEstimate;
 
 use crate::board::Board;
@@ -26,7 +27,7 @@ impl View {
     /// Shows the board's last estimate and the truth of the same tick.
     pub fn show(&mut self, board: &Board) {
         self.looks += 1;
-        let Some(estimate) = board.estimates().last() else { return };
+        let Some(estimate) = board.estimates().next_back() else { return };
         let (Some(truth), Some(tip)) = (board.truths().get(estimate.tick as usize), estimate.segments[5]) else {
             return;
         };
@@ -71,10 +72,10 @@ impl View {
 }
 
 fn row(number: u32, segment: &SegmentEstimate, theta_deg: f64, x_mm: f64, y_mm: f64) -> String {
-    let estimate_deg = f64::from(segment.theta) / f64::from(1 << 26);
+    let estimate_deg = Q::from_bits(segment.theta).to_f64().to_degrees();
     format!(
         "{number:7} {:10.1} {theta_deg:7.1}   {:10.1} {x_mm:7.1}  {:10.1} {y_mm:7.1}",
-        estimate_deg.to_degrees(),
+        estimate_deg,
         mm(segment.end[0]),
         mm(segment.end[1])
     )
@@ -82,5 +83,5 @@ fn row(number: u32, segment: &SegmentEstimate, theta_deg: f64, x_mm: f64, y_mm: 
 
 /// A length in the estimator's bits, mm.
 fn mm(bits: i32) -> f64 {
-    f64::from(bits) / f64::from(1 << 26) * 1e3
+    Q::from_bits(bits).to_f64() * 1e3
 }

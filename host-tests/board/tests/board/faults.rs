@@ -28,7 +28,7 @@ fn the_watchdog_bites_a_stuck_task_and_the_arm_is_vented() {
     board.run_ms(250);
     assert!(board.is_vented());
     board.run_ms(100);
-    let hello = board.hellos().last().expect("a board greets");
+    let hello = board.hellos().next_back().expect("a board greets");
     assert_eq!((hello.reset, hello.boot), (ResetCause::Watchdog, 2));
 }
 
@@ -37,7 +37,7 @@ fn a_reset_by_the_port_starts_over() {
     let mut board = ready();
     board.machine.press_reset();
     board.run_ms(100);
-    let hello = board.hellos().last().expect("a board greets");
+    let hello = board.hellos().next_back().expect("a board greets");
     assert_eq!((hello.reset, hello.boot), (ResetCause::Pin, 2));
 }
 
@@ -46,11 +46,11 @@ fn a_stuck_bus_costs_the_imus_and_no_tick() {
     let mut board = ready();
     board.machine.world_mut().faults.sda = Some(Held::Forever);
     board.run_ms(1000);
-    let sample = board.samples().last().expect("samples come");
+    let sample = board.samples().next_back().expect("samples come");
     assert!(sample.imu.iter().all(Option::is_none) && sample.bend.iter().all(Option::is_some), "{sample:?}");
-    let estimate = board.estimates().last().expect("estimates come");
+    let estimate = board.estimates().next_back().expect("estimates come");
     assert!(estimate.segments.iter().all(Option::is_some), "the bend sensors go on");
-    assert_eq!(board.healths().last().expect("health comes").overruns, 0);
+    assert_eq!(board.healths().next_back().expect("health comes").overruns, 0);
 }
 
 #[test]
@@ -59,7 +59,7 @@ fn a_bus_that_a_unit_holds_is_clocked_free() {
     board.machine.world_mut().faults.sda = Some(Held::Clocks(5));
     board.run_ms(1500);
     assert!(board.events().any(|event| event == Event::BusRecovery));
-    let sample = board.samples().last().expect("samples come");
+    let sample = board.samples().next_back().expect("samples come");
     assert!(sample.imu.iter().all(Option::is_some), "{sample:?}");
 }
 
@@ -68,7 +68,7 @@ fn an_imu_that_browns_out_is_back_within_two_seconds() {
     let mut board = ready();
     board.machine.world_mut().brown_out(3);
     board.run_ms(50);
-    assert!(board.samples().last().expect("samples come").imu[3].is_none());
+    assert!(board.samples().next_back().expect("samples come").imu[3].is_none());
     board.run_ms(2000);
-    assert!(board.samples().last().expect("samples come").imu[3].is_some());
+    assert!(board.samples().next_back().expect("samples come").imu[3].is_some());
 }

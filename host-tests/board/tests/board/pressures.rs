@@ -1,6 +1,7 @@
 //! Pressures: only when armed, and never for longer than somebody asks for them.
 
 use board_tests::Board;
+use estimator_core::Q;
 use rig_twin::Scenario;
 use telemetry::{Actuation, Command, Event, Outcome, Refusal, SetPressures};
 use virtual_due::Rig;
@@ -47,8 +48,8 @@ fn the_arm_moves_and_the_estimate_follows() {
     let truth = board.machine.world().truth();
     let tip = truth[5];
     assert!(tip.x_m > 0.1, "the arm bends to the right: {tip:?}");
-    let estimate = board.estimates().last().expect("estimates come");
-    let end = estimate.segments[5].expect("the tip is known").end.map(|bits| f64::from(bits) / f64::from(1 << 26));
+    let estimate = board.estimates().next_back().expect("estimates come");
+    let end = estimate.segments[5].expect("the tip is known").end.map(|bits| Q::from_bits(bits).to_f64());
     let error_mm = (end[0] - tip.x_m).hypot(end[1] - tip.y_m) * 1000.0;
     assert!(error_mm < 60.0, "estimate {end:?} m, truth {tip:?}, {error_mm} mm apart");
 }

@@ -33,7 +33,7 @@ fn every_estimate_is_the_hosts_after_a_tare() {
     board.run_ms(2500);
     assert_eq!(board.ask(Command::Tare), Outcome::Ack);
     board.swing(&Program::new(Scenario::One, 6), 3);
-    assert_eq!(board.samples().last().expect("samples come").tare, 2);
+    assert_eq!(board.samples().next_back().expect("samples come").tare, 2);
     assert_replays(&board);
 }
 
@@ -46,7 +46,7 @@ fn the_stream_decodes_without_a_loss() {
     let ticks: Vec<_> = board.samples().map(|sample| sample.tick).collect();
     assert!(ticks.windows(2).all(|pair| pair[1] == pair[0] + 1), "a tick is missing");
     assert!(ticks.len() >= 990);
-    let health = board.healths().last().expect("health comes");
+    let health = board.healths().next_back().expect("health comes");
     assert_eq!((health.dropped_frames, health.overruns, health.stale_scans), (0, 0, 0));
 }
 

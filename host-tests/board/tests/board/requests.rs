@@ -33,13 +33,13 @@ fn rates_slow_the_stream_down() {
 #[test]
 fn a_repeated_request_acts_once_and_is_answered_again() {
     let mut board = ready();
-    let tares = board.samples().last().expect("samples come").tare;
+    let tares = board.samples().next_back().expect("samples come").tare;
     let request = Request { id: 77, command: Command::Tare };
     for _ in 0..3 {
         board.send_again(request);
         board.run_ms(50);
     }
-    assert_eq!(board.samples().last().expect("samples come").tare, tares + 1);
+    assert_eq!(board.samples().next_back().expect("samples come").tare, tares + 1);
     let replies = board.received().iter().filter(|received| matches!(received.message, Message::Reply(_)));
     assert_eq!(replies.count(), 3);
 }
@@ -57,7 +57,7 @@ fn a_reboot_is_answered_and_then_done() {
     let mut board = ready();
     assert_eq!(board.ask(Command::Reboot), Outcome::Ack);
     board.run_ms(200);
-    let hello = board.hellos().last().expect("a board greets");
+    let hello = board.hellos().next_back().expect("a board greets");
     assert_eq!((hello.reset, hello.boot), (ResetCause::Software, 2));
 }
 
@@ -69,7 +69,7 @@ fn a_flood_of_noise_changes_nothing_but_a_count() {
     let now = board.machine.now();
     board.machine.world_mut().send(UART, &noise, now);
     board.run_ms(1000);
-    let health = board.healths().last().expect("health comes");
+    let health = board.healths().next_back().expect("health comes");
     assert!(health.damaged_frames > 10, "{health:?}");
     assert_eq!((health.overruns, health.dropped_frames), (0, 0));
     assert_eq!(board.ask(Command::Ping), Outcome::Ack);
@@ -84,5 +84,5 @@ fn a_flood_of_requests_delays_no_tick() {
     board.run_ms(1000);
     let ticks: Vec<_> = board.samples().map(|sample| sample.tick).collect();
     assert!(ticks.windows(2).all(|pair| pair[1] == pair[0] + 1), "a tick is missing");
-    assert_eq!(board.healths().last().expect("health comes").overruns, 0);
+    assert_eq!(board.healths().next_back().expect("health comes").overruns, 0);
 }

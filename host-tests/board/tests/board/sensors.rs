@@ -18,7 +18,7 @@ fn ready() -> Board {
 #[test]
 fn twelve_bend_sensors_and_six_imus_arrive_with_values_of_their_own() {
     let board = ready();
-    let sample = board.samples().last().expect("samples come");
+    let sample = board.samples().next_back().expect("samples come");
     let bends: BTreeSet<_> = sample.bend.iter().flatten().collect();
     let imus: BTreeSet<_> = sample.imu.iter().flatten().collect();
     assert_eq!((bends.len(), imus.len()), (BEND_SENSORS, SEGMENTS), "{sample:?}");
@@ -29,7 +29,7 @@ fn the_counts_of_each_bend_sensor_are_those_of_its_strip() {
     let board = ready();
     // The arm rests, so that the twin's strips read now what they read in the last tick, but for noise.
     let strips = board.machine.world().twin().clone().adc_counts();
-    let sample = board.samples().last().expect("samples come");
+    let sample = board.samples().next_back().expect("samples come");
     for (sensor, (counts, strip)) in sample.bend.iter().zip(strips).enumerate() {
         let counts = counts.expect("every strip is read");
         assert!(counts.abs_diff(strip) <= 20, "sensor {sensor}: {counts}, its strip {strip}");
@@ -40,7 +40,7 @@ fn the_counts_of_each_bend_sensor_are_those_of_its_strip() {
 fn the_quaternion_of_each_imu_is_that_of_its_unit() {
     let board = ready();
     let units = board.machine.world().twin().imu_quaternions();
-    let sample = board.samples().last().expect("samples come");
+    let sample = board.samples().next_back().expect("samples come");
     for (imu, (read, unit)) in sample.imu.iter().zip(units).enumerate() {
         let read = read.expect("every unit is read");
         let differs = read.iter().zip(unit).any(|(read, unit)| read.abs_diff(unit) > 100);
@@ -55,7 +55,7 @@ fn a_bend_sensor_at_a_rail_is_lost_alone() {
         let rail = if sensor % 2 == 0 { Rail::Low } else { Rail::High };
         board.machine.world_mut().faults.bend[sensor] = Some(rail);
         board.run_ms(100);
-        let sample = board.samples().last().expect("samples come");
+        let sample = board.samples().next_back().expect("samples come");
         let lost: Vec<_> = (0..BEND_SENSORS).filter(|other| sample.bend[*other].is_none()).collect();
         assert_eq!(lost, [sensor]);
         board.machine.world_mut().faults.bend[sensor] = None;
@@ -70,7 +70,7 @@ fn an_unplugged_imu_is_lost_alone() {
     for imu in 0..SEGMENTS {
         board.machine.world_mut().faults.imus[imu] = ImuFault::Unplugged;
         board.run_ms(100);
-        let sample = board.samples().last().expect("samples come");
+        let sample = board.samples().next_back().expect("samples come");
         let lost: Vec<_> = (0..SEGMENTS).filter(|other| sample.imu[*other].is_none()).collect();
         assert_eq!(lost, [imu]);
         board.machine.world_mut().faults.imus[imu] = ImuFault::None;
@@ -85,13 +85,13 @@ fn an_imu_that_is_absent_at_boot_leaves_the_others_running() {
     rig.faults.imus[2] = ImuFault::Unplugged;
     let mut board = Board::new(rig);
     board.run_ms(4000);
-    let sample = board.samples().last().expect("samples come");
+    let sample = board.samples().next_back().expect("samples come");
     let read: Vec<_> = sample.imu.iter().map(Option::is_some).collect();
     assert_eq!(read, [true, true, false, true, true, true]);
-    let health = board.healths().last().expect("health comes");
+    let health = board.healths().next_back().expect("health comes");
     assert_eq!(health.imu[2].state, SensorState::Off);
     assert_eq!(health.overruns, 0);
-    let estimate = board.estimates().last().expect("estimates come");
+    let estimate = board.estimates().next_back().expect("estimates come");
     assert!(estimate.segments.iter().all(Option::is_some), "{estimate:?}");
 }
 
@@ -103,6 +103,6 @@ fn an_imu_that_is_plugged_in_later_is_taken_in() {
     board.run_ms(1500);
     board.machine.world_mut().faults.imus[4] = ImuFault::None;
     board.run_ms(2000);
-    let sample = board.samples().last().expect("samples come");
+    let sample = board.samples().next_back().expect("samples come");
     assert!(sample.imu.iter().all(Option::is_some), "{sample:?}");
 }
