@@ -1,7 +1,8 @@
 //! From the file's units to the estimator's parameters, for one sample rate.
 
 use estimator_core::{
-    AnchorRule, BendMap, COVARIANCE_LIMIT, Noise, OffsetAt, SENSORS_PER_SEGMENT, Scalar, Segment, Table, Turns,
+    AnchorRule, BendMap, COVARIANCE_LIMIT, Noise, ObserverRule, OffsetAt, SENSORS_PER_SEGMENT, Scalar, Segment, Table,
+    Turns,
 };
 
 use crate::file::{ArmFile, FileError, NoiseKeys, SegmentKeys, Side};
@@ -12,13 +13,15 @@ pub struct Baked<S> {
     segments: Vec<Segment<S>>,
     tare_samples: u32,
     anchor: AnchorRule,
+    observer: Option<ObserverRule>,
 }
 
 impl<S> Baked<S> {
     /// The parameters as the estimator takes them.
     #[must_use]
     pub fn table(&self) -> Table<'_, S> {
-        Table { segments: &self.segments, tare_samples: self.tare_samples, anchor: self.anchor }
+        let Self { segments, tare_samples, anchor, observer } = self;
+        Table { segments, tare_samples: *tare_samples, anchor: *anchor, observer: *observer }
     }
 }
 
@@ -41,6 +44,7 @@ impl ArmFile {
                 sample_rate_millihertz: millihertz(rate_hz),
                 threshold: Turns::from_rad(self.anchor.threshold_deg.to_radians()),
             },
+            observer: self.drift.as_ref().and_then(|drift| drift.bake(self.anchor.rate_hz.min(rate_hz))),
         })
     }
 }

@@ -4,6 +4,7 @@ use std::ops::RangeInclusive;
 
 use estimator_core::{BendMap, H_LIMIT, SENSORS_PER_SEGMENT, VOLTS_PER_COUNT};
 
+use crate::drift::DriftKeys;
 use crate::file::{ArmFile, BendKeys, FileError, MAX_SEGMENTS, MAX_WINDOW, NoiseKeys, SegmentKeys};
 
 /// Lengths that fixed point holds with room for the chain (m: ±32).
@@ -34,6 +35,7 @@ impl ArmFile {
         ensure((1..=MAX_WINDOW).contains(&window), "anchor.window", &window, &format!("1 to {MAX_WINDOW} values"))?;
         within("anchor.threshold_deg", self.anchor.threshold_deg, 0.0..=360.0)?;
         within("anchor.rate_hz", self.anchor.rate_hz, 0.01..=10_000.0)?;
+        self.drift.as_ref().map_or(Ok(()), DriftKeys::check)?;
         for (i, segment) in self.segments.iter().enumerate() {
             segment.check(&format!("segment[{}]", i + 1))?;
         }
@@ -143,6 +145,6 @@ fn ensure(holds: bool, key: &str, found: &impl ToString, expected: &str) -> Resu
 }
 
 /// NaN is within no range.
-fn within(key: &str, value: f64, range: RangeInclusive<f64>) -> Result<(), FileError> {
+pub(crate) fn within(key: &str, value: f64, range: RangeInclusive<f64>) -> Result<(), FileError> {
     ensure(range.contains(&value), key, &format!("{value:?}"), &format!("{:?} to {:?}", range.start(), range.end()))
 }

@@ -7,6 +7,7 @@ use serde::de::{DeserializeOwned, Error};
 use serde::{Deserialize, Deserializer, Serialize};
 use toml_edit::Item;
 
+use crate::drift::DriftKeys;
 use crate::place::{line_and_column, line_of};
 
 /// The `format` that this crate reads and writes.
@@ -34,6 +35,9 @@ pub struct ArmFile {
     /// The drift anchor.
     #[serde(default)]
     pub anchor: AnchorKeys,
+    /// Which correction takes out the IMUs' drift; `None`: the anchor.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub drift: Option<DriftKeys>,
     /// The segments from the base to the tip.
     #[serde(rename = "segment")]
     pub segments: Vec<SegmentKeys>,

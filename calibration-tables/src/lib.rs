@@ -30,12 +30,14 @@
 
 mod bake;
 mod check;
+mod drift;
 mod file;
 mod noise;
 mod place;
 mod source;
 
 pub use bake::Baked;
+pub use drift::{DriftKeys, DriftKind};
 pub use file::{
     AnchorKeys, ArmFile, BendKeys, FileError, MAX_SEGMENTS, MAX_WINDOW, NoiseKeys, SegmentKeys, Side, TareKeys,
 };

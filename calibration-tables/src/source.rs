@@ -3,7 +3,7 @@
 
 use std::fmt::Write;
 
-use estimator_core::{BendMap, Noise, OffsetAt, Q, Segment};
+use estimator_core::{BendMap, Noise, ObserverRule, OffsetAt, Q, Segment};
 
 use crate::bake::Baked;
 
@@ -27,9 +27,10 @@ impl Baked<Q> {
     #[must_use]
     pub fn to_rust(&self) -> String {
         let table = self.table();
-        let (segments, anchor) = (table.segments, table.anchor);
-        let mut source =
-            String::from("use estimator_core::{AnchorRule, BendMap, Noise, OffsetAt, Q, Segment, Table, Turns};\n\n");
+        let (segments, anchor, observer) = (table.segments, table.anchor, table.observer);
+        let mut source = String::from(
+            "use estimator_core::{AnchorRule, BendMap, Noise, ObserverRule, OffsetAt, Q, Segment, Table, Turns};\n\n",
+        );
         let count = segments.len();
         let _ = writeln!(source, "/// The arm's segments, from the base.\nstatic SEGMENTS: [Segment<Q>; {count}] = [");
         for segment in segments {
@@ -38,12 +39,13 @@ impl Baked<Q> {
         let _ = writeln!(
             source,
             "];\n\n/// The arm's table.\npub static TABLE: Table<'static, Q> = Table {{\n    segments: &SEGMENTS,\n    tare_samples: {},\n    anchor: AnchorRule {{ window: \
-             {}, rate_millihertz: {}, sample_rate_millihertz: {}, threshold: Turns::from_bits({}) }},\n}};",
+             {}, rate_millihertz: {}, sample_rate_millihertz: {}, threshold: Turns::from_bits({}) }},\n    observer: {},\n}};",
             table.tare_samples,
             anchor.window,
             anchor.rate_millihertz,
             anchor.sample_rate_millihertz,
-            anchor.threshold.bits()
+            anchor.threshold.bits(),
+            observer.map_or_else(|| "None".to_owned(), |rule| observer_source(&rule))
         );
         source
     }
@@ -55,6 +57,15 @@ impl Baked<Q> {
     pub fn checksum(&self) -> u32 {
         CRC_32.checksum(self.to_rust().as_bytes())
     }
+}
+
+fn observer_source(rule: &ObserverRule) -> String {
+    let ObserverRule { step, prior, growth, gate, patience, jump, still, doubt } = rule;
+    let [gate, jump, still] = [gate, jump, still].map(|angle| format!("Turns::from_bits({})", angle.bits()));
+    format!(
+        "Some(ObserverRule {{ step: {step}, prior: {prior:?}, growth: {growth:?}, gate: {gate}, patience: {patience}, jump: \
+         {jump}, still: {still}, doubt: {doubt} }})"
+    )
 }
 
 fn segment_source(segment: &Segment<Q>) -> String {

@@ -56,7 +56,7 @@ pub struct Pace {
 #[derive(Debug, Clone, Copy)]
 pub struct Slot {
     oldest: u16,
-    complete: bool,
+    pub(crate) complete: bool,
 }
 
 impl Pace {
@@ -87,15 +87,15 @@ fn is_missing(value: Turns) -> bool {
 }
 
 #[derive(Debug, Clone, Copy)]
-struct Mean {
+pub(crate) struct Mean {
     sum: Turns,
     count: u16,
 }
 
 impl Mean {
-    const EMPTY: Self = Self { sum: Turns::ZERO, count: 0 };
+    pub(crate) const EMPTY: Self = Self { sum: Turns::ZERO, count: 0 };
 
-    fn add(&mut self, value: Turns) {
+    pub(crate) fn add(&mut self, value: Turns) {
         if !is_missing(value) {
             self.sum = self.sum + value;
             self.count += 1;
@@ -109,7 +109,7 @@ impl Mean {
         }
     }
 
-    fn value(self) -> Option<Turns> {
+    pub(crate) fn value(self) -> Option<Turns> {
         (self.count > 0).then(|| self.sum.mean_of(self.count))
     }
 }

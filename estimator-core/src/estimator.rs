@@ -3,8 +3,9 @@
 use heapless::Vec;
 use nalgebra::SVector;
 
-use crate::anchor::{Anchor, Pace, Slot};
+use crate::anchor::{Pace, Slot};
 use crate::angle::{Angle, Turns};
+use crate::drift::{Drift, Reading};
 use crate::filter::{Block, Gains};
 use crate::imu::Heading;
 use crate::pcc::{Link, Pcc, SegmentShape, chain};
@@ -91,15 +92,15 @@ pub struct Estimator<'t, S, const N: usize, const W: usize> {
     table: &'t Table<'t, S>,
     has_bend_sensors: bool,
     pace: Pace,
-    states: Vec<State<S, W>, N>,
+    states: Vec<State<'t, S, W>, N>,
     fused: Shape<S, N>,
 }
 
 /// What is remembered of one segment.
 #[derive(Debug, Clone)]
-struct State<S, const W: usize> {
+struct State<'t, S, const W: usize> {
     heading: Heading<S>,
-    anchor: Anchor<W>,
+    drift: Drift<'t, W>,
     pcc: Pcc<S>,
     orient: Block<S, 1>,
     coord: Block<S, 2>,
@@ -108,11 +109,11 @@ struct State<S, const W: usize> {
 }
 
 /// One tick: what there is to take a sample with.
-struct Tick<'a, S, const W: usize> {
+struct Tick<'a, 't, S, const W: usize> {
     table: &'a Table<'a, S>,
     has_bend_sensors: bool,
     slot: Slot,
-    states: &'a mut [State<S, W>],
+    states: &'a mut [State<'t, S, W>],
 }
 
 /// One IMU in one tick.
@@ -161,7 +162,7 @@ impl<'t, S: Scalar, const N: usize, const W: usize> Estimator<'t, S, N, W> {
         }
         self.has_bend_sensors = table.segments.iter().any(|segment| segment.bend.iter().any(Option::is_some));
         for segment in table.segments {
-            let _ = self.states.push(State::new(segment, table.tare_samples)); // There is room: it was checked.
+            let _ = self.states.push(State::new(segment, table)); // There is room: it was checked.
         }
         Ok(())
     }
@@ -199,17 +200,17 @@ impl<'t, S: Scalar, const N: usize, const W: usize> Estimator<'t, S, N, W> {
 
     /// The room for the fused shape, and what else a tick needs.
     #[inline]
-    fn parts(&mut self) -> (&mut Shape<S, N>, Tick<'_, S, W>) {
+    fn parts(&mut self) -> (&mut Shape<S, N>, Tick<'_, 't, S, W>) {
         let Self { table, has_bend_sensors, pace, states, fused } = self;
         (fused, Tick { table, has_bend_sensors: *has_bend_sensors, slot: pace.tick(&table.anchor), states })
     }
 }
 
-impl<'a, S: Scalar, const W: usize> Tick<'a, S, W> {
+impl<'a, S: Scalar, const W: usize> Tick<'a, '_, S, W> {
     /// Takes one sample, segment by segment from the base to the tip.
     #[inline]
     fn estimates<const N: usize>(self, sample: &'a Sample<N>) -> impl Iterator<Item = SegmentEstimate<S>> + 'a {
-        let Self { table: Table { segments, anchor: rule, .. }, has_bend_sensors, slot, states } = self;
+        let Self { table: Table { segments, .. }, has_bend_sensors, slot, states } = self;
         let mut before = Tangent { heading: Some(Turns::ZERO), zero: Some(Turns::ZERO) };
         let readings = sample.bend.iter().zip(&sample.imu);
         let segments = segments.iter().zip(states).zip(readings);
@@ -220,13 +221,11 @@ impl<'a, S: Scalar, const W: usize> Tick<'a, S, W> {
             let difference = here.minus(before);
             before = here;
 
-            let raw = difference.heading;
-            state.anchor.push(slot, raw.zip(theta_bend).map(|(raw, bend)| raw - bend.to_turns()));
-            let theta_imu = raw.zip(difference.zero).map(|(raw, zero)| raw - zero);
-            let theta_corrected = theta_imu.filter(|_| has_bend_sensors).map(|theta| {
-                let offset = state.anchor.offset().zip(difference.zero).map(|(offset, zero)| offset - zero);
-                offset.filter(|offset| offset.exceeds(rule.threshold)).map_or(theta, |o| theta - o)
-            });
+            let Tangent { heading: raw, zero } = difference;
+            let theta_imu = raw.zip(zero).map(|(raw, zero)| raw - zero);
+            let offset = state.drift.offset(slot, Reading { imu: raw, zero, bend: theta_bend.map(S::to_turns) });
+            let theta_corrected =
+                theta_imu.filter(|_| has_bend_sensors).map(|theta| offset.map_or(theta, |o| theta - o));
 
             let thetas = [theta_bend.map(Angle::from), theta_corrected.map(Angle::from)];
             let [bend, imu_c] = thetas.map(|theta| theta.map(|theta| state.pcc.link(theta)));
@@ -275,11 +274,11 @@ fn bend_angle<S: Scalar>(segment: &Segment<S>, counts: [Option<u16>; SENSORS_PER
     }
 }
 
-impl<S: Scalar, const W: usize> State<S, W> {
-    fn new(segment: &Segment<S>, tare_samples: u32) -> Self {
+impl<'t, S: Scalar, const W: usize> State<'t, S, W> {
+    fn new(segment: &Segment<S>, table: &'t Table<S>) -> Self {
         Self {
-            heading: Heading::new(tare_samples, segment.reference),
-            anchor: Anchor::new(),
+            heading: Heading::new(table.tare_samples, segment.reference),
+            drift: Drift::new(&table.anchor, table.observer.as_ref()),
             pcc: Pcc::new(segment),
             orient: Block::new(),
             coord: Block::new(),

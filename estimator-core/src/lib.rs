@@ -38,6 +38,7 @@
 mod anchor;
 mod angle;
 mod bend;
+mod drift;
 mod estimator;
 mod filter;
 mod fixed;

@@ -4,6 +4,7 @@ use crate::anchor::AnchorRule;
 use crate::angle::Turns;
 use crate::bend::BendMap;
 use crate::filter::Noise;
+use crate::observer::ObserverRule;
 use crate::sample::SENSORS_PER_SEGMENT;
 use crate::scalar::Scalar;
 
@@ -59,8 +60,10 @@ pub struct Table<'t, S> {
     pub segments: &'t [Segment<S>],
     /// Samples at the start over which headings are tared; 0: they are absolute.
     pub tare_samples: u32,
-    /// The drift anchor's parameters.
+    /// The drift anchor's parameters; its rate is the observer's, too.
     pub anchor: AnchorRule,
+    /// How drift is observed; `None`: the paper's anchor corrects it.
+    pub observer: Option<ObserverRule>,
 }
 
 impl<'t, S> Table<'t, S> {
@@ -74,7 +77,7 @@ impl<'t, S> Table<'t, S> {
             sample_rate_millihertz: 10_000,
             threshold: Turns::from_bits(5_965_232),
         };
-        Self { segments, tare_samples: 0, anchor }
+        Self { segments, tare_samples: 0, anchor, observer: None }
     }
 }
 

@@ -1,7 +1,7 @@
 //! From a table to the estimator's parameters.
 
 use calibration_tables::{ArmFile, FileError};
-use estimator_core::{Estimator, Method, OffsetAt, Q, SENSORS_PER_SEGMENT, Sample, Segment};
+use estimator_core::{Estimator, Method, ObserverRule, OffsetAt, Q, SENSORS_PER_SEGMENT, Sample, Segment};
 
 use super::common::{DESCRIPTION, TABLE, edited, parse};
 
@@ -196,4 +196,31 @@ fn the_checksum_tells_the_smallest_change_of_a_parameter() {
     // Half a micrometre: 33 steps of fixed point.
     let longer = parse(&edited("length_mm = 80.0", "length_mm = 80.0005")).bake::<Q>(100.0).unwrap().checksum();
     assert!(whole != other_rate && whole != longer && other_rate != longer);
+}
+
+/// The observer of the table with `[drift]` of these lines.
+fn observer(drift: &str, rate_hz: f64) -> Option<ObserverRule> {
+    let text = edited("[[segment]]", &format!("[drift]\n{drift}\n[[segment]]"));
+    parse(&text).bake::<Q>(rate_hz).expect("a table").table().observer
+}
+
+#[test]
+fn drift_is_left_to_the_anchor_where_nothing_else_is_said() {
+    assert_eq!(parse(TABLE).bake::<Q>(10.0).expect("a table").table().observer, None);
+    assert_eq!(observer("kind = \"anchor\"", 10.0), None);
+}
+
+#[test]
+fn the_observer_s_variances_are_shares_of_its_measurement_s() {
+    let rule = observer("kind = \"observer\"\nnoise_deg2_s = 40.0\nstart_deg = 2.0\nslope = 0.1", 10.0);
+    let [bias, _, slope] = rule.expect("the observer is wanted").prior.map(|prior| f64::from(prior) / f64::from(1 << 30));
+    // 10 values a second share the density: 400 degrees² each.
+    assert!((bias - 4.0 / 400.0).abs() < 1e-8 && (slope - 81.0 / 400.0).abs() < 1e-8, "{bias}, {slope}");
+}
+
+#[test]
+fn the_observer_keeps_the_anchor_s_rate_on_a_faster_board() {
+    let drift = "kind = \"observer\"";
+    assert_eq!(observer(drift, 100.0), observer(drift, 10.0));
+    assert_ne!(observer(drift, 5.0), observer(drift, 10.0));
 }

@@ -249,3 +249,13 @@ fn the_file_that_is_not_there_is_told() {
 fn the_table_that_all_these_are_made_of_is_good() {
     ArmFile::parse(TABLE).expect("else these tests show nothing");
 }
+
+#[test]
+fn drift_keys_are_checked() {
+    let drift = |line: &str| format!("[drift]\nkind = \"observer\"\n{line}\n[[segment]]");
+    refuses("[[segment]]", &drift("gate_deg = 0.0"), "drift.gate_deg", "0.0");
+    refuses("[[segment]]", &drift("noise_deg2_s = -1.0"), "drift.noise_deg2_s", "-1.0");
+    refuses("[[segment]]", &drift("slope = nan"), "drift.slope", "NaN");
+    let kind = error("[[segment]]", "[drift]\nkind = \"average\"\n[[segment]]");
+    assert!(kind.to_string().contains("average"), "{kind}");
+}

@@ -1,6 +1,8 @@
 //! A file is written and read without loss: every number to its last bit, every name to its last character.
 
-use calibration_tables::{AnchorKeys, ArmFile, BendKeys, NoiseKeys, SegmentKeys, Side, TareKeys};
+use calibration_tables::{
+    AnchorKeys, ArmFile, BendKeys, DriftKeys, DriftKind, NoiseKeys, SegmentKeys, Side, TareKeys,
+};
 use proptest::option;
 use proptest::prelude::*;
 
@@ -55,17 +57,42 @@ fn segment() -> impl Strategy<Value = SegmentKeys> {
     )
 }
 
+fn drift() -> impl Strategy<Value = DriftKeys> {
+    let kind = prop_oneof![Just(DriftKind::Anchor), Just(DriftKind::Observer)];
+    let deviations = (magnitude(-2.0..6.0), 0.0..360.0_f64, 0.0..10.0_f64, 0.0..1.0_f64, 0.0..1.0_f64);
+    let limits = (0.1..180.0_f64, 0.0..1e4_f64, 0.1..180.0_f64, 0.0..180.0_f64, 0.0..180.0_f64);
+    (kind, deviations, limits).prop_map(
+        |(kind, (noise_deg2_s, start_deg, rate_deg_per_s, walk_deg_per_s, slope), limits)| {
+            let (gate_deg, patience_s, jump_deg, still_deg, doubt_deg) = limits;
+            DriftKeys {
+                kind,
+                noise_deg2_s,
+                start_deg,
+                rate_deg_per_s,
+                walk_deg_per_s,
+                slope,
+                gate_deg,
+                patience_s,
+                jump_deg,
+                still_deg,
+                doubt_deg,
+            }
+        },
+    )
+}
+
 fn file() -> impl Strategy<Value = ArmFile> {
     let segments = prop::collection::vec(segment(), 1..=16);
     let tare = (0.0..3600.0_f64, prop_oneof![Just(None), Just(Some(-0.0)), (-3600.0..3600.0_f64).prop_map(Some)]);
     let anchor = (1..=1000_u16, 0.0..360.0_f64, magnitude(-2.0..4.0));
-    (any::<String>(), magnitude(-2.0..4.0), tare, anchor, segments).prop_map(
-        |(arm, rate_hz, (seconds, heading), (window, threshold_deg, anchor_hz), segments)| ArmFile {
+    (any::<String>(), magnitude(-2.0..4.0), tare, anchor, option::of(drift()), segments).prop_map(
+        |(arm, rate_hz, (seconds, heading), (window, threshold_deg, anchor_hz), drift, segments)| ArmFile {
             format: 1,
             arm,
             rate_hz,
             tare: TareKeys { seconds, heading_deg: heading.map_or_else(Vec::new, |deg| vec![deg; segments.len()]) },
             anchor: AnchorKeys { window, threshold_deg, rate_hz: anchor_hz },
+            drift,
             segments,
         },
     )

@@ -50,7 +50,7 @@ const fn table(segments: usize) -> Table<'static, Q> {
         sample_rate_millihertz: 100_000,
         threshold: Turns::from_bits(5_965_232),
     };
-    Table { segments: SEGMENTS.split_at(segments).0, tare_samples: TARE, anchor }
+    Table { segments: SEGMENTS.split_at(segments).0, tare_samples: TARE, anchor, observer: None }
 }
 
 /// Tables of 1, 2, 6, 12 and 16 segments.
