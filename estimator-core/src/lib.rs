@@ -38,6 +38,7 @@
 mod anchor;
 mod angle;
 mod bend;
+mod contact;
 mod drift;
 mod estimator;
 mod filter;

@@ -213,7 +213,8 @@ fn drift_is_left_to_the_anchor_where_nothing_else_is_said() {
 #[test]
 fn the_observer_s_variances_are_shares_of_its_measurement_s() {
     let rule = observer("kind = \"observer\"\nnoise_deg2_s = 40.0\nstart_deg = 2.0\nslope = 0.1", 10.0);
-    let [bias, _, slope] = rule.expect("the observer is wanted").prior.map(|prior| f64::from(prior) / f64::from(1 << 30));
+    let [bias, _, slope] =
+        rule.expect("the observer is wanted").prior.map(|prior| f64::from(prior) / f64::from(1 << 30));
     // 10 values a second share the density: 400 degrees² each.
     assert!((bias - 4.0 / 400.0).abs() < 1e-8 && (slope - 81.0 / 400.0).abs() < 1e-8, "{bias}, {slope}");
 }
