@@ -119,7 +119,10 @@ mod tests {
     fn touched(limits: Limits, degrees: impl IntoIterator<Item = i32>) -> Vec<bool> {
         let mut watch = Watch::new();
         let step = |degrees: i32| {
-            watch.step(limits, Some(Value { disagreement: degrees * DEGREE, angle: (degrees * DEGREE).wrapping_mul(10) }));
+            watch.step(
+                limits,
+                Some(Value { disagreement: degrees * DEGREE, angle: (degrees * DEGREE).wrapping_mul(10) }),
+            );
             watch.is_touched()
         };
         degrees.into_iter().map(step).collect()

@@ -51,6 +51,7 @@ mod q;
 mod sample;
 mod scalar;
 mod table;
+mod uncertainty;
 
 pub use anchor::{Anchor, AnchorRule, Pace, Slot};
 pub use angle::{Angle, Phase, Turns};
@@ -65,3 +66,4 @@ pub use q::Q;
 pub use sample::{ImuReading, SENSORS_PER_SEGMENT, Sample};
 pub use scalar::{Constant, Scalar};
 pub use table::{OffsetAt, Segment, Table, TableError};
+pub use uncertainty::{Covariance, SCALE, Spread};
