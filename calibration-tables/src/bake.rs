@@ -1,8 +1,8 @@
 //! From the file's units to the estimator's parameters, for one sample rate.
 
 use estimator_core::{
-    AnchorRule, BendMap, COVARIANCE_LIMIT, Noise, ObserverRule, OffsetAt, SENSORS_PER_SEGMENT, Scalar, Segment, Table,
-    Turns,
+    AnchorRule, BendMap, COVARIANCE_LIMIT, Hysteresis, Noise, ObserverRule, OffsetAt, PLAYS, Play, SENSORS_PER_SEGMENT,
+    Scalar, Segment, Table, Turns,
 };
 
 use crate::file::{ArmFile, FileError, NoiseKeys, SegmentKeys, Side};
@@ -72,10 +72,23 @@ impl SegmentKeys {
                 Side::End => OffsetAt::End,
             },
             bend,
+            hysteresis: self.bake_hysteresis(),
             reference: Turns::from_rad(reference_deg.to_radians()),
             orient: self.orient_or_default().bake(rate_hz),
             coord: self.coord_or_default().bake(rate_hz),
         }
+    }
+}
+
+impl SegmentKeys {
+    fn bake_hysteresis<S: Scalar>(&self) -> Option<Hysteresis<S>> {
+        let none = Play { half_width: S::zero(), weight: S::zero() };
+        let mut plays = [none; PLAYS];
+        for (place, play) in plays.iter_mut().zip(&self.hysteresis) {
+            let half_width = S::from_f64(play.half_width_deg.to_radians());
+            *place = Play { half_width, weight: S::from_f64(play.weight) };
+        }
+        (!self.hysteresis.is_empty()).then_some(plays)
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::ops::RangeInclusive;
 
-use estimator_core::{BendMap, H_LIMIT, SENSORS_PER_SEGMENT, VOLTS_PER_COUNT};
+use estimator_core::{BendMap, H_LIMIT, PLAYS, SENSORS_PER_SEGMENT, VOLTS_PER_COUNT};
 
 use crate::drift::DriftKeys;
 use crate::file::{ArmFile, BendKeys, FileError, MAX_SEGMENTS, MAX_WINDOW, NoiseKeys, SegmentKeys};
@@ -53,6 +53,12 @@ impl SegmentKeys {
         ensure(sensors.len() <= SENSORS_PER_SEGMENT, &bend, &sensors.len(), "at most two sensors, a and b")?;
         for (j, sensor) in sensors.iter().enumerate() {
             sensor.check(&format!("{bend}[{}]", j + 1))?;
+        }
+        let (plays, key_of_plays) = (&self.hysteresis, format!("{key}.hysteresis"));
+        ensure(plays.len() <= PLAYS, &key_of_plays, &plays.len(), &format!("at most {PLAYS} plays"))?;
+        for (j, play) in plays.iter().enumerate() {
+            within(&format!("{key_of_plays}[{}].half_width_deg", j + 1), play.half_width_deg, 0.0..=180.0)?;
+            within(&format!("{key_of_plays}[{}].weight", j + 1), play.weight, -1.0..=1.0)?;
         }
         self.orient.as_ref().map_or(Ok(()), |noise| noise.check(&format!("{key}.orient")))?;
         self.coord.as_ref().map_or(Ok(()), |noise| noise.check(&format!("{key}.coord")))

@@ -91,6 +91,9 @@ pub struct SegmentKeys {
     /// The bend sensors a and b, as many as there are; `None` in an arm description.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub bend: Option<Vec<BendKeys>>,
+    /// What corrects their angle for the way that they came, up to three plays; none where it does not help.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub hysteresis: Vec<PlayKeys>,
     /// KF_orient's parameters, rad² and rad²/s; derived from the maps' `rmse_deg` where there are none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub orient: Option<NoiseKeys>,
@@ -125,6 +128,16 @@ pub struct BendKeys {
     /// Lowest and highest voltage of the calibration, V; where it is not known, those of half a turn.
     #[serde(default, deserialize_with = "pair", skip_serializing_if = "Option::is_none")]
     pub volts: Option<[f64; 2]>,
+}
+
+/// One play of a segment's hysteresis.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PlayKeys {
+    /// From its middle to either edge.
+    pub half_width_deg: f64,
+    /// Of the difference of the bend angle and the play, in the correction.
+    pub weight: f64,
 }
 
 /// Parameters of one block of KF_orient (rad) or KF_coord (m).

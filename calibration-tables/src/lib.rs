@@ -39,7 +39,8 @@ mod source;
 pub use bake::Baked;
 pub use drift::{DriftKeys, DriftKind};
 pub use file::{
-    AnchorKeys, ArmFile, BendKeys, FileError, MAX_SEGMENTS, MAX_WINDOW, NoiseKeys, SegmentKeys, Side, TareKeys,
+    AnchorKeys, ArmFile, BendKeys, FileError, MAX_SEGMENTS, MAX_WINDOW, NoiseKeys, PlayKeys, SegmentKeys, Side,
+    TareKeys,
 };
 pub use noise::{LAG_S, RMSE_DEG_UNKNOWN};
 

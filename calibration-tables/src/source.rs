@@ -3,7 +3,7 @@
 
 use std::fmt::Write;
 
-use estimator_core::{BendMap, Noise, ObserverRule, OffsetAt, Q, Segment};
+use estimator_core::{BendMap, Hysteresis, Noise, ObserverRule, OffsetAt, Play, Q, Segment};
 
 use crate::bake::Baked;
 
@@ -29,7 +29,7 @@ impl Baked<Q> {
         let table = self.table();
         let (segments, anchor, observer) = (table.segments, table.anchor, table.observer);
         let mut source = String::from(
-            "use estimator_core::{AnchorRule, BendMap, Noise, ObserverRule, OffsetAt, Q, Segment, Table, Turns};\n\n",
+            "use estimator_core::{AnchorRule, BendMap, Noise, ObserverRule, OffsetAt, Play, Q, Segment, Table, Turns};\n\n",
         );
         let count = segments.len();
         let _ = writeln!(source, "/// The arm's segments, from the base.\nstatic SEGMENTS: [Segment<Q>; {count}] = [");
@@ -63,7 +63,7 @@ fn observer_source(rule: &ObserverRule) -> String {
     let ObserverRule { step, prior, growth, gate, patience, jump, still, doubt } = rule;
     let [gate, jump, still] = [gate, jump, still].map(|angle| format!("Turns::from_bits({})", angle.bits()));
     format!(
-        "Some(ObserverRule {{ step: {step}, prior: {prior:?}, growth: {growth:?}, gate: {gate}, patience: {patience}, jump: \
+        "Some(estimator_core::ObserverRule {{ step: {step}, prior: {prior:?}, growth: {growth:?}, gate: {gate}, patience: {patience}, jump: \
          {jump}, still: {still}, doubt: {doubt} }})"
     )
 }
@@ -76,14 +76,22 @@ fn segment_source(segment: &Segment<Q>) -> String {
     let maps = segment.bend.each_ref().map(|map| map.as_ref().map_or_else(|| "None".to_owned(), map_source));
     format!(
         "    Segment {{\n        length: {},\n        offset: {},\n        offset_at: OffsetAt::{offset_at},\n        bend: \
-         [{}],\n        reference: Turns::from_bits({}),\n        orient: {},\n        coord: {},\n    }},\n",
+         [{}],\n        hysteresis: {},\n        reference: Turns::from_bits({}),\n        orient: {},\n        coord: {},\n    }},\n",
         q(segment.length),
         q(segment.offset),
         maps.join(", "),
+        segment.hysteresis.as_ref().map_or_else(|| "None".to_owned(), hysteresis_source),
         segment.reference.bits(),
         noise(&segment.orient),
         noise(&segment.coord)
     )
+}
+
+fn hysteresis_source(plays: &Hysteresis<Q>) -> String {
+    let play = |play: &Play<Q>| {
+        format!("estimator_core::Play {{ half_width: {}, weight: {} }}", q(play.half_width), q(play.weight))
+    };
+    format!("Some([{}])", plays.each_ref().map(play).join(", "))
 }
 
 fn map_source(map: &BendMap<Q>) -> String {

@@ -7,6 +7,7 @@ use crate::anchor::{Pace, Slot};
 use crate::angle::{Angle, Turns};
 use crate::drift::{Drift, Reading};
 use crate::filter::{Block, Gains};
+use crate::hysteresis::Memory;
 use crate::imu::Heading;
 use crate::pcc::{Link, Pcc, SegmentShape, chain};
 use crate::sample::{ImuReading, SENSORS_PER_SEGMENT, Sample};
@@ -100,6 +101,7 @@ pub struct Estimator<'t, S, const N: usize, const W: usize> {
 #[derive(Debug, Clone)]
 struct State<'t, S, const W: usize> {
     heading: Heading<S>,
+    memory: Memory<S>,
     drift: Drift<'t, W>,
     pcc: Pcc<S>,
     orient: Block<S, 1>,
@@ -218,6 +220,10 @@ impl<'a, S: Scalar, const W: usize> Tick<'a, '_, S, W> {
             let heading = state.heading.read(imu.and_then(ImuReading::heading));
             let here = Tangent { heading, zero: state.heading.zero() };
             let (theta_bend, bend_sensors_read) = bend_angle(segment, *counts);
+            let theta_bend = match &segment.hysteresis {
+                Some(hysteresis) => theta_bend.map(|theta| state.memory.correct(hysteresis, theta)),
+                None => theta_bend,
+            };
             let difference = here.minus(before);
             before = here;
 
@@ -278,6 +284,7 @@ impl<'t, S: Scalar, const W: usize> State<'t, S, W> {
     fn new(segment: &Segment<S>, table: &'t Table<S>) -> Self {
         Self {
             heading: Heading::new(table.tare_samples, segment.reference),
+            memory: Memory::new(),
             drift: Drift::new(&table.anchor, table.observer.as_ref()),
             pcc: Pcc::new(segment),
             orient: Block::new(),

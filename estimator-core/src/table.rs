@@ -4,6 +4,7 @@ use crate::anchor::AnchorRule;
 use crate::angle::Turns;
 use crate::bend::BendMap;
 use crate::filter::Noise;
+use crate::hysteresis::Hysteresis;
 use crate::observer::ObserverRule;
 use crate::sample::SENSORS_PER_SEGMENT;
 use crate::scalar::Scalar;
@@ -28,6 +29,8 @@ pub struct Segment<S> {
     pub offset_at: OffsetAt,
     /// V–Orient maps of the bend sensors a and b, where the segment has them.
     pub bend: [Option<BendMap<S>>; SENSORS_PER_SEGMENT],
+    /// What corrects their angle for the way that they came, where anything does.
+    pub hysteresis: Option<Hysteresis<S>>,
     /// Heading of the segment's end in the reference pose.
     pub reference: Turns,
     /// KF_orient's parameters.
@@ -46,6 +49,7 @@ impl<S: Scalar> Segment<S> {
             offset: S::from_f64(offset),
             offset_at: OffsetAt::End,
             bend: [None; SENSORS_PER_SEGMENT],
+            hysteresis: None,
             reference: Turns::ZERO,
             orient: noise,
             coord: noise,

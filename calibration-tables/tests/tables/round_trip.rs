@@ -42,13 +42,17 @@ fn noise() -> impl Strategy<Value = NoiseKeys> {
 fn segment() -> impl Strategy<Value = SegmentKeys> {
     let lengths = (0.1..500.0_f64, prop_oneof![Just(0.0), Just(-0.0), 0.0..500.0_f64]);
     let bend = option::of(prop::collection::vec(prop_oneof![monotonic_map(), bare_map()], 0..=2));
+    let play = (0.0..180.0_f64, -1.0..1.0_f64);
+    let play = play.prop_map(|(half_width_deg, weight)| PlayKeys { half_width_deg, weight });
+    let hysteresis = prop::collection::vec(play, 0..=3);
     let side = prop_oneof![Just(Side::Start), Just(Side::End)];
-    (lengths, side, bend, option::of(noise()), option::of(noise())).prop_map(
-        |((length_mm, offset_mm), offset_at, bend, orient, coord)| SegmentKeys {
+    (lengths, side, bend, hysteresis, option::of(noise()), option::of(noise())).prop_map(
+        |((length_mm, offset_mm), offset_at, bend, hysteresis, orient, coord)| SegmentKeys {
             length_mm,
             offset_mm,
             offset_at,
             bend,
+            hysteresis,
             orient,
             coord,
         },

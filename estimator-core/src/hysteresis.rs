@@ -1,0 +1,88 @@
+//! What a bend sensor remembers of where it came from: a Prandtl–Ishlinskii correction on top of the quadratic map.
+//!
+//! A play follows its input only when one of its two edges pushes it. The difference of the input and a play says from
+//! which side, and how far, the input came; a weighted sum of such differences corrects the bend angle
+//! (K. Kuhnen, "Modeling, identification and compensation of complex hysteretic nonlinearities", 2003, eq. 2 and 8).
+
+use crate::scalar::Scalar;
+
+/// Plays of a correction.
+pub const PLAYS: usize = 3;
+
+/// One play and its share in the correction.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Play<S> {
+    /// From the middle to either edge, rad.
+    pub half_width: S,
+    /// Of the difference of input and play.
+    pub weight: S,
+}
+
+/// A correction of one segment's bend angle: θ + Σ w (θ − play(θ)).
+pub type Hysteresis<S> = [Play<S>; PLAYS];
+
+/// Where the plays are; nowhere before the first reading, which sets them all.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Memory<S> {
+    places: Option<[S; PLAYS]>,
+}
+
+impl<S: Scalar> Memory<S> {
+    pub const fn new() -> Self {
+        Self { places: None }
+    }
+
+    /// The corrected angle.
+    pub fn correct(&mut self, hysteresis: &Hysteresis<S>, theta: S) -> S {
+        let places = self.places.get_or_insert([theta; PLAYS]);
+        hysteresis.iter().zip(places).fold(theta, |corrected, (play, place)| {
+            let (low, high) = (theta - play.half_width, theta + play.half_width);
+            *place = if *place < low {
+                low
+            } else if *place > high {
+                high
+            } else {
+                *place
+            };
+            corrected + play.weight * (theta - *place)
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Memory, Play};
+
+    const ONE: [Play<f64>; 3] = [
+        Play { half_width: 0.1, weight: 0.5 },
+        Play { half_width: 0.0, weight: 1.0 },
+        Play { half_width: 1.0, weight: 0.0 },
+    ];
+
+    fn corrected(thetas: &[f64]) -> Vec<f64> {
+        let mut memory = Memory::new();
+        thetas.iter().map(|theta| memory.correct(&ONE, *theta)).collect()
+    }
+
+    extern crate std;
+    use std::vec::Vec;
+
+    #[test]
+    fn the_first_reading_is_left_alone() {
+        assert_eq!(corrected(&[0.7]), [0.7]);
+    }
+
+    #[test]
+    fn the_same_angle_is_corrected_by_the_side_that_it_is_come_to_from() {
+        let [.., from_below] = corrected(&[0.0, 0.5])[..] else { panic!() };
+        let [.., from_above] = corrected(&[1.0, 0.5])[..] else { panic!() };
+        // The play of 0.1 is at its edge: half of it to either side.
+        assert!((from_below - 0.55).abs() < 1e-12 && (from_above - 0.45).abs() < 1e-12);
+    }
+
+    #[test]
+    fn inside_a_play_the_memory_stays() {
+        let seen = corrected(&[0.0, 0.5, 0.45, 0.5]);
+        assert!((seen[3] - seen[1]).abs() < 1e-12 && (seen[2] - 0.475).abs() < 1e-12, "{seen:?}");
+    }
+}
