@@ -1,6 +1,8 @@
 //! A file is written and read without loss: every number to its last bit, every name to its last character.
 
-use calibration_tables::{AnchorKeys, ArmFile, BendKeys, DriftKeys, DriftKind, NoiseKeys, SegmentKeys, Side, TareKeys};
+use calibration_tables::{
+    AnchorKeys, ArmFile, BendKeys, DriftKeys, DriftKind, NoiseKeys, PlayKeys, SegmentKeys, Side, TareKeys,
+};
 use proptest::option;
 use proptest::prelude::*;
 
