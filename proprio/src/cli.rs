@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::builder::Styles;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
+use proprio::calibrate::Correct;
 use proprio::session::ImuColumns;
 
 /// Colours of help and errors; off where stderr is no terminal or NO_COLOR is set.
@@ -43,6 +44,9 @@ pub struct Calibrate {
     /// Table to write
     #[arg(short, long, value_name = "TABLE.toml")]
     pub output: PathBuf,
+    /// Segments whose bend sensors are corrected for hysteresis
+    #[arg(long, value_enum, default_value_t = Correct::Auto)]
+    pub hysteresis: Correct,
 }
 
 #[derive(Debug, Args)]

@@ -2,11 +2,13 @@
 //!
 //! 1. Each bend sensor's quadratic is fitted to the truth by least squares (paper, eq. 1), after checks that name a
 //!    sensor that is dead, saturated, swapped or bent back.
-//! 2. The session is replayed with these maps; the errors that bend sensors and IMUs make give the filters' default
+//! 2. Plays on top of the quadratics correct hysteresis, where that is worth it on a part of the session held back.
+//! 3. The session is replayed with these maps; the errors that bend sensors and IMUs make give the filters' default
 //!    parameters.
 
 mod error;
 mod fit;
+mod hysteresis;
 mod imus;
 mod residuals;
 mod sensors;
@@ -17,6 +19,7 @@ use std::path::Path;
 use calibration_tables::{ArmFile, BendKeys};
 
 pub use error::{CalibrationError, Warning};
+pub use hysteresis::Correct;
 
 use crate::error::Error;
 use crate::replay::NamedTable;
@@ -52,11 +55,11 @@ pub struct Calibration {
     pub warnings: Vec<Warning>,
 }
 
-/// Calibrates `arm` on a session with truth.
+/// Calibrates `arm` on a session with truth; `hysteresis` says which segments are corrected for it.
 ///
 /// # Errors
 /// [`Error::Session`] where the session cannot be used, [`Error::Calibration`] where no good table can be made of it.
-pub fn calibrate(session: &Path, arm: &NamedTable) -> Result<Calibration, Error> {
+pub fn calibrate(session: &Path, arm: &NamedTable, hysteresis: Correct) -> Result<Calibration, Error> {
     let refuse = |source| Error::Calibration { path: session.to_owned(), source };
     let sweep = Sweep::read(session, &arm.file)?;
     let mut warnings = sweep.check_range().map_err(refuse)?;
@@ -69,6 +72,7 @@ pub fn calibrate(session: &Path, arm: &NamedTable) -> Result<Calibration, Error>
         segment.bend = Some(of_segment.map(|sensor| sensor.map.clone()).collect::<Vec<BendKeys>>());
         (segment.orient, segment.coord) = (None, None);
     }
+    hysteresis::set(&sweep, &mut table.segments, hysteresis);
     let mut table = NamedTable { file: table, path: arm.path };
     let misfit_m = residuals::set_filters(session, &mut table, sweep.rate_hz)?;
     let percent = misfit_m * 1e5 / table.file.length_mm();

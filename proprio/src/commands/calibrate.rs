@@ -13,7 +13,7 @@ use crate::tables;
 pub fn run(args: &Calibrate) -> Result<(), Error> {
     let arm = NamedTable::load(&args.arm)?;
     let mut file = OutputFile::create(&args.output, &[&args.session, &args.arm])?;
-    let calibration = calibrate(&args.session, &arm)?;
+    let calibration = calibrate(&args.session, &arm, args.hysteresis)?;
     for warning in &calibration.warnings {
         super::warn(&format_args!("{}: {warning}", args.session.display()));
     }
