@@ -20,6 +20,9 @@ const BACK_WITHIN_MS: u64 = 250;
 /// `udf #0`.
 const UNDEFINED: [u8; 2] = [0x00, 0xDE];
 
+/// `b .`
+const STANDSTILL: [u8; 2] = [0xFE, 0xE7];
+
 /// `push {r0-r7}` for ever.
 const RECURSION: [u8; 4] = [0xFF, 0xB4, 0xFD, 0xE7];
 
@@ -109,6 +112,20 @@ fn a_panic_vents_the_arm_and_tells_its_message() {
     let place_and_message = last_words(&hello).split_once(": ").expect("both are told");
     assert!(place_and_message.0.contains(".rs:"), "{hello:?}");
     assert_eq!(place_and_message.1, "`async fn` resumed after completion");
+}
+
+#[test]
+fn a_task_that_stands_still_is_named_after_the_watchdogs_reset() {
+    let mut board = under_pressure();
+    let dispatcher = board.machine.symbol("SSC").expect("RTIC runs the shape's task from it");
+    let whole = board.machine.peek(dispatcher, STANDSTILL.len()).expect("it is in flash");
+    assert!(board.machine.poke(dispatcher, &STANDSTILL));
+    board.run_ms(BACK_WITHIN_MS);
+    assert!(board.is_vented());
+    assert!(board.machine.poke(dispatcher, &whole));
+    let hello = hello_after(&mut board);
+    assert_eq!(hello.reset, ResetCause::Watchdog);
+    assert!(last_words(&hello).starts_with("the task Estimator is late"), "{hello:?}");
 }
 
 #[test]
