@@ -13,7 +13,7 @@
 //! | `idle` | 0 | | | | sleeps |
 //!
 //! From a task's interrupt to its end, with what preempts it, and for `shape` from the tick. `cargo xtask bench` measures it
-//! on the emulated board, in a run with faults of every kind and floods of requests, and holds it against the bounds.
+//! on the emulated board, in a run with faults and floods of requests, and holds it against the bounds.
 //!
 //! The watchdog is fed in `tick`, and only while all tasks report in time. Every panic and fault vents the arm first.
 #![no_std]
