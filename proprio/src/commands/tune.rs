@@ -25,11 +25,12 @@ pub fn run(args: &Tune) -> Result<(), Error> {
     }
     let (heed, start) = (Heed::interrupts(), Instant::now());
     let Tuning { table, record } = tuner.tune(|| heed.is_requested())?;
+    let time = start.elapsed();
     drop(heed);
     warn(&record);
     file.write_all(table.to_toml().as_bytes()).map_err(|error| file.error(error))?;
     // Last, so that a command that fails leaves no file.
-    super::print(&tables::tuning(&record, start.elapsed()))?;
+    super::print(&tables::tuning(&record, time))?;
     file.finish()
 }
 

@@ -64,7 +64,7 @@ impl<'t> Tuner<'t> {
         let objective = Objective::new(sessions, table.bake::<f64>(table.file.rate_hz)?.table().segments);
         let before = objective.of_table(&table.file);
         for (session, errors) in objective.sessions().iter().zip(&before.sessions) {
-            errors.check().map_err(|source| session.error(source))?;
+            errors.check_count().and_then(|()| session.check_truth()).map_err(|source| session.error(source))?;
         }
         Ok(Self { table, objective, before })
     }
@@ -129,7 +129,7 @@ impl<'t> Tuner<'t> {
 }
 
 impl SessionErrors {
-    fn check(&self) -> Result<(), TuningError> {
+    fn check_count(&self) -> Result<(), TuningError> {
         for (is_held_back, errors) in [(false, &self.training), (true, &self.held_back)] {
             let found = errors.tips.count();
             if found < LEAST_SAMPLES {

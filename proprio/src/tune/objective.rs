@@ -88,7 +88,7 @@ impl Objective {
     }
 
     /// Where a table's filters lie.
-    fn place(&self, table: &ArmFile) -> Vec<f64> {
+    pub fn place(&self, table: &ArmFile) -> Vec<f64> {
         let filters =
             table.segments.iter().flat_map(|segment| [segment.orient_or_default(), segment.coord_or_default()]);
         filters.flat_map(|keys| self.ranges.place(&keys)).collect()

@@ -32,6 +32,8 @@ pub(super) struct Training {
     pub path: PathBuf,
     pub rate_hz: f64,
     pub ends_with_line: bool,
+    /// Root mean square distance of the true tip from the chain of the true bend angles, % of the arm's length.
+    misfit_percent: f64,
     segments: usize,
     measured: Vec<Measured>,
 }
@@ -61,14 +63,14 @@ impl Training {
             }));
             progress.set(reader.progress().0);
         }
-        let ends_with_line = reader.ends_with_line();
-        let training = Self { path: session.to_owned(), rate_hz, ends_with_line, segments: pccs.len(), measured };
-        training.check_motion().map_err(|source| training.error(source))?;
-        let percent = (misfit / f64::max(tips, 1.0)).sqrt() * 1e5 / table.file.length_mm();
-        if percent > MISFIT_PERCENT {
-            return Err(training.error(TuningError::TruthMisfit { percent }));
-        }
-        Ok(training)
+        Ok(Self {
+            path: session.to_owned(),
+            rate_hz,
+            ends_with_line: reader.ends_with_line(),
+            misfit_percent: (misfit / f64::max(tips, 1.0)).sqrt() * 1e5 / table.file.length_mm(),
+            segments: pccs.len(),
+            measured,
+        })
     }
 
     /// All samples, and whether they are held back.
@@ -83,8 +85,11 @@ impl Training {
         Error::Tuning { path: self.path.clone(), source }
     }
 
-    /// Whether the truth moves while descent looks at it.
-    fn check_motion(&self) -> Result<(), TuningError> {
+    /// Whether the truth hangs together, and moves while descent looks at it.
+    pub fn check_truth(&self) -> Result<(), TuningError> {
+        if self.misfit_percent > MISFIT_PERCENT {
+            return Err(TuningError::TruthMisfit { percent: self.misfit_percent });
+        }
         let range_deg = (0..self.segments).map(|i| self.heading_range_deg(i)).fold(0.0, f64::max);
         if range_deg < STILL_DEG { Err(TuningError::Still { range_deg, least_deg: STILL_DEG }) } else { Ok(()) }
     }
