@@ -32,14 +32,12 @@ pub fn sensors(sensors: &[SensorReport]) -> String {
 pub fn tuning(record: &TuningKeys, time: Duration) -> String {
     let mut table = table(&["RMSE", "before", "after", "held back, before", "after"]);
     let parts = [&record.before, &record.after, &record.held_back_before, &record.held_back_after];
-    let lines: [(&str, fn(&RmseKeys) -> f64); 3] = [
-        ("tip, mm", |of| of.tip_rmse_mm),
-        ("all ends, mm", |of| of.position_rmse_mm),
-        ("headings, deg", |of| of.heading_rmse_deg),
-    ];
-    for (name, figure) in lines {
+    let mut add = |name: &str, figure: fn(&RmseKeys) -> f64| {
         table.add_row([name.to_owned()].into_iter().chain(parts.map(|of| format!("{:.2}", figure(of)))));
-    }
+    };
+    add("tip, mm", |of| of.tip_rmse_mm);
+    add("all ends, mm", |of| of.position_rmse_mm);
+    add("headings, deg", |of| of.heading_rmse_deg);
     let stopped = match record.stopped {
         Stopped::Converged => "converged",
         Stopped::Interrupted => "interrupted",
@@ -48,7 +46,7 @@ pub fn tuning(record: &TuningKeys, time: Duration) -> String {
     let each_s = time.as_secs_f64() / record.iterations.max(1) as f64;
     let (iterations, kept) = (record.iterations, record.kept);
     format!(
-        "{}\n{stopped} after {iterations} iterations of {each_s:.2} s; the table has iteration {kept}\n",
+        "{}\n{stopped} after {iterations} iterations of {each_s:.3} s; the table has iteration {kept}\n",
         text(&mut table)
     )
 }

@@ -27,32 +27,29 @@ pub fn run(args: &Tune) -> Result<(), Error> {
     let Tuning { table, record } = tuner.tune(|| heed.is_requested())?;
     let time = start.elapsed();
     drop(heed);
-    warn(&record);
+    warnings(&record).for_each(|warning| super::warn(&warning));
     file.write_all(table.to_toml().as_bytes()).map_err(|error| file.error(error))?;
     // Last, so that a command that fails leaves no file.
     super::print(&tables::tuning(&record, time))?;
     file.finish()
 }
 
-/// Says what is not as it should be, although the table is written.
-fn warn(record: &TuningKeys) {
-    let TuningKeys { iterations, kept, stopped, .. } = record;
-    match stopped {
-        Stopped::Converged => {}
-        Stopped::Interrupted => {
-            super::warn(&format_args!("interrupted after {iterations} iterations, before the RMSE converged"))
-        }
+/// What is not as it should be, although the table is written.
+fn warnings(record: &TuningKeys) -> impl Iterator<Item = String> {
+    let TuningKeys { iterations, kept, stopped, .. } = *record;
+    let early = match stopped {
+        Stopped::Converged => None,
+        Stopped::Interrupted => Some(format!("interrupted after {iterations} iterations, before the RMSE converged")),
         Stopped::Iterations => {
-            super::warn(&format_args!("the RMSE still falls after {iterations} iterations; tune the table again"))
+            Some(format!("the RMSE still falls after {iterations} iterations; tune the table again"))
         }
-    }
-    match kept {
-        0 if *iterations > 0 => super::warn(
-            &"no iteration is better on what is held back: the filters stay as they were; take longer sessions",
-        ),
-        kept if kept < iterations => super::warn(&format_args!(
-            "what is held back gets worse in the end: the table has the best for it, iteration {kept}; take longer sessions"
+    };
+    let noise = match kept {
+        _ if kept == iterations => None,
+        0 => Some("what is held back only gets worse: the filters stay as they were; take longer sessions".to_owned()),
+        _ => Some(format!(
+            "what is held back gets worse in the end: the table has iteration {kept}, the best for it; take longer sessions"
         )),
-        _ => {}
-    }
+    };
+    early.into_iter().chain(noise)
 }
