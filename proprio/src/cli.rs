@@ -25,7 +25,7 @@ pub struct Cli {
 pub enum Command {
     /// Make a table of a session with camera truth
     Calibrate(Calibrate),
-    /// Tune the filters of a table on sessions with truth
+    /// Tune the filters of a table on sessions with truth; Ctrl-C keeps the best so far
     Tune(Tune),
     /// Run sessions through the estimator and compare with truth
     Replay(Replay),
