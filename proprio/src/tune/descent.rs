@@ -12,7 +12,7 @@ const MEMORY: usize = 10;
 /// Descent is given up after so many iterations.
 pub(super) const MAX_ITERATIONS: u64 = 300;
 /// It has converged where the RMSE falls by less than this share in [`PATIENCE`] iterations.
-const CONVERGED: f64 = 1e-5;
+const CONVERGED: f64 = 1e-4;
 const PATIENCE: usize = 5;
 /// No coordinate goes further in one iteration.
 const LONGEST: f64 = 1.0;
