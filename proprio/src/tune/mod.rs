@@ -15,7 +15,7 @@ mod parameters;
 mod tests;
 mod training;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use calibration_tables::{ArmFile, Stopped, TuningKeys};
 
@@ -70,7 +70,7 @@ impl<'t> Tuner<'t> {
     }
 
     /// The sessions whose last line has no end.
-    pub fn cut_sessions(&self) -> impl Iterator<Item = &std::path::Path> {
+    pub fn cut_sessions(&self) -> impl Iterator<Item = &Path> {
         let cut = self.objective.sessions().iter().filter(|session| !session.ends_with_line);
         cut.map(|session| session.path.as_path())
     }
@@ -107,7 +107,8 @@ impl<'t> Tuner<'t> {
 
     /// Whether an iterate is worth more than the table as it was.
     fn is_good(&self, iterate: &Iterate) -> bool {
-        iterate.number > 0 && iterate.found.held_back_loss <= self.before.held_back_loss
+        let Evaluation { loss, held_back_loss, .. } = iterate.found;
+        iterate.number > 0 && loss <= self.before.loss && held_back_loss <= self.before.held_back_loss
     }
 
     fn tuning(&self, kept: Option<Iterate>, iterations: u64, stopped: Stopped) -> Tuning {

@@ -22,7 +22,7 @@ const LARGEST_Q_A_SECOND: f64 = COVARIANCE_LIMIT * BOARD_RATE_HZ;
 /// R_bend of the tables, rad² or m², with which all others are in the range of the format.
 const R_BEND: [f64; 2] = [1e-8, 0.05];
 /// Descent begins at least this share of a range inside it: at the very end there is no slope.
-const MARGIN: f64 = 0.01;
+const MARGIN: f64 = 0.001;
 /// What a step of 1 does to the logarithm of a covariance and of H. A percent of H moves an arm about as far as a factor e
 /// of a covariance; in coordinates that weigh alike, descent takes a fifth of the iterations.
 const PACES: [f64; PARAMETERS] = [1.0, 1.0, 0.01, 0.01];
