@@ -25,6 +25,8 @@ pub struct Cli {
 pub enum Command {
     /// Make a table of a session with camera truth
     Calibrate(Calibrate),
+    /// Tune the filters of a table on sessions with truth; Ctrl-C keeps the best so far
+    Tune(Tune),
     /// Run sessions through the estimator and compare with truth
     Replay(Replay),
     /// Record a session of the simulated arm
@@ -40,6 +42,19 @@ pub struct Calibrate {
     /// Arm description: its geometry
     #[arg(long, value_name = "ARM.toml")]
     pub arm: PathBuf,
+    /// Table to write
+    #[arg(short, long, value_name = "TABLE.toml")]
+    pub output: PathBuf,
+}
+
+#[derive(Debug, Args)]
+pub struct Tune {
+    /// Training sessions with truth, all of the same arm
+    #[arg(required = true, value_name = "SESSION.csv")]
+    pub sessions: Vec<PathBuf>,
+    /// Table of the arm
+    #[arg(long, value_name = "TABLE.toml")]
+    pub table: PathBuf,
     /// Table to write
     #[arg(short, long, value_name = "TABLE.toml")]
     pub output: PathBuf,

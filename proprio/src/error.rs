@@ -7,6 +7,7 @@ use calibration_tables::FileError;
 
 use crate::calibrate::CalibrationError;
 use crate::session::SessionError;
+use crate::tune::TuningError;
 
 /// Why a command stopped.
 #[derive(Debug, thiserror::Error)]
@@ -29,6 +30,14 @@ pub enum Error {
         path: PathBuf,
         /// What is wrong with it.
         source: CalibrationError,
+    },
+    /// Filters cannot be tuned on a session, or in a table.
+    #[error("{}: {source}", path.display())]
+    Tuning {
+        /// The session or the table.
+        path: PathBuf,
+        /// What is wrong with it.
+        source: TuningError,
     },
     /// A file cannot be written.
     #[error("{}: cannot be written: {source}", path.display())]
@@ -63,6 +72,7 @@ impl Error {
             Self::Session(error) => error.problem.remedy().to_owned(),
             Self::Table { source, .. } => source.remedy().to_owned(),
             Self::Calibration { source, .. } => source.remedy(),
+            Self::Tuning { source, .. } => source.remedy().to_owned(),
             Self::Output { .. } => "choose a folder that exists, can be written to and has room".to_owned(),
             Self::Overwrite(_) => "give the output another name".to_owned(),
             Self::Stdout(_) => "write to a place that has room, or use --out".to_owned(),

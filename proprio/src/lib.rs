@@ -22,6 +22,7 @@
 pub mod calibrate;
 pub mod error;
 pub mod estimates;
+pub mod interrupt;
 pub mod output;
 pub mod progress;
 pub mod replay;
@@ -29,3 +30,4 @@ pub mod report;
 pub mod score;
 pub mod session;
 pub mod simulate;
+pub mod tune;

@@ -1,5 +1,8 @@
 //! Tables for people.
 
+use std::time::Duration;
+
+use calibration_tables::{RmseKeys, Stopped, TuningKeys};
 use comfy_table::presets::NOTHING;
 use comfy_table::{CellAlignment, Table};
 use estimator_core::Method;
@@ -23,6 +26,29 @@ pub fn sensors(sensors: &[SensorReport]) -> String {
     }
     let mean = sensors.iter().map(|sensor| sensor.rmse_deg).sum::<f64>() / sensors.len() as f64;
     format!("{}\nmean RMSE of the V–Orient maps: {mean:.2} deg\n", text(&mut table))
+}
+
+/// What a tuning that took `time` has brought.
+pub fn tuning(record: &TuningKeys, time: Duration) -> String {
+    let mut table = table(&["RMSE", "before", "after", "held back, before", "after"]);
+    let parts = [&record.before, &record.after, &record.held_back_before, &record.held_back_after];
+    let mut add = |name: &str, figure: fn(&RmseKeys) -> f64| {
+        table.add_row([name.to_owned()].into_iter().chain(parts.map(|of| format!("{:.2}", figure(of)))));
+    };
+    add("tip, mm", |of| of.tip_rmse_mm);
+    add("all ends, mm", |of| of.position_rmse_mm);
+    add("headings, deg", |of| of.heading_rmse_deg);
+    let stopped = match record.stopped {
+        Stopped::Converged => "converged",
+        Stopped::Interrupted => "interrupted",
+        Stopped::Iterations => "not converged",
+    };
+    let each_s = time.as_secs_f64() / record.iterations.max(1) as f64;
+    let (iterations, kept) = (record.iterations, record.kept);
+    format!(
+        "{}\n{stopped} after {iterations} iterations of {each_s:.3} s; the table has iteration {kept}\n",
+        text(&mut table)
+    )
 }
 
 /// Picks one figure of a method.

@@ -4,6 +4,7 @@ mod calibrate;
 mod completions;
 mod replay;
 mod simulate;
+mod tune;
 
 use std::io::{self, Write};
 
@@ -15,6 +16,7 @@ impl Command {
     pub fn run(self) -> Result<(), Error> {
         match self {
             Self::Calibrate(args) => calibrate::run(&args),
+            Self::Tune(args) => tune::run(&args),
             Self::Replay(args) => replay::run(&args),
             Self::Simulate(args) => simulate::run(&args),
             Self::Completions(args) => completions::run(&args),

@@ -13,3 +13,6 @@ mod missing_readings;
 mod output_files;
 mod simulate;
 mod streams;
+mod tune;
+mod tune_interrupted;
+mod tune_refused;
