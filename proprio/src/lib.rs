@@ -20,12 +20,13 @@
 //! ```
 
 pub mod calibrate;
+pub mod distances;
 pub mod error;
 pub mod estimates;
+pub mod figures;
 pub mod output;
 pub mod progress;
 pub mod replay;
-pub mod report;
 pub mod score;
 pub mod session;
 pub mod simulate;
