@@ -27,6 +27,7 @@ pub mod figures;
 pub mod output;
 pub mod progress;
 pub mod replay;
+pub mod report;
 pub mod score;
 pub mod session;
 pub mod simulate;

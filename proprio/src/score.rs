@@ -35,6 +35,17 @@ pub struct Figures {
     pub theta_rmse_deg: Option<f64>,
 }
 
+/// Distance of the tip from its true place by each of [`Method::ALL`], where both are known, m.
+#[must_use]
+pub fn tip_errors_m<S: Scalar>(row: &Row, outcome: &Outcome<S>) -> [Option<f64>; Method::ALL.len()] {
+    outcome.shapes.each_ref().map(|shape| {
+        let tip = shape.last()?.end?;
+        let truth = row.truth.get(shape.len() - 1).copied().flatten()?;
+        let (dx, dy) = (tip.x.to_f64() - truth.x_m, tip.y.to_f64() - truth.y_m);
+        Some((dx * dx + dy * dy).sqrt())
+    })
+}
+
 impl Score {
     /// No errors yet, for an arm of `length_mm`.
     #[must_use]
@@ -51,11 +62,9 @@ impl Score {
                     errors.thetas += 1;
                 }
             }
-            let tip = shape.last().and_then(|segment| segment.end);
-            if let Some((tip, truth)) = tip.zip(row.truth.get(shape.len().wrapping_sub(1)).copied().flatten()) {
-                let (dx, dy) = (tip.x.to_f64() - truth.x_m, tip.y.to_f64() - truth.y_m);
-                errors.tips.add((dx * dx + dy * dy).sqrt());
-            }
+        }
+        for (errors, tip_m) in self.errors.iter_mut().zip(tip_errors_m(row, outcome)) {
+            tip_m.into_iter().for_each(|m| errors.tips.add(m));
         }
     }
 

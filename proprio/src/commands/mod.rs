@@ -3,6 +3,7 @@
 mod calibrate;
 mod completions;
 mod replay;
+mod report;
 mod simulate;
 
 use std::io::{self, Write};
@@ -16,6 +17,7 @@ impl Command {
         match self {
             Self::Calibrate(args) => calibrate::run(&args),
             Self::Replay(args) => replay::run(&args),
+            Self::Report(args) => report::run(&args),
             Self::Simulate(args) => simulate::run(&args),
             Self::Completions(args) => completions::run(&args),
         }
