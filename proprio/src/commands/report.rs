@@ -15,13 +15,11 @@ use crate::cli::Report;
 pub fn run(args: &Report) -> Result<(), Error> {
     let table = NamedTable::load(&args.table)?;
     let inputs: Vec<&Path> = args.sessions.iter().map(PathBuf::as_path).chain([table.path]).collect();
-    let outputs: Vec<&Path> = [Some(&args.output), args.json.as_ref(), args.csv.as_ref()]
-        .into_iter()
-        .flatten()
-        .map(PathBuf::as_path)
-        .collect();
+    let outputs = [Some(&args.output), args.json.as_ref(), args.csv.as_ref()].into_iter().flatten();
+    let outputs: Vec<PathBuf> =
+        outputs.map(|path| std::path::absolute(path).unwrap_or_else(|_| path.clone())).collect();
     if let Some(twice) = (1..outputs.len()).find(|i| outputs[..*i].contains(&outputs[*i])) {
-        return Err(Error::OutputTwice(outputs[twice].to_owned()));
+        return Err(Error::OutputTwice(outputs[twice].clone()));
     }
     let create = |path: &PathBuf| OutputFile::create(path, &inputs);
     let page = create(&args.output)?;

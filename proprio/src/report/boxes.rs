@@ -45,8 +45,10 @@ fn panel(session: Option<String>, score: &Score) -> Panel {
     });
     let x = Axis { title: "method", range: [-0.6, 3.6], names: &NAMES };
     Panel {
-        session,
         name: String::new(),
+        title: session.clone().unwrap_or_else(|| "all sessions together".to_owned()),
+        session,
+        facts: Vec::new(),
         size: Size::Third,
         x,
         y: Axis::new("tip error, mm", [0.0, 1.0]),

@@ -3,6 +3,8 @@
 //! Plotters draws in whole units, so a unit is a tenth of a pixel; the page scales the drawing. Colours are those of
 //! light pages; the style sheet replaces them by what they mean.
 
+use std::cmp::Reverse;
+
 use estimator_core::Method;
 use plotters::chart::{ChartBuilder, ChartContext};
 use plotters::coord::Shift;
@@ -48,15 +50,24 @@ impl Size {
             Self::Quarter => [300, 420],
         }
     }
+
+    /// Rows of the legend that there is room for at least, so that plots of one size are alike.
+    const fn legend_rows(self) -> i32 {
+        match self {
+            Self::Half | Self::Third => 1,
+            Self::Quarter => 3,
+        }
+    }
 }
 
 impl Colour {
+    /// Those that differ in their [`Colour::rgb`].
     pub const ALL: [Self; 6] = [
         Self::Of(Method::Bend),
         Self::Of(Method::ImuO),
         Self::Of(Method::ImuC),
         Self::Of(Method::Fusion),
-        Self::Truth,
+        Self::Ink,
         Self::Grid,
     ];
 
@@ -67,7 +78,7 @@ impl Colour {
             Self::Of(Method::ImuO) => [0xD5, 0x5E, 0x00],
             Self::Of(Method::ImuC) => [0x00, 0x9E, 0x73],
             Self::Of(Method::Fusion) => [0x00, 0x72, 0xB2],
-            Self::Truth => [0x1A, 0x1A, 0x1A],
+            Self::Truth | Self::Ink => [0x1A, 0x1A, 0x1A],
             Self::Grid => [0xDD, 0xDD, 0xDD],
         }
     }
@@ -79,6 +90,16 @@ impl Colour {
 
     fn stroke(self, tenths_px: u32) -> ShapeStyle {
         self.drawn().stroke_width(tenths_px)
+    }
+
+    /// The truth is a broad light band, so that an estimate shows inside it; fusion is broader than imu_c, which is often
+    /// as good.
+    fn line(self) -> ShapeStyle {
+        match self {
+            Self::Truth => self.drawn().mix(0.35).stroke_width(45),
+            Self::Of(Method::Fusion) => self.stroke(26),
+            _ => self.stroke(14),
+        }
     }
 }
 
@@ -96,7 +117,7 @@ fn draw(panel: &Panel, svg: &mut String) -> Drawn {
     let [width, height] = panel.size.px().map(|px| (px * PX) as u32);
     let root = SVGBackend::with_string(svg, (width, height)).into_drawing_area();
     let keys = legend(panel);
-    let rows = keys.last().map_or(0, |key| key.row + 1);
+    let rows = keys.last().map_or(0, |key| key.row + 1).max(panel.size.legend_rows());
     let (top, plot) = root.split_vertically((MARGIN_PX / 2 + rows * LEGEND_PX) * PX);
     keys.iter().try_for_each(|key| key.draw(&top))?;
     draw_plot(&plot, panel)?;
@@ -123,16 +144,16 @@ enum Sign {
 
 /// A key for each name; boxes have stars too.
 fn legend(panel: &Panel) -> Vec<Key<'_>> {
-    let first_px = LABELS_PX[0] + MARGIN_PX;
+    let first_px = MARGIN_PX;
     let mut keys: Vec<Key> = Vec::new();
     let mut next = (first_px, 0);
     let signs = panel.series.iter().map(|series| (series.name.as_str(), series.colour, sign(&series.marks)));
     let star = panel.series.iter().any(|series| sign(&series.marks) == Sign::Box);
-    for (name, colour, sign) in signs.chain(star.then_some(("RMSE", Colour::Truth, Sign::Star))) {
+    for (name, colour, sign) in signs.chain(star.then_some(("RMSE", Colour::Ink, Sign::Star))) {
         if keys.iter().any(|key| key.name == name) {
             continue;
         }
-        let room_px = KEY_PX + (name.chars().count() as f64 * CHARACTER_PX) as i32 + 18;
+        let room_px = KEY_PX + (name.chars().count() as f64 * CHARACTER_PX) as i32 + 14;
         if next.0 + room_px > panel.size.px()[0] && next.0 > first_px {
             next = (first_px, next.1 + 1);
         }
@@ -157,9 +178,7 @@ impl Key<'_> {
         let (right, middle) = (left + KEY_PX * PX, left + KEY_PX * PX / 2);
         let colour = self.colour;
         match self.sign {
-            Sign::Line => {
-                area.draw(&PathElement::new(vec![(left, y), (right, y)], colour.stroke(line_width(colour))))?
-            }
+            Sign::Line => area.draw(&PathElement::new(vec![(left, y), (right, y)], colour.line()))?,
             Sign::Dot => area.draw(&Circle::new((middle, y), 3 * PX, colour.drawn().filled()))?,
             Sign::Ring => area.draw(&Circle::new((middle, y), 7 * PX, colour.stroke(15)))?,
             Sign::Box => {
@@ -186,7 +205,7 @@ fn draw_plot(area: &Area, panel: &Panel) -> Drawn {
     let number = |value: &f64| number(*value);
     let name = |value: &f64| names.get(value.round() as usize).map_or_else(String::new, |name| (*name).to_owned());
     let mut mesh = chart.configure_mesh();
-    mesh.axis_style(Colour::Truth.stroke(10))
+    mesh.axis_style(Colour::Ink.stroke(10))
         .bold_line_style(Colour::Grid.stroke(8))
         .max_light_lines(0)
         .label_style(text.clone())
@@ -202,7 +221,19 @@ fn draw_plot(area: &Area, panel: &Panel) -> Drawn {
     } else {
         mesh.x_labels(names.len()).disable_x_mesh().x_label_formatter(&name).draw()?;
     }
-    panel.series.iter().try_for_each(|series| draw_series(&mut chart, series))
+    let mut layers: Vec<&Series> = panel.series.iter().collect();
+    layers.sort_by_key(|series| layer(series));
+    layers.into_iter().try_for_each(|series| draw_series(&mut chart, series))
+}
+
+/// Which marks lie over which: areas below, then lines, broad ones first.
+fn layer(series: &Series) -> (u8, Reverse<u32>) {
+    match series.marks {
+        Marks::Band { .. } | Marks::Box { .. } => (0, Reverse(0)),
+        Marks::Dots { .. } => (1, Reverse(0)),
+        Marks::Line { .. } => (2, Reverse(series.colour.line().stroke_width)),
+        Marks::Circle { .. } => (3, Reverse(0)),
+    }
 }
 
 /// Ranges of both axes; of a shape, grown so that a millimetre is as long on both.
@@ -226,7 +257,7 @@ fn draw_series(chart: &mut Chart<'_, '_>, series: &Series) -> Drawn {
     let colour = series.colour;
     match &series.marks {
         Marks::Line { points, .. } => {
-            let style = colour.stroke(line_width(colour));
+            let style = colour.line();
             for run in runs(points) {
                 chart.draw_series([PathElement::new(run, style)])?;
             }
@@ -235,7 +266,7 @@ fn draw_series(chart: &mut Chart<'_, '_>, series: &Series) -> Drawn {
             for run in runs(points) {
                 let low = run.iter().map(|(x, [low, _])| (*x, *low));
                 let high = run.iter().rev().map(|(x, [_, high])| (*x, *high));
-                chart.draw_series([Polygon::new(low.chain(high).collect::<Vec<_>>(), colour.drawn().mix(0.18))])?;
+                chart.draw_series([Polygon::new(low.chain(high).collect::<Vec<_>>(), colour.drawn().mix(0.22))])?;
             }
         }
         Marks::Dots { points, .. } => {
@@ -265,7 +296,7 @@ fn draw_series(chart: &mut Chart<'_, '_>, series: &Series) -> Drawn {
             ];
             chart.draw_series(thin.map(|path| PathElement::new(path, colour.stroke(15))))?;
             chart.draw_series([PathElement::new(across(*median_mm, HALF_BOX), colour.stroke(30))])?;
-            chart.draw_series([EmptyElement::at((*place, *rmse_mm)) + star(Colour::Truth)])?;
+            chart.draw_series([EmptyElement::at((*place, *rmse_mm)) + star(Colour::Ink)])?;
         }
     }
     Ok(())
@@ -275,14 +306,6 @@ fn draw_series(chart: &mut Chart<'_, '_>, series: &Series) -> Drawn {
 fn runs<T: Copy>(points: &[(f64, Option<T>)]) -> impl Iterator<Item = Vec<(f64, T)>> {
     let stretches = points.split(|(_, value)| value.is_none()).filter(|run| !run.is_empty());
     stretches.map(|run| run.iter().filter_map(|(x, value)| Some((*x, (*value)?))).collect())
-}
-
-/// The truth lies below the others and must be seen beside them.
-const fn line_width(colour: Colour) -> u32 {
-    match colour {
-        Colour::Truth => 30,
-        _ => 15,
-    }
 }
 
 fn rectangle<T: Copy>((left, top): (T, T), (right, bottom): (T, T)) -> Vec<(T, T)> {
@@ -295,7 +318,7 @@ fn star(colour: Colour) -> Polygon<(i32, i32)> {
 
 /// Plotters draws text 1.24 times smaller than it is asked to.
 fn text(horizontal: HPos, vertical: VPos) -> TextStyle<'static> {
-    let style = ("sans-serif", f64::from(TEXT_PX * PX) * 1.24).into_font().color(&Colour::Truth.drawn());
+    let style = ("sans-serif", f64::from(TEXT_PX * PX) * 1.24).into_font().color(&Colour::Ink.drawn());
     style.pos(Pos::new(horizontal, vertical))
 }
 

@@ -17,6 +17,8 @@ const CURVES: [Colour; 4] =
 const TRUTH: usize = 0;
 const BEND: usize = 1;
 const IMU_O: usize = 2;
+/// Bins of a session at least.
+const BINS: usize = 256;
 /// The end of the session that is shown as it is, s.
 const END_S: u64 = 30;
 /// Shortest step between two of its samples, µs.
@@ -40,7 +42,7 @@ impl Drift {
     pub fn new(table: &ArmFile) -> Self {
         let AnchorKeys { window, rate_hz, .. } = table.anchor;
         let average = MovingAverage::new(&table.anchor);
-        let segment = |_: &_| Segment { averages: CURVES.map(|_| average.clone()), timeline: Timeline::new() };
+        let segment = |_: &_| Segment { averages: CURVES.map(|_| average.clone()), timeline: Timeline::new(BINS) };
         let segments = table.segments.iter().map(segment).collect();
         Self { window_s: f64::from(window) / rate_hz, segments, end: VecDeque::new() }
     }
@@ -53,7 +55,7 @@ impl Drift {
                 Colour::Of(method) => {
                     outcome.shapes[method as usize].get(i)?.theta.map(|theta| theta.rad().to_degrees())
                 }
-                Colour::Truth | Colour::Grid => row.true_theta(i).map(f64::to_degrees),
+                Colour::Truth | Colour::Ink | Colour::Grid => row.true_theta(i).map(f64::to_degrees),
             });
             let mut values = angles.iter();
             let averages = segment.averages.each_mut();
@@ -78,24 +80,31 @@ impl Drift {
 
     fn averages(&self, session: &str, i: usize, size: Size) -> Panel {
         let segment = &self.segments[i];
-        let name = match segment.drift_deg() {
-            Some(deg) => format!("segment {}: drift up to {deg:.1}°", i + 1),
-            None => format!("segment {}", i + 1),
-        };
-        let bins = segment.timeline.bins();
+        let mut timeline = segment.timeline.clone();
+        if size == Size::Third {
+            timeline.halve();
+        }
+        let bins = timeline.bins();
         let series = series("theta_average_deg", |channel| {
             bins.iter().map(|bin| (rounded(bin.time_s()), bin.mean(channel).map(rounded))).collect()
         });
-        panel(session, name, size, series, "bend angle, moving average, deg")
+        let name = format!("segment {}", i + 1);
+        let drift_deg = segment.drift_deg();
+        let title = drift_deg.map_or(name.clone(), |deg| format!("{name}: drift up to {deg:.1}°"));
+        let facts = drift_deg.into_iter().map(|deg| ("drift_deg", rounded(deg))).collect();
+        let [x, y] = axes(&series, "bend angle, moving average, deg");
+        Panel { session: Some(session.to_owned()), name, title, facts, size, x, y, series }
     }
 
     fn end(&self, session: &str, i: usize) -> Panel {
-        let name = format!("segment {}: the last {END_S} s, not averaged", i + 1);
         let at = |(time, angles): &(u64, [Angles; MAX_SEGMENTS]), channel: usize| {
             (rounded(*time as f64 / 1e6), angles[i][channel].map(rounded))
         };
         let series = series("theta_deg", |channel| self.end.iter().map(|row| at(row, channel)).collect());
-        panel(session, name, Size::Half, series, "bend angle, deg")
+        let name = format!("segment {}, last {END_S} s", i + 1);
+        let title = format!("segment {}: the last {END_S} s, not averaged", i + 1);
+        let [x, y] = axes(&series, "bend angle, deg");
+        Panel { session: Some(session.to_owned()), name, title, facts: Vec::new(), size: Size::Half, x, y, series }
     }
 }
 
@@ -115,7 +124,7 @@ fn series(y: &'static str, points: impl Fn(usize) -> Vec<(f64, Option<f64>)>) ->
     let curves = CURVES.into_iter().enumerate().map(|(channel, colour)| {
         let name = match colour {
             Colour::Of(method) => method.name(),
-            Colour::Truth | Colour::Grid => "truth",
+            Colour::Truth | Colour::Ink | Colour::Grid => "truth",
         };
         (name, colour, points(channel))
     });
@@ -124,10 +133,9 @@ fn series(y: &'static str, points: impl Fn(usize) -> Vec<(f64, Option<f64>)>) ->
     said.map(|(name, colour, points)| Series { name: name.to_owned(), colour, marks: line(points) }).collect()
 }
 
-fn panel(session: &str, name: String, size: Size, series: Vec<Series>, title: &'static str) -> Panel {
-    let [x, y] = extent(&series);
-    let (x, y) = (Axis::new("time, s", x), Axis::new(title, padded(y)));
-    Panel { session: Some(session.to_owned()), name, size, x, y, series }
+fn axes(series: &[Series], title: &'static str) -> [Axis; 2] {
+    let [x, y] = extent(series);
+    [Axis::new("time, s", x), Axis::new(title, padded(y))]
 }
 
 /// From the sessions' names, numbers of samples and angles.
@@ -143,9 +151,9 @@ pub fn figure<'s>(sessions: impl Iterator<Item = (&'s str, u64, &'s Drift)>) -> 
         title: "Drift of the IMUs and its correction",
         caption: format!(
             "Moving averages of the bend angles over the anchor's window, {window_s} s, {samples} samples: raw IMUs \
-             (imu_o) leave the bend sensors and the truth; corrected IMUs (imu_c) stay. Of each session the segment that \
-             drifts most is large, with its last {END_S} s as they are. Drift is the largest distance of imu_o's average \
-             from the truth's, or from the bend sensors' where there is no truth."
+             (imu_o), IMUs anchored to the bend sensors (imu_c), bend sensors and truth, as far as they are known. Of each \
+             session the segment that drifts most is large, with its last {END_S} s as they are. Drift is the largest \
+             distance of imu_o's average from the truth's, or from the bend sensors' where there is no truth."
         ),
         panels,
     }

@@ -77,6 +77,9 @@ impl Rows {
 
     fn panel(&mut self, figure: &Figure, panel: &Panel) {
         let session = panel.session.as_deref().unwrap_or_default();
+        for (name, value) in &panel.facts {
+            self.number([figure.name, session, &panel.name, ""], name, *value);
+        }
         for series in &panel.series {
             self.marks([figure.name, session, &panel.name, &series.name], &series.marks);
         }

@@ -94,7 +94,7 @@ impl Report {
                     }
                 }
                 p.caption {
-                    "Against truth, over " (counted(samples, "sample")) ". bend: bend sensors alone; imu_o: raw IMUs; imu_c: IMUs anchored to the \
+                    "Against the truth, as far as it is known, over " (counted(samples, "sample")) ". bend: bend sensors alone; imu_o: raw IMUs; imu_c: IMUs anchored to the \
                      bend sensors; fusion: Kalman filters over both. The best method is bold; a dash is what is not known."
                 }
             }
@@ -121,27 +121,22 @@ fn section(number: usize, figure: &Figure) -> Markup {
     html! {
         section id=(figure.name) {
             h2 { "Figure " (number) ". " (figure.title) }
-            @if figure.panels.is_empty() { p { "There is nothing to show." } }
+            @if figure.panels.is_empty() { p { "There is nothing to show: see what is missing, at the top." } }
             @for group in figure.panels.chunk_by(|a, b| a.name.is_empty() && b.name.is_empty() || a.session == b.session) {
                 @if let [Panel { session: Some(session), name, .. }, ..] = group { @if !name.is_empty() { h3 { (session) } } }
                 @for row in group.chunk_by(|a, b| a.size == b.size) {
                     div.plots.(class(row)) { @for panel in row { (plot(panel)) } }
                 }
             }
-            p.caption { (figure.caption) }
+            @if !figure.panels.is_empty() { p.caption { (figure.caption) } }
         }
     }
 }
 
 fn plot(panel: &Panel) -> Markup {
-    let title = match &panel.session {
-        _ if !panel.name.is_empty() => &panel.name,
-        Some(session) => session,
-        None => "all sessions together",
-    };
     html! {
-        figure role="img" aria-label=(title) {
-            figcaption { (title) }
+        figure role="img" aria-label=(panel.title) {
+            figcaption { (panel.title) }
             (PreEscaped(draw::svg(panel)))
         }
     }
@@ -163,7 +158,7 @@ fn colours() -> String {
         let hex = format!("#{r:02X}{g:02X}{b:02X}");
         let name = match colour {
             Colour::Of(method) => method.name(),
-            Colour::Truth => "ink",
+            Colour::Truth | Colour::Ink => "ink",
             Colour::Grid => "grid",
         };
         format!("svg [fill=\"{hex}\"]{{fill:var(--{name})}}svg [stroke=\"{hex}\"]{{stroke:var(--{name})}}\n")

@@ -1,7 +1,7 @@
 //! What a figure shows, apart from how it is drawn: the numbers of the page, of the JSON and of the CSV alike.
 
 use estimator_core::Method;
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 /// A figure of one or more panels.
 #[derive(Debug, Serialize)]
@@ -20,8 +20,13 @@ pub struct Figure {
 pub struct Panel {
     /// The session; `None` where it is of all together.
     pub session: Option<String>,
-    /// What it is of: a segment, a sensor, a moment.
+    /// What it is of: a segment, a sensor, a moment; empty where that is the session.
     pub name: String,
+    /// What stands above it.
+    pub title: String,
+    /// Numbers about it, by their names with units.
+    #[serde(serialize_with = "as_map")]
+    pub facts: Vec<(&'static str, f64)>,
     #[serde(skip)]
     pub size: Size,
     #[serde(skip)]
@@ -95,6 +100,7 @@ pub enum Marks {
 pub enum Colour {
     Of(Method),
     Truth,
+    Ink,
     Grid,
 }
 
@@ -103,6 +109,10 @@ impl Axis {
     pub fn new(title: &'static str, range: [f64; 2]) -> Self {
         Self { title, range, names: &[] }
     }
+}
+
+fn as_map<S: Serializer>(facts: &[(&'static str, f64)], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_map(facts.iter().copied())
 }
 
 impl Marks {

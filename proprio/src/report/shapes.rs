@@ -3,12 +3,14 @@
 use calibration_tables::{ArmFile, MAX_SEGMENTS};
 use estimator_core::{Angle, Arc, Method, Scalar};
 
-use super::plot::{Axis, Colour, Figure, Marks, Panel, Series, Size, extent, rounded};
+use super::plot::{Axis, Colour, Figure, Marks, Panel, Series, Size, extent, padded, rounded};
 use super::thin::Thinned;
 use crate::replay::Outcome;
 use crate::score::{Score, tip_errors_m};
 use crate::session::{Pose, Row};
 
+/// Moments of a session that are kept at least.
+const MOMENTS: usize = 256;
 /// Points of a drawn segment.
 const SEGMENT_POINTS: u32 = 8;
 /// Methods whose error circles are drawn.
@@ -48,7 +50,7 @@ impl Shapes {
         Self {
             lengths_m: table.segments.iter().map(|segment| (segment.length_mm + segment.offset_mm) / 1e3).collect(),
             leading: if has_bend_sensors { Method::Fusion } else { Method::ImuO },
-            kept: Thinned::new(),
+            kept: Thinned::new(MOMENTS),
             worst: None,
         }
     }
@@ -64,38 +66,31 @@ impl Shapes {
 
     /// The moments whose tip errors are nearest to the quartiles, and the worst; without truth, four evenly spaced.
     fn moments(&self, score: &Score) -> Vec<(String, &Snapshot)> {
+        let items = self.kept.items();
         let Some(worst) = &self.worst else {
-            let items = self.kept.items();
-            let place = |i: usize| items.get((2 * i + 1) * items.len() / 8);
-            let moments = (0..4).filter_map(place);
-            return moments.map(|moment| (format!("at {:.1} s", moment.time_s), moment)).collect();
+            let moments = (0..4).filter_map(|i| items.get((2 * i + 1) * items.len() / 8));
+            return (1..).zip(moments).map(|(i, moment)| (format!("moment {i}"), moment)).collect();
         };
         let tips = score.tips(self.leading);
         let quartiles = [("first quartile", 0.25), ("median", 0.5), ("third quartile", 0.75)];
         let nearest = quartiles.into_iter().filter_map(|(name, share)| {
             let wanted_m = tips.quantile_m(share)?;
             let distance = |moment: &&Snapshot| moment.error_m.map_or(f64::INFINITY, |m| (m - wanted_m).abs());
-            let moment = self.kept.items().iter().min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
-            Some((name, moment))
+            Some((name, items.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)))?))
         });
-        let named = nearest.chain([("largest error", worst)]).map(|(name, moment)| {
-            let error = moment.error_m.map_or(String::new(), |m| format!("{:.1} mm ", m * 1e3));
-            (format!("{name}: {error}at {:.1} s", moment.time_s), moment)
-        });
-        named.collect()
+        nearest.chain([("largest error", worst)]).map(|(name, moment)| (name.to_owned(), moment)).collect()
     }
 
     /// The moments' panels, all to one scale.
     fn panels(&self, session: &str, score: &Score) -> Vec<Panel> {
-        let moments = self.moments(score);
-        let drawn = moments.into_iter().map(|(name, moment)| (name, moment.series(&self.lengths_m, score)));
-        let drawn: Vec<(String, Vec<Series>)> = drawn.collect();
-        let [x, y] = extent(drawn.iter().flat_map(|(_, series)| series));
-        let panel = |(name, series)| {
-            let (x, y) = (Axis::new("x, mm", x), Axis::new("y, mm", y));
-            Panel { session: Some(session.to_owned()), name, size: Size::Quarter, x, y, series }
-        };
-        drawn.into_iter().map(panel).collect()
+        let moments = self.moments(score).into_iter();
+        let mut panels: Vec<Panel> =
+            moments.map(|(name, moment)| moment.panel(session, name, &self.lengths_m, score)).collect();
+        let [x, y] = extent(panels.iter().flat_map(|panel| &panel.series)).map(padded);
+        for panel in &mut panels {
+            (panel.x.range, panel.y.range) = (x, y);
+        }
+        panels
     }
 }
 
@@ -111,6 +106,25 @@ impl Snapshot {
             shape.iter().map(end).collect()
         });
         Self { time_s: row.sample.time_us as f64 / 1e6, error_m, shapes, truth: row.truth }
+    }
+
+    fn panel(&self, session: &str, name: String, lengths_m: &[f64], score: &Score) -> Panel {
+        let (time_s, error_mm) = (self.time_s, self.error_m.map(|m| m * 1e3));
+        let title = match error_mm {
+            Some(mm) => format!("{name}: {mm:.1} mm at {time_s:.1} s"),
+            None => format!("{name}: at {time_s:.1} s"),
+        };
+        let facts = [("time_s", Some(time_s)), ("tip_error_mm", error_mm)];
+        Panel {
+            session: Some(session.to_owned()),
+            name,
+            title,
+            facts: facts.into_iter().filter_map(|(name, value)| Some((name, rounded(value?)))).collect(),
+            size: Size::Quarter,
+            x: Axis::new("x, mm", [0.0, 1.0]),
+            y: Axis::new("y, mm", [0.0, 1.0]),
+            series: self.series(lengths_m, score),
+        }
     }
 
     fn series(&self, lengths_m: &[f64], score: &Score) -> Vec<Series> {
@@ -137,7 +151,7 @@ impl Snapshot {
             series.push(named("truth", Colour::Truth, line(points)));
         }
         if !places.is_empty() {
-            series.push(named("truth", Colour::Truth, Marks::Dots { x: "x_mm", y: "y_mm", points: places }));
+            series.push(named("truth", Colour::Truth, Marks::Dots { x: "end_x_mm", y: "end_y_mm", points: places }));
         }
         series
     }

@@ -1,11 +1,9 @@
 //! Long recordings in bounded memory: bins with their least and largest values, and every so-many-th item.
 
-/// Bins or items that are kept at least, once there were so many; never more than twice as many.
-pub const KEPT: usize = 256;
-
-/// `C` channels over time, in [`KEPT`] to twice as many bins of equally many rows.
+/// `C` channels over time, in bins of equally many rows: all rows, then between `kept` and twice as many bins.
 #[derive(Debug, Clone)]
 pub struct Timeline<const C: usize> {
+    kept: usize,
     bins: Vec<Bin<C>>,
     rows_per_bin: u64,
     rows_in_last: u64,
@@ -64,8 +62,8 @@ impl<const C: usize> Bin<C> {
 }
 
 impl<const C: usize> Timeline<C> {
-    pub fn new() -> Self {
-        Self { bins: Vec::new(), rows_per_bin: 1, rows_in_last: 1 }
+    pub fn new(kept: usize) -> Self {
+        Self { kept, bins: Vec::new(), rows_per_bin: 1, rows_in_last: 1 }
     }
 
     pub fn bins(&self) -> &[Bin<C>] {
@@ -84,7 +82,7 @@ impl<const C: usize> Timeline<C> {
                 self.rows_in_last += 1;
             }
             _ => {
-                if self.bins.len() == 2 * KEPT {
+                if self.bins.len() == 2 * self.kept {
                     self.halve();
                 }
                 self.bins.push(row);
@@ -93,7 +91,8 @@ impl<const C: usize> Timeline<C> {
         }
     }
 
-    fn halve(&mut self) {
+    /// Makes one bin of two.
+    pub fn halve(&mut self) {
         let pairs = self.bins.chunks(2).filter_map(|pair| {
             let (first, others) = pair.split_first()?;
             let mut joined = *first;
@@ -105,17 +104,18 @@ impl<const C: usize> Timeline<C> {
     }
 }
 
-/// Every item at first, then every second, every fourth and so on, so that [`KEPT`] to twice as many are kept.
+/// Items evenly spaced: all, then every second, every fourth and so on, so that between `kept` and twice as many are there.
 #[derive(Debug, Clone)]
 pub struct Thinned<T> {
+    kept: usize,
     items: Vec<T>,
     every: u64,
     seen: u64,
 }
 
 impl<T> Thinned<T> {
-    pub fn new() -> Self {
-        Self { items: Vec::new(), every: 1, seen: 0 }
+    pub fn new(kept: usize) -> Self {
+        Self { kept, items: Vec::new(), every: 1, seen: 0 }
     }
 
     pub fn items(&self) -> &[T] {
@@ -129,7 +129,7 @@ impl<T> Thinned<T> {
         if !place.is_multiple_of(self.every) {
             return;
         }
-        if self.items.len() == 2 * KEPT {
+        if self.items.len() == 2 * self.kept {
             let mut keep = [true, false].into_iter().cycle();
             self.items.retain(|_| keep.next() == Some(true));
             self.every *= 2;
@@ -140,25 +140,26 @@ impl<T> Thinned<T> {
 
 #[cfg(test)]
 mod tests {
-    use super::{KEPT, Thinned, Timeline};
+    use super::{Bin, Thinned, Timeline};
+
+    const KEPT: usize = 256;
 
     #[test]
     fn a_peak_outlives_any_number_of_rows() {
-        let mut timeline = Timeline::new();
+        let mut timeline = Timeline::new(KEPT);
         for row in 0..100_000_u64 {
             timeline.add(row * 1000, [Some(if row == 54_321 { 99.0 } else { 1.0 }), None]);
         }
         let bins = timeline.bins();
         assert!((KEPT..=2 * KEPT).contains(&bins.len()));
-        let peaks: Vec<f64> =
-            bins.iter().filter(|bin| bin.range(0) == Some([1.0, 99.0])).map(super::Bin::time_s).collect();
+        let peaks: Vec<f64> = bins.iter().filter(|bin| bin.range(0) == Some([1.0, 99.0])).map(Bin::time_s).collect();
         assert!(matches!(peaks[..], [peak_s] if (peak_s - 54.321).abs() < 0.3), "{peaks:?}");
         assert!(bins.iter().all(|bin| bin.range(1).is_none() && bin.mean(1).is_none()));
     }
 
     #[test]
     fn no_row_is_lost_or_counted_twice() {
-        let mut timeline = Timeline::new();
+        let mut timeline = Timeline::new(KEPT);
         (0..5000_u64).for_each(|row| timeline.add(row, [Some(row as f64)]));
         let rows: u64 = timeline.bins().iter().map(|bin| bin.cells[0].count).sum();
         let sum: f64 = timeline.bins().iter().map(|bin| bin.cells[0].sum).sum();
@@ -167,7 +168,7 @@ mod tests {
 
     #[test]
     fn thinned_items_are_evenly_spaced_from_the_first_to_near_the_last() {
-        let mut thinned = Thinned::new();
+        let mut thinned = Thinned::new(KEPT);
         (0..5000_u64).for_each(|item| thinned.add(|| item));
         let items = thinned.items();
         assert!((KEPT..=2 * KEPT).contains(&items.len()));

@@ -8,6 +8,8 @@ use crate::replay::Outcome;
 use crate::score::tip_errors_m;
 use crate::session::Row;
 
+/// Bins of a session at least: few enough for four areas to be told apart.
+const BINS: usize = 100;
 const METHODS: usize = Method::ALL.len();
 
 /// Tip errors of one session, mm.
@@ -15,7 +17,7 @@ pub struct TipErrors(Timeline<METHODS>);
 
 impl TipErrors {
     pub fn new() -> Self {
-        Self(Timeline::new())
+        Self(Timeline::new(BINS))
     }
 
     pub fn add<S: Scalar>(&mut self, row: &Row, outcome: &Outcome<S>) {
@@ -33,8 +35,8 @@ impl TipErrors {
         let [x, [_, largest]] = extent(&all);
         let x = Axis::new("time, s", x);
         let y = Axis::new("tip error, mm", [0.0, 1.05 * largest]);
-        let (session, name) = (Some(session.to_owned()), String::new());
-        (!all.is_empty()).then(|| Panel { session, name, size: Size::Half, x, y, series: all })
+        let (session, title, name, facts) = (Some(session.to_owned()), session.to_owned(), String::new(), Vec::new());
+        (!all.is_empty()).then(|| Panel { session, name, title, facts, size: Size::Half, x, y, series: all })
     }
 
     fn band(&self, channel: usize) -> Marks {

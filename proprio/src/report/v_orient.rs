@@ -9,6 +9,8 @@ use crate::session::{Row, SENSOR_NAMES};
 
 /// Volts of one ADC count.
 const VOLTS_PER_COUNT: f64 = 3.3 / 4095.0;
+/// Readings of a sensor that are shown at least.
+const READINGS: usize = 256;
 /// Points of a drawn map.
 const MAP_POINTS: u32 = 60;
 
@@ -65,7 +67,7 @@ impl Readings {
 
 impl Sensor {
     fn new(segment: usize, place: usize, map: BendKeys) -> Self {
-        Self { segment, place, map, points: Thinned::new(), square_sum_deg2: 0.0, count: 0 }
+        Self { segment, place, map, points: Thinned::new(READINGS), square_sum_deg2: 0.0, count: 0 }
     }
 
     fn mapped_deg(&self, volts: f64) -> f64 {
@@ -99,24 +101,22 @@ impl Sensor {
         let curve = (0..=MAP_POINTS).map(|i| (at(i), Some(rounded(self.mapped_deg(at(i)))))).collect();
         let map = Series {
             name: "map".to_owned(),
-            colour: Colour::Truth,
+            colour: Colour::Ink,
             marks: Marks::Line { x: "voltage_v", y: "theta_mapped_deg", points: curve },
         };
         let series: Vec<Series> = [data, map].into_iter().skip(usize::from(self.count == 0)).collect();
         let [x, y] = extent(&series).map(padded);
         let [x, y] = [Axis::new("voltage, V", x), Axis::new("bend angle, deg", y)];
-        Panel { session: None, name: self.name(), size: Size::Third, x, y, series }
-    }
-
-    /// The sensor with its errors here and in the calibration.
-    fn name(&self) -> String {
-        let sensor = format!("bend{}{}", self.segment + 1, SENSOR_NAMES[self.place]);
+        let name = format!("bend{}{}", self.segment + 1, SENSOR_NAMES[self.place]);
         let here = (self.count > 0).then(|| (self.square_sum_deg2 / self.count as f64).sqrt());
-        match (here, self.map.rmse_deg) {
-            (Some(here), Some(table)) => format!("{sensor}: RMSE {here:.1}°, in the calibration {table:.1}°"),
-            (Some(here), None) => format!("{sensor}: RMSE {here:.1}°"),
-            (None, Some(table)) => format!("{sensor}: RMSE in the calibration {table:.1}°"),
-            (None, None) => sensor,
-        }
+        let facts = [("rmse_deg", here), ("calibration_rmse_deg", self.map.rmse_deg)];
+        let title = match (here, self.map.rmse_deg) {
+            (Some(here), Some(table)) => format!("{name}: RMSE {here:.1}°, in the calibration {table:.1}°"),
+            (Some(here), None) => format!("{name}: RMSE {here:.1}°"),
+            (None, Some(table)) => format!("{name}: RMSE in the calibration {table:.1}°"),
+            (None, None) => name.clone(),
+        };
+        let facts = facts.into_iter().filter_map(|(name, value)| Some((name, rounded(value?)))).collect();
+        Panel { session: None, name, title, facts, size: Size::Third, x, y, series }
     }
 }
