@@ -101,7 +101,7 @@ impl Drift {
             (rounded(*time as f64 / 1e6), angles[i][channel].map(rounded))
         };
         let series = series("theta_deg", |channel| self.end.iter().map(|row| at(row, channel)).collect());
-        let name = format!("segment {}, last {END_S} s", i + 1);
+        let name = format!("segment {} end", i + 1);
         let title = format!("segment {}: the last {END_S} s, not averaged", i + 1);
         let [x, y] = axes(&series, "bend angle, deg");
         Panel { session: Some(session.to_owned()), name, title, facts: Vec::new(), size: Size::Half, x, y, series }

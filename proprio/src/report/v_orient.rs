@@ -84,7 +84,7 @@ impl Sensor {
 
     fn panel(&self) -> Panel {
         let points: Vec<(f64, f64)> =
-            self.points.items().iter().map(|(volts, deg)| ((volts * 1e5).round() / 1e5, rounded(*deg))).collect();
+            self.points.items().iter().map(|(volts, deg)| (tens_of_microvolts(*volts), rounded(*deg))).collect();
         let data = Series {
             name: "true angle".to_owned(),
             colour: Colour::Of(Method::Bend),
@@ -98,7 +98,8 @@ impl Sensor {
             (None, _) => seen,
         };
         let at = |i: u32| range[0] + (range[1] - range[0]) * f64::from(i) / f64::from(MAP_POINTS);
-        let curve = (0..=MAP_POINTS).map(|i| (at(i), Some(rounded(self.mapped_deg(at(i)))))).collect();
+        let curve =
+            (0..=MAP_POINTS).map(|i| (tens_of_microvolts(at(i)), Some(rounded(self.mapped_deg(at(i)))))).collect();
         let map = Series {
             name: "map".to_owned(),
             colour: Colour::Ink,
@@ -119,4 +120,9 @@ impl Sensor {
         let facts = facts.into_iter().filter_map(|(name, value)| Some((name, rounded(value?)))).collect();
         Panel { session: None, name, title, facts, size: Size::Third, x, y, series }
     }
+}
+
+/// A hundredth of a count is left.
+fn tens_of_microvolts(volts: f64) -> f64 {
+    (volts * 1e5).round() / 1e5
 }

@@ -11,5 +11,7 @@ mod estimates;
 mod figures;
 mod missing_readings;
 mod output_files;
+mod report;
+mod report_numbers;
 mod simulate;
 mod streams;
