@@ -36,6 +36,9 @@ impl Default for Distances {
 
 impl Distances {
     /// Adds one distance.
+    ///
+    /// # Panics
+    /// Never: the histogram grows to whatever it is given.
     pub fn add(&mut self, distance_m: f64) {
         self.square_sum_m2 += distance_m * distance_m;
         let steps = (distance_m * STEPS_PER_M).round() as u64;
@@ -43,6 +46,9 @@ impl Distances {
     }
 
     /// Adds all distances of another set.
+    ///
+    /// # Panics
+    /// Never, as [`Distances::add`].
     pub fn append(&mut self, other: &Self) {
         self.square_sum_m2 += other.square_sum_m2;
         self.counts.add(&other.counts).expect("a histogram that resizes takes any other");
@@ -104,7 +110,9 @@ mod tests {
 
     fn of(values: &[f64]) -> Distances {
         let mut distances = Distances::default();
-        values.iter().for_each(|value| distances.add(*value));
+        for value in values {
+            distances.add(*value);
+        }
         distances
     }
 
@@ -134,8 +142,15 @@ mod tests {
 
     #[test]
     fn the_root_mean_square_is_exact() {
-        assert_eq!(of(&[0.003, 0.004]).rms_m(), Some(((0.003 * 0.003 + 0.004 * 0.004) / 2.0_f64).sqrt()));
+        assert_eq!(of(&[0.003, 0.004]).rms_m(), Some(f64::midpoint(0.003 * 0.003, 0.004 * 0.004).sqrt()));
         assert_eq!(of(&[]).rms_m(), None);
+    }
+
+    #[test]
+    fn a_distance_beyond_all_measure_is_counted() {
+        let distances = of(&[0.0, 1e5, 1e300, f64::INFINITY]);
+        assert_eq!(distances.count(), 4);
+        assert!(distances.quantile_m(1.0).is_some_and(|m| m > 1e9));
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! The host side of `proprio`: sessions, calibration, replay and simulation.
+//! The host side of `proprio`: sessions, calibration, replay, reports and simulation.
 //!
 //! The command-line tool is a thin layer over these modules; the tests and benchmarks of the workspace use them as well.
 //!

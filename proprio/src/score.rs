@@ -64,7 +64,9 @@ impl Score {
             }
         }
         for (errors, tip_m) in self.errors.iter_mut().zip(tip_errors_m(row, outcome)) {
-            tip_m.into_iter().for_each(|m| errors.tips.add(m));
+            if let Some(tip_m) = tip_m {
+                errors.tips.add(tip_m);
+            }
         }
     }
 

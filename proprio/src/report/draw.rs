@@ -247,7 +247,7 @@ fn ranges(area: &Area, panel: &Panel) -> ([f64; 2], [f64; 2]) {
     let [width, height] = [inside[0] - LABELS_PX[0] * PX, inside[1] - LABELS_PX[1] * PX].map(f64::from);
     let per_unit = ((x[1] - x[0]) / width).max((y[1] - y[0]) / height);
     let grown = |[from, to]: [f64; 2], units: f64| {
-        let (middle, half) = ((from + to) / 2.0, per_unit * units / 2.0);
+        let (middle, half) = (f64::midpoint(from, to), per_unit * units / 2.0);
         [middle - half, middle + half]
     };
     (grown(x, width), grown(y, height))

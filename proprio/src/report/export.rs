@@ -70,7 +70,9 @@ impl Rows {
                 ("theta_rmse_deg", of.theta_rmse_deg),
             ];
             for (name, value) in numbers {
-                value.into_iter().for_each(|value| self.number(place, name, value));
+                if let Some(value) = value {
+                    self.number(place, name, value);
+                }
             }
         }
     }
@@ -89,7 +91,9 @@ impl Rows {
         match marks {
             Marks::Line { x, y, points } => {
                 for (at, value) in points.iter().copied() {
-                    value.into_iter().for_each(|value| self.point(place, (x, at), (y, value)));
+                    if let Some(value) = value {
+                        self.point(place, (x, at), (y, value));
+                    }
                 }
             }
             Marks::Band { x, low, high, points } => {
@@ -118,7 +122,9 @@ impl Rows {
                     ("largest_mm", largest_mm),
                     ("rmse_mm", rmse_mm),
                 ];
-                numbers.into_iter().for_each(|(name, value)| self.number(place, name, *value));
+                for (name, value) in numbers {
+                    self.number(place, name, *value);
+                }
             }
         }
     }

@@ -96,7 +96,9 @@ impl<const C: usize> Timeline<C> {
         let pairs = self.bins.chunks(2).filter_map(|pair| {
             let (first, others) = pair.split_first()?;
             let mut joined = *first;
-            others.iter().for_each(|other| joined.join(other));
+            for other in others {
+                joined.join(other);
+            }
             Some(joined)
         });
         self.bins = pairs.collect();

@@ -36,7 +36,7 @@ impl TipErrors {
         let x = Axis::new("time, s", x);
         let y = Axis::new("tip error, mm", [0.0, 1.05 * largest]);
         let (session, title, name, facts) = (Some(session.to_owned()), session.to_owned(), String::new(), Vec::new());
-        (!all.is_empty()).then(|| Panel { session, name, title, facts, size: Size::Half, x, y, series: all })
+        (!all.is_empty()).then_some(Panel { session, name, title, facts, size: Size::Half, x, y, series: all })
     }
 
     fn band(&self, channel: usize) -> Marks {

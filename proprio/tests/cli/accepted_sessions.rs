@@ -243,7 +243,8 @@ fn same_tip_figures(places: Csv) {
     let (poses, places) = (report(session()), report(places));
     for method in ["bend", "imu_o", "imu_c", "fusion"] {
         for name in ["tip_rmse_mm", "tip_rmse_percent", "tip_p75_mm"] {
-            assert_eq!(figure(&places, method, name), figure(&poses, method, name), "{method} {name}");
+            let of = |report: &serde_json::Value| report["all"]["methods"][method][name].clone();
+            assert!(of(&places).is_number() && of(&places) == of(&poses), "{method} {name}");
         }
         assert_eq!(places["all"]["methods"][method]["theta_rmse_deg"], serde_json::Value::Null, "{method}");
     }

@@ -90,11 +90,14 @@ fn the_page_is_whole_and_needs_nothing_else() {
     assert_self_contained(&page);
 }
 
+/// A figure's name, its panels, title of x, titles of y of which each panel has one, and keys that each has.
+type Expected = (&'static str, usize, &'static str, &'static [&'static str], &'static [&'static str]);
+
 /// Six segments, twelve sensors, two sessions and all together.
 #[test]
 fn every_figure_has_its_panels_with_axes_units_and_a_legend() {
     let page = page_of(&two_sessions(), &["one.csv", "two.csv"], table());
-    let figures: [(&str, usize, &str, &[&str], &[&str]); 5] = [
+    let figures: [Expected; 5] = [
         ("boxes", 3, "method", &["tip error, mm"], &["bend", "imu_o", "imu_c", "fusion", "RMSE"]),
         (
             "drift",
@@ -211,15 +214,14 @@ fn a_table_without_bend_sensors_shows_imu_o_alone() {
 /// An arm of `segments` segments that stands still, a bend sensor on each, without truth.
 fn still(segments: usize) -> Folder {
     let mut table = "format = 1\narm = \"still\"\nrate_hz = 10.0\n".to_owned();
-    let mut header = "time_s".to_owned();
-    for i in 1..=segments {
+    let header: String = (1..=segments).map(|i| format!(",bend{i}a_adc,imu{i}_deg")).collect();
+    for _ in 0..segments {
         table += "[[segment]]\nlength_mm = 80.0\noffset_mm = 17.0\noffset_at = \"end\"\n";
         table += "bend = [{ c0 = -1.0, c1 = 0.6, c2 = 0.0 }]\n";
-        header += &format!(",bend{i}a_adc,imu{i}_deg");
     }
     let rows = (0..20).map(|row| format!("{}{}\n", f64::from(row) / 10.0, ",2068,0.0".repeat(segments)));
     let folder = Folder::with("table.toml", table);
-    folder.write("session.csv", header + "\n" + &rows.collect::<String>());
+    folder.write("session.csv", format!("time_s{header}\n{}", rows.collect::<String>()));
     folder
 }
 

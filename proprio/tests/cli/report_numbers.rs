@@ -105,18 +105,19 @@ fn the_csv_has_the_figures_of_the_table_boxes_and_panels() {
     let Numbers { json, csv, .. } = numbers();
     let of = |place: [&str; 4], name: &str| {
         let row = csv.rows.iter().find(|row| row[..4] == place && row[6] == name);
-        row.unwrap_or_else(|| panic!("no {name} of {place:?}"))[7].parse::<f64>().expect("a number")
+        row.unwrap_or_else(|| panic!("no {name} of {place:?}"))[7].clone()
     };
     let rmse_mm = number(&json["all"]["methods"]["fusion"]["tip_rmse_mm"]);
-    assert!((of(["table", "", "", "fusion"], "tip_rmse_mm") / rmse_mm - 1.0).abs() < 1e-14);
+    let found_mm: f64 = of(["table", "", "", "fusion"], "tip_rmse_mm").parse().expect("a number");
+    assert!((found_mm / rmse_mm - 1.0).abs() < 1e-14);
     let box_of = panels(&json, "boxes", "two.csv")[0];
     for name in ["low_mm", "quartile1_mm", "median_mm", "quartile3_mm", "high_mm", "largest_mm", "rmse_mm", "samples"] {
         let expected = number(&series(box_of, "bend", "box")[name]);
-        assert_eq!(of(["boxes", "two.csv", "", "bend"], name), expected);
+        assert_eq!(of(["boxes", "two.csv", "", "bend"], name), expected.to_string());
     }
     let drift = panels(&json, "drift", "one.csv")[0];
     let (name, drift_deg) = (text(&drift["name"]), number(&drift["facts"]["drift_deg"]));
-    assert_eq!(of(["drift", "one.csv", name, ""], "drift_deg"), drift_deg);
+    assert_eq!(of(["drift", "one.csv", name, ""], "drift_deg"), drift_deg.to_string());
 }
 
 /// Distances of a method's tip from the true one, mm, in order of size.
@@ -156,7 +157,7 @@ fn boxes_are_those_of_the_estimates() {
         let inside = |error: &&f64| (quantile(0.25) - reach..=quantile(0.75) + reach).contains(*error);
         assert_near(number(&found["low_mm"]), *errors.iter().find(inside).expect("a whisker"), method);
         assert_near(number(&found["high_mm"]), *errors.iter().rfind(inside).expect("a whisker"), method);
-        assert_eq!(number(&found["samples"]), errors.len() as f64);
+        assert_eq!(found["samples"], errors.len());
     }
 }
 
@@ -212,7 +213,7 @@ fn moving_averages_are_those_of_the_anchor() {
         let angles = estimates.numbers(&format!("bend{segment}_theta_deg"));
         // In a small panel two rows share a point.
         let mean = |to: usize| angles[to - 100..to].iter().sum::<f64>() / 100.0;
-        let [whole, paired] = [mean(150), (mean(149) + mean(150)) / 2.0];
+        let [whole, paired] = [mean(150), f64::midpoint(mean(149), mean(150))];
         let found = number(&last[1]);
         assert!((found - whole).abs() < 1e-3 || (found - paired).abs() < 1e-3, "{segment}: {found}, {whole}, {paired}");
     }
