@@ -15,31 +15,26 @@ use plotters::prelude::{
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{Color, IntoFont, RGBColor, ShapeStyle, TextStyle};
 
+use super::legend::{ROW_PX, legend};
 use super::plot::{Colour, Marks, Panel, Series, Size};
 
 /// Units of the drawing in a pixel.
-const PX: i32 = 10;
+pub const PX: i32 = 10;
 /// Text, px.
 const TEXT_PX: i32 = 13;
-/// Room for a character of it, px, which is wide enough for any usual sans-serif font.
-const CHARACTER_PX: f64 = 7.2;
-/// Height of a line of the legend, px.
-const LEGEND_PX: i32 = 20;
-/// Length of a sample in the legend, px.
-const KEY_PX: i32 = 22;
 /// Room for labels left of and below the axes, px.
 const LABELS_PX: [i32; 2] = [62, 44];
 /// Room on all other sides, px.
-const MARGIN_PX: i32 = 10;
+pub const MARGIN_PX: i32 = 10;
 /// Half the width of a box on an axis of names.
 const HALF_BOX: f64 = 0.27;
 /// A star's corners about its middle, tenths of its radius.
 const STAR: [(i32, i32); 10] =
     [(0, -10), (2, -3), (10, -3), (4, 1), (6, 8), (0, 4), (-6, 8), (-4, 1), (-10, -3), (-2, -3)];
 
-type Area<'s> = DrawingArea<SVGBackend<'s>, Shift>;
+pub type Area<'s> = DrawingArea<SVGBackend<'s>, Shift>;
 type Chart<'c, 's> = ChartContext<'c, SVGBackend<'s>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
-type Drawn = Result<(), Box<dyn std::error::Error>>;
+pub type Drawn = Result<(), Box<dyn std::error::Error>>;
 
 impl Size {
     /// Width and height, px.
@@ -83,18 +78,18 @@ impl Colour {
         }
     }
 
-    fn drawn(self) -> RGBColor {
+    pub fn drawn(self) -> RGBColor {
         let [r, g, b] = self.rgb();
         RGBColor(r, g, b)
     }
 
-    fn stroke(self, tenths_px: u32) -> ShapeStyle {
+    pub fn stroke(self, tenths_px: u32) -> ShapeStyle {
         self.drawn().stroke_width(tenths_px)
     }
 
     /// The truth is a broad light band, so that an estimate shows inside it; fusion is broader than imu_c, which is often
     /// as good.
-    fn line(self) -> ShapeStyle {
+    pub fn line(self) -> ShapeStyle {
         match self {
             Self::Truth => self.drawn().mix(0.35).stroke_width(45),
             Self::Of(Method::Fusion) => self.stroke(26),
@@ -118,78 +113,10 @@ fn draw(panel: &Panel, svg: &mut String) -> Drawn {
     let root = SVGBackend::with_string(svg, (width, height)).into_drawing_area();
     let keys = legend(panel);
     let rows = keys.last().map_or(0, |key| key.row + 1).max(panel.size.legend_rows());
-    let (top, plot) = root.split_vertically((MARGIN_PX / 2 + rows * LEGEND_PX) * PX);
+    let (top, plot) = root.split_vertically((MARGIN_PX / 2 + rows * ROW_PX) * PX);
     keys.iter().try_for_each(|key| key.draw(&top))?;
     draw_plot(&plot, panel)?;
     Ok(root.present()?)
-}
-
-/// One entry of the legend.
-struct Key<'p> {
-    name: &'p str,
-    colour: Colour,
-    sign: Sign,
-    left_px: i32,
-    row: i32,
-}
-
-#[derive(Clone, Copy, PartialEq)]
-enum Sign {
-    Line,
-    Dot,
-    Ring,
-    Box,
-    Star,
-}
-
-/// A key for each name; boxes have stars too.
-fn legend(panel: &Panel) -> Vec<Key<'_>> {
-    let first_px = MARGIN_PX;
-    let mut keys: Vec<Key> = Vec::new();
-    let mut next = (first_px, 0);
-    let signs = panel.series.iter().map(|series| (series.name.as_str(), series.colour, sign(&series.marks)));
-    let star = panel.series.iter().any(|series| sign(&series.marks) == Sign::Box);
-    for (name, colour, sign) in signs.chain(star.then_some(("RMSE", Colour::Ink, Sign::Star))) {
-        if keys.iter().any(|key| key.name == name) {
-            continue;
-        }
-        let room_px = KEY_PX + (name.chars().count() as f64 * CHARACTER_PX) as i32 + 14;
-        if next.0 + room_px > panel.size.px()[0] && next.0 > first_px {
-            next = (first_px, next.1 + 1);
-        }
-        keys.push(Key { name, colour, sign, left_px: next.0, row: next.1 });
-        next.0 += room_px;
-    }
-    keys
-}
-
-const fn sign(marks: &Marks) -> Sign {
-    match marks {
-        Marks::Line { .. } | Marks::Band { .. } => Sign::Line,
-        Marks::Dots { .. } => Sign::Dot,
-        Marks::Circle { .. } => Sign::Ring,
-        Marks::Box { .. } => Sign::Box,
-    }
-}
-
-impl Key<'_> {
-    fn draw(&self, area: &Area) -> Drawn {
-        let (left, y) = (self.left_px * PX, (MARGIN_PX / 2 + self.row * LEGEND_PX + LEGEND_PX / 2) * PX);
-        let (right, middle) = (left + KEY_PX * PX, left + KEY_PX * PX / 2);
-        let colour = self.colour;
-        match self.sign {
-            Sign::Line => area.draw(&PathElement::new(vec![(left, y), (right, y)], colour.line()))?,
-            Sign::Dot => area.draw(&Circle::new((middle, y), 3 * PX, colour.drawn().filled()))?,
-            Sign::Ring => area.draw(&Circle::new((middle, y), 7 * PX, colour.stroke(15)))?,
-            Sign::Box => {
-                let (from, to) = ((middle - 8 * PX, y - 6 * PX), (middle + 8 * PX, y + 6 * PX));
-                area.draw(&Polygon::new(rectangle(from, to), colour.drawn().mix(0.3)))?;
-                area.draw(&PathElement::new(rectangle(from, to), colour.stroke(15)))?;
-            }
-            Sign::Star => area.draw(&(EmptyElement::at((middle, y)) + star(colour)))?,
-        }
-        Ok(area.draw_text(self.name, &text(HPos::Left, VPos::Center), (right + 5 * PX, y))?)
-    }
 }
 
 fn draw_plot(area: &Area, panel: &Panel) -> Drawn {
@@ -308,16 +235,16 @@ fn runs<T: Copy>(points: &[(f64, Option<T>)]) -> impl Iterator<Item = Vec<(f64, 
     stretches.map(|run| run.iter().filter_map(|(x, value)| Some((*x, (*value)?))).collect())
 }
 
-fn rectangle<T: Copy>((left, top): (T, T), (right, bottom): (T, T)) -> Vec<(T, T)> {
+pub fn rectangle<T: Copy>((left, top): (T, T), (right, bottom): (T, T)) -> Vec<(T, T)> {
     vec![(left, top), (right, top), (right, bottom), (left, bottom), (left, top)]
 }
 
-fn star(colour: Colour) -> Polygon<(i32, i32)> {
+pub fn star(colour: Colour) -> Polygon<(i32, i32)> {
     Polygon::new(STAR.map(|(x, y)| (x * PX * 7 / 10, y * PX * 7 / 10)), colour.drawn().filled())
 }
 
 /// Plotters draws text 1.24 times smaller than it is asked to.
-fn text(horizontal: HPos, vertical: VPos) -> TextStyle<'static> {
+pub fn text(horizontal: HPos, vertical: VPos) -> TextStyle<'static> {
     let style = ("sans-serif", f64::from(TEXT_PX * PX) * 1.24).into_font().color(&Colour::Ink.drawn());
     style.pos(Pos::new(horizontal, vertical))
 }

@@ -5,7 +5,7 @@
 //! | `boxes.rs`, `drift.rs`, `v_orient.rs`, `tip_error.rs`, `shapes.rs` | the figures |
 //! | `thin.rs`, `average.rs` | long sessions in bounded memory |
 //! | `plot.rs` | what a figure shows |
-//! | `draw.rs`, `page.rs`, `style.css` | as SVG, on a page |
+//! | `draw.rs`, `legend.rs`, `page.rs`, `style.css` | as SVG, on a page |
 //! | `export.rs` | as JSON and CSV |
 
 mod average;
@@ -13,6 +13,7 @@ mod boxes;
 mod draw;
 mod drift;
 mod export;
+mod legend;
 mod page;
 mod plot;
 mod shapes;

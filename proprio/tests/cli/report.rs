@@ -214,14 +214,14 @@ fn a_table_without_bend_sensors_shows_imu_o_alone() {
 /// An arm of `segments` segments that stands still, a bend sensor on each, without truth.
 fn still(segments: usize) -> Folder {
     let mut table = "format = 1\narm = \"still\"\nrate_hz = 10.0\n".to_owned();
-    let header: String = (1..=segments).map(|i| format!(",bend{i}a_adc,imu{i}_deg")).collect();
+    let columns: Vec<String> = (1..=segments).map(|i| format!("bend{i}a_adc,imu{i}_deg")).collect();
     for _ in 0..segments {
         table += "[[segment]]\nlength_mm = 80.0\noffset_mm = 17.0\noffset_at = \"end\"\n";
         table += "bend = [{ c0 = -1.0, c1 = 0.6, c2 = 0.0 }]\n";
     }
     let rows = (0..20).map(|row| format!("{}{}\n", f64::from(row) / 10.0, ",2068,0.0".repeat(segments)));
     let folder = Folder::with("table.toml", table);
-    folder.write("session.csv", format!("time_s{header}\n{}", rows.collect::<String>()));
+    folder.write("session.csv", format!("time_s,{}\n{}", columns.join(","), rows.collect::<String>()));
     folder
 }
 
