@@ -29,6 +29,8 @@ pub enum Command {
     Tune(Tune),
     /// Run sessions through the estimator and compare with truth
     Replay(Replay),
+    /// Make a page of figures of sessions, and the numbers behind them
+    Report(Report),
     /// Record a session of the simulated arm
     Simulate(Simulate),
     /// Print a completion script for a shell
@@ -77,6 +79,25 @@ pub struct Replay {
     /// Run the 64-bit float reference instead of the board's fixed point
     #[arg(long)]
     pub float: bool,
+}
+
+#[derive(Debug, Args)]
+pub struct Report {
+    /// Sessions to show, with or without truth
+    #[arg(required = true, value_name = "SESSION.csv")]
+    pub sessions: Vec<PathBuf>,
+    /// Table of the arm
+    #[arg(long, value_name = "TABLE.toml")]
+    pub table: PathBuf,
+    /// Page to write
+    #[arg(short, long, value_name = "REPORT.html")]
+    pub output: PathBuf,
+    /// Write the numbers behind the figures as JSON
+    #[arg(long, value_name = "FILE.json")]
+    pub json: Option<PathBuf>,
+    /// Write the numbers behind the figures as CSV, a row a number
+    #[arg(long, value_name = "FILE.csv")]
+    pub csv: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]

@@ -50,6 +50,9 @@ pub enum Error {
     /// An output that would replace its own input.
     #[error("{}: is read by this command and cannot be its output as well", .0.display())]
     Overwrite(PathBuf),
+    /// Two outputs of one name.
+    #[error("{}: cannot hold two outputs of this command", .0.display())]
+    OutputTwice(PathBuf),
     /// Standard output cannot be written.
     #[error("standard output cannot be written: {0}")]
     Stdout(io::Error),
@@ -74,7 +77,7 @@ impl Error {
             Self::Calibration { source, .. } => source.remedy(),
             Self::Tuning { source, .. } => source.remedy().to_owned(),
             Self::Output { .. } => "choose a folder that exists, can be written to and has room".to_owned(),
-            Self::Overwrite(_) => "give the output another name".to_owned(),
+            Self::Overwrite(_) | Self::OutputTwice(_) => "give the output another name".to_owned(),
             Self::Stdout(_) => "write to a place that has room, or use --out".to_owned(),
             Self::OneSession(_) => "replay the sessions one by one".to_owned(),
             Self::Rate(_) | Self::Seconds(_) => "give a value in this range".to_owned(),

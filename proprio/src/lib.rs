@@ -1,4 +1,4 @@
-//! The host side of `proprio`: sessions, calibration, replay and simulation.
+//! The host side of `proprio`: sessions, calibration, replay, reports and simulation.
 //!
 //! The command-line tool is a thin layer over these modules; the tests and benchmarks of the workspace use them as well.
 //!
@@ -20,8 +20,10 @@
 //! ```
 
 pub mod calibrate;
+pub mod distances;
 pub mod error;
 pub mod estimates;
+pub mod figures;
 pub mod interrupt;
 pub mod output;
 pub mod progress;

@@ -7,7 +7,7 @@ use comfy_table::presets::NOTHING;
 use comfy_table::{CellAlignment, Table};
 use estimator_core::Method;
 use proprio::calibrate::SensorReport;
-use proprio::report::{Methods, Report};
+use proprio::figures::{AllFigures, ByMethod};
 use proprio::score::Figures;
 
 /// One line a bend sensor.
@@ -55,31 +55,31 @@ pub fn tuning(record: &TuningKeys, time: Duration) -> String {
 type Pick = fn(&Figures) -> Option<f64>;
 
 /// A table for each figure: a line a session, a column a method.
-pub fn replay(report: &Report) -> String {
-    let length = report.length_mm;
+pub fn replay(all: &AllFigures) -> String {
+    let length = all.length_mm;
     let parts: [(String, Pick); 4] = [
         ("Tip error, RMSE in mm".to_owned(), |figures| figures.tip_rmse_mm),
         (format!("Tip error, RMSE in % of {length} mm"), |figures| figures.tip_rmse_percent),
         ("Tip error, 75th percentile in mm".to_owned(), |figures| figures.tip_p75_mm),
         ("Bend angles, RMSE in deg".to_owned(), |figures| figures.theta_rmse_deg),
     ];
-    parts.map(|(title, figure)| format!("{title}\n{}\n", figures(report, figure))).join("\n")
+    parts.map(|(title, figure)| format!("{title}\n{}\n", figures(all, figure))).join("\n")
 }
 
-fn figures(report: &Report, figure: Pick) -> String {
+fn figures(all: &AllFigures, figure: Pick) -> String {
     let mut heads = vec!["session", "samples", "seconds"];
     heads.extend(Method::ALL.map(Method::name));
     let mut table = table(&heads);
-    let mut add = |name: String, samples: u64, seconds: f64, of: &Methods| {
+    let mut add = |name: String, samples: u64, seconds: f64, of: &ByMethod| {
         let cells = of.methods.iter().map(|of| figure(of).map_or("–".to_owned(), |value| format!("{value:.2}")));
         table.add_row([name, samples.to_string(), format!("{seconds:.1}")].into_iter().chain(cells));
     };
-    for session in &report.sessions {
+    for session in &all.sessions {
         add(session.path.clone(), session.samples, session.seconds, &session.figures);
     }
-    let samples = report.sessions.iter().map(|session| session.samples).sum();
-    let seconds = report.sessions.iter().map(|session| session.seconds).sum();
-    add("all".to_owned(), samples, seconds, &report.all);
+    let samples = all.sessions.iter().map(|session| session.samples).sum();
+    let seconds = all.sessions.iter().map(|session| session.seconds).sum();
+    add("all".to_owned(), samples, seconds, &all.all);
     text(&mut table)
 }
 

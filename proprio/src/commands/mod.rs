@@ -3,6 +3,7 @@
 mod calibrate;
 mod completions;
 mod replay;
+mod report;
 mod simulate;
 mod tune;
 
@@ -18,6 +19,7 @@ impl Command {
             Self::Calibrate(args) => calibrate::run(&args),
             Self::Tune(args) => tune::run(&args),
             Self::Replay(args) => replay::run(&args),
+            Self::Report(args) => report::run(&args),
             Self::Simulate(args) => simulate::run(&args),
             Self::Completions(args) => completions::run(&args),
         }

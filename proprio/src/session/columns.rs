@@ -27,8 +27,16 @@ pub(super) enum ImuColumn {
 pub(super) struct SegmentColumns {
     pub bend: [Option<usize>; SENSORS_PER_SEGMENT],
     pub imu: ImuColumn,
-    /// x, y and heading.
-    pub truth: Option<[Column; 3]>,
+    pub truth: Option<TruthColumns>,
+}
+
+/// Where the truth of one segment stands.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct TruthColumns {
+    pub x: Column,
+    pub y: Column,
+    /// Of all segments or of none.
+    pub heading: Option<Column>,
 }
 
 /// Where everything stands.
@@ -60,12 +68,12 @@ impl Columns {
         }
         let header = Header { places };
         let time = header.required("time_s")?;
-        let has_truth = needs.truth || (1..=needs.bend.len()).any(|i| header.truth(i).is_ok());
+        let has_headings = needs.truth || (1..=needs.bend.len()).any(|i| header.truth_heading(i).is_ok());
         let segment = |(i, sensors): (usize, &Option<usize>)| {
             Ok(SegmentColumns {
                 bend: header.bend(i + 1, *sensors)?,
                 imu: header.imu(i + 1)?,
-                truth: if has_truth { Some(header.truth(i + 1)?) } else { None },
+                truth: if has_headings { Some(header.pose(i + 1)?) } else { header.place(i + 1)? },
             })
         };
         Ok(Self { time, segments: needs.bend.iter().enumerate().map(segment).collect::<Result<_, _>>()? })
@@ -121,9 +129,21 @@ impl Header<'_> {
         Ok(ImuColumn::Quaternion([w?, x?, y?, z?]))
     }
 
-    fn truth(&self, segment: usize) -> Result<[Column; 3], Problem> {
-        let name = |part: &str| format!("truth{segment}_{part}");
-        Ok([self.length(&name("x"))?, self.length(&name("y"))?, self.angle(&name("heading"))?])
+    fn truth_heading(&self, segment: usize) -> Result<Column, Problem> {
+        self.angle(&format!("truth{segment}_heading"))
+    }
+
+    fn pose(&self, segment: usize) -> Result<TruthColumns, Problem> {
+        let [x, y] = ["x", "y"].map(|part| self.length(&format!("truth{segment}_{part}")));
+        Ok(TruthColumns { x: x?, y: y?, heading: Some(self.truth_heading(segment)?) })
+    }
+
+    /// A true place without a heading, where there is one.
+    fn place(&self, segment: usize) -> Result<Option<TruthColumns>, Problem> {
+        match ["x", "y"].map(|part| self.length(&format!("truth{segment}_{part}"))) {
+            [Err(_), Err(_)] => Ok(None),
+            [x, y] => Ok(Some(TruthColumns { x: x?, y: y?, heading: None })),
+        }
     }
 }
 

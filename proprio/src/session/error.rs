@@ -97,7 +97,7 @@ pub enum Problem {
     #[error("the quaternion's norm is {0:.4}, expected 1 within 1 %")]
     NotUnit(f64),
     /// A pose of which only some parts are there.
-    #[error("the truth has an empty part, expected x, y and heading or none")]
+    #[error("the truth has an empty part, expected all of its cells or none")]
     PartialTruth,
 }
 
@@ -122,14 +122,14 @@ impl Problem {
             Self::NotANumber(_) => "write numbers with a decimal point, and leave the cell of a missing reading empty",
             Self::NotFinite(_) => "leave the cell empty",
             Self::Counts(_) => "write raw ADC counts, and leave the cell of a missing reading empty",
-            Self::Truth(_) => "correct the value, or leave all three cells empty",
+            Self::Truth(_) => "correct the value, or leave all cells of this truth empty",
             Self::NotAFile => "save it as a file first",
             Self::Heading(_) => "write headings from 0 up to a full turn: 360 in _deg, 2π in _rad",
             Self::Backwards { .. } => "sort the rows by time; two sessions in one file must be split",
             Self::PartialQuaternion | Self::NotUnit(_) => {
                 "write unit quaternions w, x, y, z, and leave all four cells of a missing reading empty"
             }
-            Self::PartialTruth => "leave all three cells empty where the camera did not see the segment",
+            Self::PartialTruth => "leave all its cells empty where the camera did not see the segment",
         }
     }
 }

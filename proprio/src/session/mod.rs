@@ -24,8 +24,8 @@ pub struct Pose {
     pub x_m: f64,
     /// y, m.
     pub y_m: f64,
-    /// Heading of the tangent, rad.
-    pub heading_rad: f64,
+    /// Heading of the tangent, rad; `None` in a session that has places alone.
+    pub heading_rad: Option<f64>,
 }
 
 /// One row: the readings of one tick, and the truth where there is any.
@@ -41,8 +41,8 @@ impl Row {
     /// True bend angle of segment `i` (from 0), rad: the difference of neighbouring headings, within ±π.
     #[must_use]
     pub fn true_theta(&self, i: usize) -> Option<f64> {
-        let before = if i == 0 { 0.0 } else { self.truth.get(i - 1)?.as_ref()?.heading_rad };
-        let turn = self.truth.get(i)?.as_ref()?.heading_rad - before;
+        let before = if i == 0 { 0.0 } else { self.truth.get(i - 1)?.as_ref()?.heading_rad? };
+        let turn = self.truth.get(i)?.as_ref()?.heading_rad? - before;
         Some(turn - std::f64::consts::TAU * (turn / std::f64::consts::TAU).round())
     }
 }

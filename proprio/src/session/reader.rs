@@ -9,7 +9,7 @@ use calibration_tables::MAX_SEGMENTS;
 use csv::StringRecord;
 use estimator_core::{ImuReading, Sample};
 
-use super::columns::{Column, Columns, ImuColumn};
+use super::columns::{Column, Columns, ImuColumn, TruthColumns};
 use super::{Needs, Pose, Problem, Row, SessionError, cell};
 
 /// Rows at the start whose time stamps tell the sample rate.
@@ -161,14 +161,20 @@ impl SessionReader {
         }
     }
 
-    fn pose(&self, columns: [Column; 3]) -> Result<Option<Pose>, SessionError> {
-        let value = |Column { index, factor }| self.cell(index, |text| cell::truth(text, factor));
-        let [x, y, heading] = columns.map(value);
-        let parts = [x?, y?, heading?];
+    fn pose(&self, columns: TruthColumns) -> Result<Option<Pose>, SessionError> {
+        let value = |Column { index, factor }: Column| self.cell(index, |text| cell::truth(text, factor));
+        let TruthColumns { x, y, heading } = columns;
+        let parts = [value(x)?, value(y)?, heading.map_or(Ok(None), value)?];
         match parts {
             [None, None, None] => Ok(None),
-            [Some(x_m), Some(y_m), Some(heading_rad)] => Ok(Some(Pose { x_m, y_m, heading_rad })),
-            _ => Err(self.cell_error(columns[first_empty(&parts)].index, Problem::PartialTruth)),
+            [Some(x_m), Some(y_m), heading_rad] if heading_rad.is_some() == heading.is_some() => {
+                Ok(Some(Pose { x_m, y_m, heading_rad }))
+            }
+            _ => {
+                let empty =
+                    [Some(x), Some(y), heading].into_iter().flatten().zip(parts).find(|(_, part)| part.is_none());
+                Err(self.cell_error(empty.map_or(x.index, |(column, _)| column.index), Problem::PartialTruth))
+            }
         }
     }
 

@@ -34,9 +34,10 @@ pub(super) fn ends(shape: impl Iterator<Item = SegmentShape<f64>>, measured: &[M
     let end = |(segment, measured): (SegmentShape<f64>, &Measured)| {
         let (theta, point) = segment.theta.zip(segment.end)?;
         heading += theta.rad();
-        let error = measured.truth.map(|truth| {
-            let turn = heading - truth.heading_rad;
-            EndError { point: point - Vector2::new(truth.x_m, truth.y_m), heading: turn - TAU * (turn / TAU).round() }
+        let error = measured.truth.and_then(|truth| {
+            let turn = heading - truth.heading_rad?;
+            let heading = turn - TAU * (turn / TAU).round();
+            Some(EndError { point: point - Vector2::new(truth.x_m, truth.y_m), heading })
         });
         Some(End { point, heading, error })
     };

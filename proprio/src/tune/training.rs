@@ -97,7 +97,7 @@ impl Training {
     /// From the smallest to the largest true heading of one segment's end.
     fn heading_range_deg(&self, segment: usize) -> f64 {
         let rows = self.rows().filter(|(is_held_back, _)| !is_held_back);
-        let headings = rows.filter_map(|(_, segments)| Some(segments[segment].truth?.heading_rad));
+        let headings = rows.filter_map(|(_, segments)| segments[segment].truth?.heading_rad);
         let [lo, hi] = headings.fold([f64::INFINITY, f64::NEG_INFINITY], |[lo, hi], h| [lo.min(h), hi.max(h)]);
         (hi - lo).to_degrees()
     }

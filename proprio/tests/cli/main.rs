@@ -11,6 +11,8 @@ mod estimates;
 mod figures;
 mod missing_readings;
 mod output_files;
+mod report;
+mod report_numbers;
 mod simulate;
 mod streams;
 mod tune;
