@@ -2,6 +2,7 @@
 
 mod cell;
 mod columns;
+mod csv_file;
 mod error;
 mod reader;
 mod writer;
