@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use calibration_tables::FileError;
 
+use crate::align::AlignmentError;
 use crate::calibrate::CalibrationError;
 use crate::session::SessionError;
 
@@ -30,6 +31,14 @@ pub enum Error {
         /// What is wrong with it.
         source: CalibrationError,
     },
+    /// A camera's file and a session cannot be brought together.
+    #[error("{}: {source}", path.display())]
+    Alignment {
+        /// The file that is to blame, the camera's where it is both.
+        path: PathBuf,
+        /// What is wrong.
+        source: AlignmentError,
+    },
     /// A file cannot be written.
     #[error("{}: cannot be written: {source}", path.display())]
     Output {
@@ -41,6 +50,9 @@ pub enum Error {
     /// An output that would replace its own input.
     #[error("{}: is read by this command and cannot be its output as well", .0.display())]
     Overwrite(PathBuf),
+    /// One name for two outputs.
+    #[error("{}: is the name of two outputs", .0.display())]
+    SameOutput(PathBuf),
     /// Standard output cannot be written.
     #[error("standard output cannot be written: {0}")]
     Stdout(io::Error),
@@ -63,8 +75,9 @@ impl Error {
             Self::Session(error) => error.problem.remedy().to_owned(),
             Self::Table { source, .. } => source.remedy().to_owned(),
             Self::Calibration { source, .. } => source.remedy(),
+            Self::Alignment { source, .. } => source.remedy().to_owned(),
             Self::Output { .. } => "choose a folder that exists, can be written to and has room".to_owned(),
-            Self::Overwrite(_) => "give the output another name".to_owned(),
+            Self::Overwrite(_) | Self::SameOutput(_) => "give the output another name".to_owned(),
             Self::Stdout(_) => "write to a place that has room, or use --out".to_owned(),
             Self::OneSession(_) => "replay the sessions one by one".to_owned(),
             Self::Rate(_) | Self::Seconds(_) => "give a value in this range".to_owned(),

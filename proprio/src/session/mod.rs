@@ -1,5 +1,6 @@
 //! Recorded sessions: CSV, a row a sample, units in the column names, an empty cell for a missing reading.
 
+mod camera;
 mod cell;
 mod columns;
 mod csv_file;
@@ -10,10 +11,11 @@ mod writer;
 use calibration_tables::{ArmFile, FileError, MAX_SEGMENTS};
 use estimator_core::Sample;
 
+pub use camera::{CameraReader, Frame};
 pub(crate) use columns::SENSOR_NAMES;
 pub use error::{Problem, SessionError};
 pub use reader::SessionReader;
-pub use writer::{ImuColumns, SessionWriter};
+pub use writer::{CameraWriter, ImuColumns, SessionWriter};
 
 /// What to say of a file that does not end with a line end.
 pub const LAST_LINE: &str = "the last line has no end; its last number may be cut";

@@ -6,7 +6,7 @@ use std::path::Path;
 use calibration_tables::MAX_SEGMENTS;
 use estimator_core::{ImuReading, Sample};
 
-use super::columns::{Column, Columns, ImuColumn};
+use super::columns::{Column, Columns, ImuColumn, is_truth};
 use super::csv_file::{CsvFile, first_empty};
 use super::{Needs, Problem, Row, SessionError, cell};
 
@@ -69,6 +69,12 @@ impl SessionReader {
     /// Which bend sensors of each segment the session has.
     pub fn bend_sensors(&self) -> impl Iterator<Item = [bool; 2]> {
         self.columns.segments.iter().map(|segment| segment.bend.map(|column| column.is_some()))
+    }
+
+    /// The first column of truth, if there is any.
+    #[must_use]
+    pub fn truth_column(&self) -> Option<&str> {
+        self.file.names().iter().map(String::as_str).find(|name| is_truth(name))
     }
 
     /// Whether the last line is ended; if not, its last number may have been cut.
