@@ -14,8 +14,8 @@ use super::signal::Signal;
 const GRID_S: f64 = 0.1;
 /// Both must have seen at least this much of the same motion, s.
 pub(super) const LEAST_OVERLAP_S: f64 = 60.0;
-/// Least correlation: one sensor of six may be wrong, and different rates of the clocks lower it; chance comes close.
-const LEAST_CORRELATION: f64 = 0.75;
+/// Least correlation where there is no rival: one sensor of six may be inverted, and the clocks' rates may differ.
+const LEAST_CORRELATION: f64 = 0.6;
 /// From here on a negative correlation is no chance.
 const MIRRORED: f64 = 0.95;
 /// Another lag is a rival where it has more than this share of the best one's evidence.
@@ -36,7 +36,7 @@ struct Fit {
 /// The camera's time since its first frame less the sensors' since their first row, s, where the two fit best.
 pub(super) fn lag_s(motion: &Motion) -> Result<f64, AlignmentError> {
     let fits = fits(motion);
-    let unrelated = |correlation| AlignmentError::Unrelated { correlation, least: LEAST_CORRELATION };
+    let unrelated = |correlation| AlignmentError::Unrelated { correlation, least: motion.by.least_correlation() };
     let peak = (0..fits.len()).max_by(by_evidence(&fits)).ok_or(unrelated(0.0))?;
     let best = fits[peak];
     let mirrored = fits.iter().find(|fit| -fit.evidence > best.evidence && -fit.correlation > MIRRORED);
@@ -53,6 +53,8 @@ pub(super) fn lag_s(motion: &Motion) -> Result<f64, AlignmentError> {
     let rival = before.chain(after).max_by(by_evidence(&fits)).map(|k| fits[k]);
     match rival.filter(|rival| rival.evidence > RIVAL * best.evidence) {
         None => Ok(best.lag_s),
+        // By chance, motions of a kind fit here and there.
+        Some(_) if best.correlation < motion.by.least_correlation() => Err(unrelated(best.correlation)),
         Some(rival) => Err(AlignmentError::Ambiguous {
             apart_s: (rival.lag_s - best.lag_s).abs(),
             correlations: [best.correlation, rival.correlation],

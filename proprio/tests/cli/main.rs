@@ -1,6 +1,8 @@
 //! The command-line tool as its users meet it: what it accepts, what it refuses and how, and what it writes.
 
 mod accepted_sessions;
+mod align;
+mod align_faults;
 mod bad_cells;
 mod bad_sessions;
 mod calibrate;
@@ -11,5 +13,6 @@ mod estimates;
 mod figures;
 mod missing_readings;
 mod output_files;
+mod recordings;
 mod simulate;
 mod streams;
