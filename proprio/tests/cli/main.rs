@@ -11,6 +11,7 @@ mod calibrate_gaps;
 mod common;
 mod estimates;
 mod figures;
+mod guide;
 mod missing_readings;
 mod output_files;
 mod recordings;
