@@ -8,10 +8,8 @@ use rustfft::{Fft, FftPlanner};
 
 use super::error::AlignmentError;
 use super::motion::{Motion, Sensors};
-use super::signal::Signal;
+use super::signal::{GRID_S, Signal};
 
-/// Time from one compared step to the next, s.
-const GRID_S: f64 = 0.1;
 /// Both must have seen at least this much of the same motion, s.
 pub(super) const LEAST_OVERLAP_S: f64 = 60.0;
 /// Least correlation where there is no rival: one sensor of six may be inverted, and the clocks' rates may differ.

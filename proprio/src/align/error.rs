@@ -28,6 +28,14 @@ pub enum AlignmentError {
         /// Length needed, s.
         least_s: f64,
     },
+    /// A recording is too long, or seems to be.
+    #[error("the recording lasts {hours:.0} h by its time stamps, expected at most {most_h}")]
+    TooLong {
+        /// Its length, h.
+        hours: f64,
+        /// Allowed length, h.
+        most_h: f64,
+    },
     /// No offset brings the motions together.
     #[error("has no motion in common with the session: the best correlation is {correlation:.2}, expected {least}")]
     Unrelated {
@@ -86,6 +94,7 @@ impl AlignmentError {
             Self::NoBase => "put the marker where the camera sees it, or remove the base's columns",
             Self::BaseMoved { .. } => "fix base and camera, and record again",
             Self::TooShort { .. } => "record longer, and let the arm move",
+            Self::TooLong { .. } => "remove rows whose time is wrong, or cut the recording",
             Self::Unrelated { .. } => {
                 "check that both are of the same run, that they overlap by a minute, and the order of the markers"
             }

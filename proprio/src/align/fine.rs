@@ -2,11 +2,10 @@
 
 use super::error::AlignmentError;
 use super::motion::{Motion, Pair, Sensors};
+use super::signal::GRID_S;
 
 /// Length of a window, s.
 const WINDOW_S: f64 = 20.0;
-/// Time from one compared step to the next, s.
-pub(super) const GRID_S: f64 = 0.1;
 /// Most rounds of windows and lines; four do.
 const ROUNDS: usize = 20;
 /// A round that moves the lag by less than this is the last, s.
@@ -66,7 +65,7 @@ pub(super) fn fit(motion: &Motion, lag_s: f64) -> Result<Fit, AlignmentError> {
         let line = Line::through(&lags).ok_or(AlignmentError::Still)?;
         clocks = Clocks { lag_s: clocks.lag_s + line.at(0.0), skew: clocks.skew + line.slope };
         rounds += 1;
-        if line.lag_s.abs() < CONVERGED_S || rounds == ROUNDS {
+        if line.lag_s.abs().max(line.at(0.0).abs()) < CONVERGED_S || rounds == ROUNDS {
             return Ok(Fit {
                 clocks,
                 middle_s: line.middle_s,

@@ -8,7 +8,7 @@ use super::error::AlignmentError;
 use super::signal::Reading;
 use crate::error::Error;
 use crate::progress::Progress;
-use crate::session::{CameraReader, Pose};
+use crate::session::{CameraReader, Pose, Problem, SessionError};
 
 /// A pose is interpolated between two frames that are at most this far apart, s.
 const LONGEST_GAP_S: f64 = 0.2;
@@ -45,6 +45,10 @@ impl Frames {
                 end.push(seen);
             }
             progress.set(reader.progress().0);
+        }
+        if frames.times_s.is_empty() {
+            let path = camera.to_owned();
+            return Err(SessionError { path, line: None, column: None, problem: Problem::NoSamples }.into());
         }
         let refuse = |source| Error::Alignment { path: camera.to_owned(), source };
         if frames.ends.iter().flatten().all(Option::is_none) {

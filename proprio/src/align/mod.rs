@@ -29,6 +29,8 @@ use fine::{Clocks, Fit};
 use frames::Frames;
 use motion::{Motion, Readings};
 
+/// Longest recording, h: memory goes with its length, and a wrong time stamp makes any length.
+const MOST_H: f64 = 24.0;
 /// Most that the rates of two clocks may differ: a camera of 29.97 frames a second whose times are counted as of 30.
 const MOST_SKEW: f64 = 1.5e-3;
 
@@ -75,9 +77,7 @@ pub fn align(session: &Path, camera: &Path, arm: &NamedTable) -> Result<Alignmen
     let mut readings = Readings::read(session, &arm.file)?;
     let frames = Frames::read(camera, arm.file.segments.len())?;
     for (path, seconds) in [(session, readings.seconds()), (camera, frames.seconds())] {
-        if seconds < LEAST_OVERLAP_S {
-            return Err(refuse(path, AlignmentError::TooShort { seconds, least_s: LEAST_OVERLAP_S }));
-        }
+        check_length(seconds).map_err(|source| refuse(path, source))?;
     }
     let motion = Motion::of(&mut readings, &frames).map_err(|source| refuse(session, source))?;
     let fit = coarse::lag_s(&motion).and_then(|lag_s| fine::fit(&motion, lag_s));
@@ -97,6 +97,17 @@ pub fn align(session: &Path, camera: &Path, arm: &NamedTable) -> Result<Alignmen
         end_with_line: [readings.ends_with_line, frames.ends_with_line],
     };
     Ok(Alignment { frames, readings, clocks: fit.clocks, report })
+}
+
+fn check_length(seconds: f64) -> Result<(), AlignmentError> {
+    let hours = seconds / 3600.0;
+    if seconds < LEAST_OVERLAP_S {
+        Err(AlignmentError::TooShort { seconds, least_s: LEAST_OVERLAP_S })
+    } else if hours > MOST_H {
+        Err(AlignmentError::TooLong { hours, most_h: MOST_H })
+    } else {
+        Ok(())
+    }
 }
 
 /// Whether a fit is good enough to be believed.

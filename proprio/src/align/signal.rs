@@ -3,6 +3,8 @@
 /// Span of the two means that a step is between, s. What moves in seconds stays, drift and noise do not; and neither do the
 /// jerks in which an IMU's own filter errs.
 const SPAN_S: f64 = 2.0;
+/// Time from one compared step to the next, s.
+pub(super) const GRID_S: f64 = 0.1;
 /// A pause between readings of more than this hides motion, s.
 const PAUSE_S: f64 = 0.3;
 /// At low rates a pause is more than so many of the usual steps.

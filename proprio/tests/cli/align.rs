@@ -221,6 +221,16 @@ fn one_imu_that_is_wrong_spoils_nothing() {
     assert!(error.contains("imu2 is inverted"), "{error}");
 }
 
+/// The lowest rate of the twin, and an arm without bend sensors.
+#[test]
+fn a_slow_session_of_quaternions_is_aligned_too() {
+    let mut recording = Recording::simulate("--scenario sweep --seconds 600 --seed 79 --rate 1 --imu quaternion");
+    recording.session.remove("bend");
+    let aligned = recording.with_clock(3.0, 10.0).align();
+    assert!(aligned.offset_error_ms(3.0, 10.0).abs() < 20.0, "{}", aligned.run.stdout);
+    assert!((aligned.skew_ppm() - 10.0).abs() < 30.0, "{}", aligned.run.stdout);
+}
+
 #[test]
 fn a_table_serves_as_the_arms_description() {
     let folder = Recording::short().folder();

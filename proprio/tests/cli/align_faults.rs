@@ -105,6 +105,15 @@ fn recordings_of_less_than_a_minute_are_refused_by_name() {
     assert!(error.starts_with("camera.csv: the recording lasts 50.0 s"), "{error}");
 }
 
+/// A first frame that was stamped before the clock was set.
+#[test]
+fn a_time_stamp_that_makes_the_recording_years_long_is_refused() {
+    let error = refused(|recording| recording.camera.set(0, "time_s", "12"));
+    assert_eq!(error, "camera.csv: the recording lasts 488889 h by its time stamps, expected at most 24");
+    let error = refused(|recording| recording.session.set(2999, "time_s", "1e6"));
+    assert_eq!(error, "session.csv: the recording lasts 278 h by its time stamps, expected at most 24");
+}
+
 #[test]
 fn an_arm_at_rest_is_refused() {
     let error = refused(|recording| {
@@ -224,6 +233,10 @@ fn a_camera_file_that_cannot_be_read_is_named() {
     assert!(folder.refused(&args(arm())).starts_with("camera.csv: cannot be read"));
     folder.write("camera.csv", "");
     assert_eq!(folder.refused(&args(arm())), "camera.csv: is empty, expected a header line");
+    let mut frames = Recording::short().camera;
+    frames.rows.clear();
+    folder.write("camera.csv", frames.to_string());
+    assert!(folder.refused(&args(arm())).starts_with("camera.csv: has no samples"));
 }
 
 #[test]
