@@ -203,7 +203,7 @@ impl Line {
         let sum = |of: &dyn Fn(&WindowLag) -> f64| lags.iter().map(|lag| lag.weight * of(lag)).sum::<f64>();
         let weight = sum(&|_| 1.0);
         let windows = weight * weight / sum(&|lag| lag.weight);
-        if !(windows >= LEAST_WINDOWS) {
+        if lags.is_empty() || windows < LEAST_WINDOWS {
             return None;
         }
         let middle_s = sum(&|lag| lag.time_s) / weight;

@@ -58,7 +58,8 @@ fn a_camera_that_saw_a_part_is_aligned_and_the_other_rows_stay_empty() {
         }
     }
     let with_truth = csv.rows.iter().filter(|cells| cells.iter().all(|cell| !cell.is_empty())).count();
-    assert_eq!(aligned.numbers("truth")[..2], [with_truth as f64, 9000.0]);
+    let said = format!("{with_truth} of 9000 rows");
+    assert!(aligned.run.stdout.contains(&said), "{said}: {}", aligned.run.stdout);
 }
 
 #[test]
@@ -67,7 +68,7 @@ fn a_session_that_is_a_part_of_what_the_camera_saw_is_aligned() {
     recording.keep_samples(|time_s| (400.0..520.0).contains(&time_s));
     let aligned = recording.with_clock(1e6, -40.0).align();
     assert!(aligned.offset_error_ms(1e6, -40.0).abs() < 5.0, "{}", aligned.run.stdout);
-    assert_eq!(aligned.numbers("truth")[1], 1200.0);
+    assert!(aligned.run.stdout.contains(" of 1200 rows"), "{}", aligned.run.stdout);
 }
 
 #[test]
