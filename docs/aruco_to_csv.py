@@ -16,8 +16,8 @@ import numpy
 
 SEGMENTS = 6
 BASE = 0  # marker K sits at the end of segment K, its upper edge towards the tip
-# Four markers that lie still around the arm, as high as those on it: their centres on the table in mm, x to the right and
-# y to the left of that as seen from above, as on squared paper.
+# Four markers that lie still around the arm, as high as those on it: their centres on the table in mm, seen from above,
+# with x to the right and y up as on squared paper.
 FIXED = {10: (0, 0), 11: (800, 0), 12: (800, 800), 13: (0, 800)}
 
 

@@ -18,6 +18,8 @@ const LEAST_CORRELATION: f64 = 0.6;
 const MIRRORED: f64 = 0.95;
 /// Another lag is a rival where it has more than this share of the best one's evidence.
 const RIVAL: f64 = 0.5;
+/// A column whose steps are smaller than this, rad or counts, stands still: rounding is all that moves.
+const LEAST_STEP: f64 = 1e-6;
 /// Where a recording has less than this share of its usual motion it rests.
 const STILL: f64 = 0.01;
 
@@ -33,9 +35,10 @@ struct Fit {
 
 /// The camera's time since its first frame less the sensors' since their first row, s, where the two fit best.
 pub(super) fn lag_s(motion: &Motion) -> Result<f64, AlignmentError> {
-    let fits = fits(motion);
+    let fits = fits(motion)?;
     let unrelated = |correlation| AlignmentError::Unrelated { correlation, least: motion.by.least_correlation() };
-    let peak = (0..fits.len()).max_by(by_evidence(&fits)).ok_or(unrelated(0.0))?;
+    let hidden = AlignmentError::Hidden { least_s: LEAST_OVERLAP_S };
+    let peak = (0..fits.len()).max_by(by_evidence(&fits)).ok_or(hidden)?;
     let best = fits[peak];
     let mirrored = fits.iter().find(|fit| -fit.evidence > best.evidence && -fit.correlation > MIRRORED);
     if let Some(Fit { correlation, .. }) = mirrored {
@@ -65,10 +68,13 @@ fn by_evidence(fits: &[Fit]) -> impl Fn(&usize, &usize) -> Ordering {
 }
 
 /// The fit at every lag at which the overlap is long enough and has motion in it.
-fn fits(motion: &Motion) -> Vec<Fit> {
+fn fits(motion: &Motion) -> Result<Vec<Fit>, AlignmentError> {
     let cameras: Vec<Option<Steps>> = motion.cameras.iter().map(Steps::of).collect();
     let pairs = motion.pairs.iter().filter_map(|pair| Steps::of(&pair.sensor).zip(cameras[pair.camera].as_ref()));
     let pairs: Vec<(Steps, &Steps)> = pairs.collect();
+    if pairs.is_empty() {
+        return Err(AlignmentError::Still);
+    }
     let longest = |steps: &dyn Fn(&(Steps, &Steps)) -> usize| pairs.iter().map(steps).max().unwrap_or_default();
     let (sensor_length, camera_length) =
         (longest(&|(sensor, _)| sensor.values.len()), longest(&|(_, camera)| camera.values.len()));
@@ -101,7 +107,7 @@ fn fits(motion: &Motion) -> Vec<Fit> {
         let evidence = overlap_s * correlation.signum() * explained / (1.0 - explained).max(f64::EPSILON);
         (overlap_s >= LEAST_OVERLAP_S && moves).then_some(Fit { lag_s: lag as f64 * GRID_S, correlation, evidence })
     };
-    lags.filter_map(fit).collect()
+    Ok(lags.filter_map(fit).collect())
 }
 
 /// Steps of a signal on the grid, scaled to a mean square of 1: 0 where they are not known.
@@ -119,7 +125,7 @@ impl Steps {
             (0..(end_s / GRID_S) as usize).map(|k| signal.step(k as f64 * GRID_S).map(|[step, _]| step)).collect();
         let known = steps.iter().flatten().count();
         let mean_square = steps.iter().flatten().map(|step| step * step).sum::<f64>() / known as f64;
-        (mean_square > 0.0).then(|| Self {
+        (mean_square > LEAST_STEP * LEAST_STEP).then(|| Self {
             values: steps.iter().map(|step| step.unwrap_or_default() / mean_square.sqrt()).collect(),
             known: steps.iter().map(|step| f64::from(u8::from(step.is_some()))).collect(),
         })

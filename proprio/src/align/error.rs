@@ -61,8 +61,14 @@ pub enum AlignmentError {
         /// Their correlations.
         correlations: [f64; 2],
     },
+    /// Pauses leave too little.
+    #[error("shares less than {least_s} s with the session at any offset, pauses of markers and sensors left out")]
+    Hidden {
+        /// What both must have seen, s.
+        least_s: f64,
+    },
     /// The arm rests nearly all the time.
-    #[error("the arm hardly moves in what both saw")]
+    #[error("the arm hardly moves where both saw it without a pause")]
     Still,
     /// The clocks run too differently.
     #[error("the clocks' rates differ by {ppm:.0} ppm, expected at most {most_ppm}")]
@@ -94,6 +100,7 @@ impl AlignmentError {
             Self::NoBase => "put the marker where the camera sees it, or remove the base's columns",
             Self::BaseMoved { .. } => "fix base and camera, and record again",
             Self::TooShort { .. } => "record longer, and let the arm move",
+            Self::Hidden { .. } => "record longer, with the markers in sight and well lit",
             Self::TooLong { .. } => "remove rows whose time is wrong, or cut the recording",
             Self::Unrelated { .. } => {
                 "check that both are of the same run, that they overlap by a minute, and the order of the markers"

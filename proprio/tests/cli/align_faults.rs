@@ -121,7 +121,16 @@ fn an_arm_at_rest_is_refused() {
             recording.session.map(&format!("imu{i}_deg"), |_, _| "10".to_owned());
         }
     });
-    assert!(error.starts_with("camera.csv: has no motion in common"), "{error}");
+    assert_eq!(error, "camera.csv: the arm hardly moves where both saw it without a pause");
+}
+
+#[test]
+fn markers_that_are_hidden_most_of_the_time_are_refused() {
+    let error = refused(|recording| {
+        // 4.5 s in sight, half a second hidden: a step takes four seconds.
+        recording.keep_frames(|time_s| time_s % 5.0 < 4.5);
+    });
+    assert!(error.starts_with("camera.csv: shares less than 60 s with the session at any offset"), "{error}");
 }
 
 #[test]
