@@ -23,6 +23,8 @@ pub struct Cli {
 
 #[derive(Debug, Subcommand)]
 pub enum Command {
+    /// Give a session the truth that a camera saw by its own clock
+    Align(Align),
     /// Make a table of a session with camera truth
     Calibrate(Calibrate),
     /// Tune the filters of a table on sessions with truth; Ctrl-C keeps the best so far
@@ -35,6 +37,21 @@ pub enum Command {
     Simulate(Simulate),
     /// Print a completion script for a shell
     Completions(Completions),
+}
+
+#[derive(Debug, Args)]
+pub struct Align {
+    /// Session without truth, as it was recorded
+    pub session: PathBuf,
+    /// What the camera saw: poses of the markers, a row a frame
+    #[arg(long, value_name = "CAMERA.csv")]
+    pub camera: PathBuf,
+    /// Arm description, or table
+    #[arg(long, value_name = "ARM.toml")]
+    pub arm: PathBuf,
+    /// Session with truth to write
+    #[arg(short, long, value_name = "ALIGNED.csv")]
+    pub output: PathBuf,
 }
 
 #[derive(Debug, Args)]
@@ -117,6 +134,9 @@ pub struct Simulate {
     /// Form of the IMU readings
     #[arg(long, value_enum, default_value_t = ImuColumns::Deg)]
     pub imu: ImuColumns,
+    /// Write the truth as a camera above the arm sees it, into a file of its own and by its own clock
+    #[arg(long, value_name = "CAMERA.csv")]
+    pub camera: Option<PathBuf>,
     /// Session to write
     #[arg(short, long, value_name = "SESSION.csv")]
     pub output: PathBuf,

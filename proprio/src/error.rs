@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use calibration_tables::FileError;
 
+use crate::align::AlignmentError;
 use crate::calibrate::CalibrationError;
 use crate::session::SessionError;
 use crate::tune::TuningError;
@@ -38,6 +39,14 @@ pub enum Error {
         path: PathBuf,
         /// What is wrong with it.
         source: TuningError,
+    },
+    /// A camera's file and a session cannot be brought together.
+    #[error("{}: {source}", path.display())]
+    Alignment {
+        /// The file that is to blame, the camera's where it is both.
+        path: PathBuf,
+        /// What is wrong.
+        source: AlignmentError,
     },
     /// A file cannot be written.
     #[error("{}: cannot be written: {source}", path.display())]
@@ -76,6 +85,7 @@ impl Error {
             Self::Table { source, .. } => source.remedy().to_owned(),
             Self::Calibration { source, .. } => source.remedy(),
             Self::Tuning { source, .. } => source.remedy().to_owned(),
+            Self::Alignment { source, .. } => source.remedy().to_owned(),
             Self::Output { .. } => "choose a folder that exists, can be written to and has room".to_owned(),
             Self::Overwrite(_) | Self::OutputTwice(_) => "give the output another name".to_owned(),
             Self::Stdout(_) => "write to a place that has room, or use --out".to_owned(),

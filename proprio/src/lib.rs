@@ -19,6 +19,7 @@
 //! # Ok::<(), proprio::error::Error>(())
 //! ```
 
+pub mod align;
 pub mod calibrate;
 pub mod distances;
 pub mod error;

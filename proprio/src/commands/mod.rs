@@ -1,5 +1,6 @@
 //! One file a command.
 
+mod align;
 mod calibrate;
 mod completions;
 mod replay;
@@ -16,6 +17,7 @@ use crate::cli::Command;
 impl Command {
     pub fn run(self) -> Result<(), Error> {
         match self {
+            Self::Align(args) => align::run(&args),
             Self::Calibrate(args) => calibrate::run(&args),
             Self::Tune(args) => tune::run(&args),
             Self::Replay(args) => replay::run(&args),

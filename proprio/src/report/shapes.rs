@@ -7,7 +7,7 @@ use super::plot::{Axis, Colour, Figure, Marks, Panel, Series, Size, extent, padd
 use super::thin::Thinned;
 use crate::replay::Outcome;
 use crate::score::{Score, tip_errors_m};
-use crate::session::{Pose, Row};
+use crate::session::{Row, Truth};
 
 /// Moments of a session that are kept at least.
 const MOMENTS: usize = 256;
@@ -32,7 +32,7 @@ struct Snapshot {
     /// Of the leading method.
     error_m: Option<f64>,
     shapes: [Vec<Option<End>>; Method::ALL.len()],
-    truth: [Option<Pose>; MAX_SEGMENTS],
+    truth: [Option<Truth>; MAX_SEGMENTS],
 }
 
 /// A segment's end.
@@ -144,7 +144,7 @@ impl Snapshot {
         let known = self.truth.iter().take(lengths_m.len());
         let places: Vec<(f64, f64)> =
             known.clone().flatten().map(|pose| (rounded(pose.x_m * 1e3), rounded(pose.y_m * 1e3))).collect();
-        let end = |pose: &Pose| Some(End { x_m: pose.x_m, y_m: pose.y_m, heading_rad: pose.heading_rad? });
+        let end = |pose: &Truth| Some(End { x_m: pose.x_m, y_m: pose.y_m, heading_rad: pose.heading_rad? });
         let points = curve(known.map(|pose| pose.as_ref().and_then(end)), lengths_m);
         let mut series = Vec::new();
         if points.len() > 1 {

@@ -50,6 +50,9 @@ pub enum Problem {
         /// Segments of the arm.
         segments: usize,
     },
+    /// A session that is to get truth has some.
+    #[error("column {0} is there already, expected a session without truth")]
+    HasTruth(String),
     /// A row has too few or too many cells.
     #[error("the row has {found} cells, the header {expected}")]
     RowLength {
@@ -82,6 +85,9 @@ pub enum Problem {
     /// A time that does not fit.
     #[error("time {0} s, expected 0 s to 100 years")]
     Time(String),
+    /// A camera's time that does not fit.
+    #[error("time {0} s, expected one within 100 years of 0")]
+    Clock(String),
     /// Time goes backwards.
     #[error("time goes backwards, from {from_s} s to {to_s} s")]
     Backwards {
@@ -118,7 +124,8 @@ impl Problem {
             Self::RowLength { .. } => {
                 "the file was cut or edited, or has decimal commas: remove the row, copy the file again, or use points"
             }
-            Self::NoTime | Self::Time(_) => "give every row its time in seconds",
+            Self::HasTruth(_) => "take the session as it was recorded, or use it as it is: it is aligned",
+            Self::NoTime | Self::Time(_) | Self::Clock(_) => "give every row its time in seconds",
             Self::NotANumber(_) => "write numbers with a decimal point, and leave the cell of a missing reading empty",
             Self::NotFinite(_) => "leave the cell empty",
             Self::Counts(_) => "write raw ADC counts, and leave the cell of a missing reading empty",

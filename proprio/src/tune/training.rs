@@ -9,7 +9,7 @@ use crate::calibrate::{MISFIT_PERCENT, truth_misfit};
 use crate::error::Error;
 use crate::progress::Progress;
 use crate::replay::{HostEstimator, NamedTable};
-use crate::session::{Needs, Pose, SessionReader};
+use crate::session::{Needs, SessionReader, Truth};
 
 /// One in so many samples is held back, those at the end.
 const HELD_BACK: usize = 5;
@@ -23,7 +23,7 @@ pub(super) struct Measured {
     pub imu_c: Option<f64>,
     /// θ_bend, rad.
     pub bend: Option<f64>,
-    pub truth: Option<Pose>,
+    pub truth: Option<Truth>,
 }
 
 /// One session.
