@@ -214,7 +214,7 @@ fn bad_cells_of_the_camera_are_named_with_their_line_and_column() {
     let cases = [
         ("truth2_x_mm", "left", "\"left\" is not a number"),
         ("truth2_x_mm", "NaN", "NaN is not finite; a missing reading is an empty cell"),
-        ("truth5_heading_deg", "", "the truth has an empty part, expected x, y and heading or none"),
+        ("truth5_heading_deg", "", "the truth has an empty part, expected all of its cells or none"),
         ("base_y_mm", "1e12", "1e12 is out of range, expected at most 100 km or 16 000 turns"),
         ("time_s", "", "the cell is empty, expected a time"),
         ("time_s", "1e10", "time 1e10 s, expected one within 100 years of 0"),

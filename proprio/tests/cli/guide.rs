@@ -28,7 +28,7 @@ fn the_rehearsal_runs_and_prints_what_the_guide_says() {
         printed.push_str(&folder.done(&args).stdout);
         commands.push(args[0].to_owned());
     }
-    for command in ["simulate", "align", "calibrate", "replay"] {
+    for command in ["simulate", "align", "calibrate", "tune", "replay", "report"] {
         assert!(commands.iter().any(|run| run == command), "{command} is part of the way: {commands:?}");
     }
     let said: Vec<&str> = blocks(section, "text").into_iter().flat_map(str::lines).collect();

@@ -185,6 +185,6 @@ fn the_camera_gives_30_frames_a_second_less_3_percent_in_order() {
 fn session_and_camera_are_two_files() {
     let args = ["simulate", "--scenario", "1", "--seconds", "1", "--seed", "1", "-o", "a.csv", "--camera"];
     let folder = Folder::new();
-    assert!(folder.refused(&[&args[..], &["a.csv"]].concat()).starts_with("a.csv: is the name of two outputs"));
+    assert!(folder.refused(&[&args[..], &["a.csv"]].concat()).starts_with("a.csv: cannot hold two outputs"));
     assert!(folder.refused(&[&args[..], &["none/b.csv"]].concat()).starts_with("none/b.csv: cannot be written"));
 }
