@@ -9,6 +9,7 @@ use toml_edit::Item;
 
 use crate::drift::DriftKeys;
 use crate::place::{line_and_column, line_of};
+use crate::tuning::TuningKeys;
 
 /// The `format` that this crate reads and writes.
 const FORMAT: u32 = 1;
@@ -38,6 +39,9 @@ pub struct ArmFile {
     /// Which correction takes out the IMUs' drift; `None`: the anchor.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub drift: Option<DriftKeys>,
+    /// How the filters were tuned, where they were.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tuning: Option<TuningKeys>,
     /// The segments from the base to the tip.
     #[serde(rename = "segment")]
     pub segments: Vec<SegmentKeys>,

@@ -5,8 +5,10 @@ use std::path::PathBuf;
 
 use calibration_tables::FileError;
 
+use crate::align::AlignmentError;
 use crate::calibrate::CalibrationError;
 use crate::session::SessionError;
+use crate::tune::TuningError;
 
 /// Why a command stopped.
 #[derive(Debug, thiserror::Error)]
@@ -30,6 +32,22 @@ pub enum Error {
         /// What is wrong with it.
         source: CalibrationError,
     },
+    /// Filters cannot be tuned on a session, or in a table.
+    #[error("{}: {source}", path.display())]
+    Tuning {
+        /// The session or the table.
+        path: PathBuf,
+        /// What is wrong with it.
+        source: TuningError,
+    },
+    /// A camera's file and a session cannot be brought together.
+    #[error("{}: {source}", path.display())]
+    Alignment {
+        /// The file that is to blame, the camera's where it is both.
+        path: PathBuf,
+        /// What is wrong.
+        source: AlignmentError,
+    },
     /// A file cannot be written.
     #[error("{}: cannot be written: {source}", path.display())]
     Output {
@@ -41,6 +59,9 @@ pub enum Error {
     /// An output that would replace its own input.
     #[error("{}: is read by this command and cannot be its output as well", .0.display())]
     Overwrite(PathBuf),
+    /// Two outputs of one name.
+    #[error("{}: cannot hold two outputs of this command", .0.display())]
+    OutputTwice(PathBuf),
     /// Standard output cannot be written.
     #[error("standard output cannot be written: {0}")]
     Stdout(io::Error),
@@ -63,8 +84,10 @@ impl Error {
             Self::Session(error) => error.problem.remedy().to_owned(),
             Self::Table { source, .. } => source.remedy().to_owned(),
             Self::Calibration { source, .. } => source.remedy(),
+            Self::Tuning { source, .. } => source.remedy().to_owned(),
+            Self::Alignment { source, .. } => source.remedy().to_owned(),
             Self::Output { .. } => "choose a folder that exists, can be written to and has room".to_owned(),
-            Self::Overwrite(_) => "give the output another name".to_owned(),
+            Self::Overwrite(_) | Self::OutputTwice(_) => "give the output another name".to_owned(),
             Self::Stdout(_) => "write to a place that has room, or use --out".to_owned(),
             Self::OneSession(_) => "replay the sessions one by one".to_owned(),
             Self::Rate(_) | Self::Seconds(_) => "give a value in this range".to_owned(),

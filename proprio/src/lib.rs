@@ -1,4 +1,4 @@
-//! The host side of `proprio`: sessions, calibration, replay and simulation.
+//! The host side of `proprio`: sessions, calibration, replay, reports and simulation.
 //!
 //! The command-line tool is a thin layer over these modules; the tests and benchmarks of the workspace use them as well.
 //!
@@ -19,9 +19,13 @@
 //! # Ok::<(), proprio::error::Error>(())
 //! ```
 
+pub mod align;
 pub mod calibrate;
+pub mod distances;
 pub mod error;
 pub mod estimates;
+pub mod figures;
+pub mod interrupt;
 pub mod output;
 pub mod progress;
 pub mod replay;
@@ -29,3 +33,4 @@ pub mod report;
 pub mod score;
 pub mod session;
 pub mod simulate;
+pub mod tune;

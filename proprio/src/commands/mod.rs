@@ -1,9 +1,12 @@
 //! One file a command.
 
+mod align;
 mod calibrate;
 mod completions;
 mod replay;
+mod report;
 mod simulate;
+mod tune;
 
 use std::io::{self, Write};
 
@@ -14,8 +17,11 @@ use crate::cli::Command;
 impl Command {
     pub fn run(self) -> Result<(), Error> {
         match self {
+            Self::Align(args) => align::run(&args),
             Self::Calibrate(args) => calibrate::run(&args),
+            Self::Tune(args) => tune::run(&args),
             Self::Replay(args) => replay::run(&args),
+            Self::Report(args) => report::run(&args),
             Self::Simulate(args) => simulate::run(&args),
             Self::Completions(args) => completions::run(&args),
         }

@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 use estimator_core::{Q, Scalar, saturations};
 use proprio::error::Error;
 use proprio::estimates::EstimateWriter;
+use proprio::figures::{AllFigures, ByMethod, SessionFigures};
 use proprio::output::OutputFile;
 use proprio::replay::{Extent, NamedTable, replay};
-use proprio::report::{Methods, Report, SessionReport};
 use proprio::score::Score;
 use proprio::session::LAST_LINE;
 
@@ -22,7 +22,7 @@ pub fn run(args: &Replay) -> Result<(), Error> {
     let inputs: Vec<&Path> = args.sessions.iter().map(PathBuf::as_path).chain([table.path]).collect();
     let out = args.out.as_deref().map(|out| OutputFile::create(out, &inputs)).transpose()?;
     let mut out = out.map(|file| EstimateWriter::new(file, &table.file)).transpose()?;
-    let report = if args.float {
+    let figures = if args.float {
         replay_all::<f64>(&args.sessions, &table, out.as_mut())?
     } else {
         replay_all::<Q>(&args.sessions, &table, out.as_mut())?
@@ -34,9 +34,9 @@ pub fn run(args: &Replay) -> Result<(), Error> {
         )),
     }
     let text = if args.json {
-        serde_json::to_string(&report).expect("numbers and names have a form in JSON") + "\n"
+        serde_json::to_string(&figures).expect("numbers and names have a form in JSON") + "\n"
     } else {
-        tables::replay(&report)
+        tables::replay(&figures)
     };
     // The file gets its name last, so that a command that fails leaves none.
     super::print(&text)?;
@@ -47,10 +47,10 @@ fn replay_all<S: Scalar>(
     sessions: &[PathBuf],
     table: &NamedTable,
     mut out: Option<&mut EstimateWriter>,
-) -> Result<Report, Error> {
+) -> Result<AllFigures, Error> {
     let length_mm = table.file.length_mm();
     let mut all = Score::new(length_mm);
-    let mut reports = Vec::new();
+    let mut each = Vec::new();
     for path in sessions {
         let mut score = Score::new(length_mm);
         let Extent { samples, seconds, ends_with_line } = replay::<S>(path, table, |row, outcome| {
@@ -61,8 +61,8 @@ fn replay_all<S: Scalar>(
             super::warn(&format_args!("{}: {LAST_LINE}", path.display()));
         }
         all.append(&score);
-        let figures = Methods { methods: score.figures() };
-        reports.push(SessionReport { path: path.display().to_string(), samples, seconds, figures });
+        let figures = ByMethod { methods: score.figures() };
+        each.push(SessionFigures { path: path.display().to_string(), samples, seconds, figures });
     }
-    Ok(Report { sessions: reports, all: Methods { methods: all.figures() }, length_mm })
+    Ok(AllFigures { sessions: each, all: ByMethod { methods: all.figures() }, length_mm })
 }

@@ -1,7 +1,9 @@
 //! Recorded sessions: CSV, a row a sample, units in the column names, an empty cell for a missing reading.
 
+mod camera;
 mod cell;
 mod columns;
+mod csv_file;
 mod error;
 mod reader;
 mod writer;
@@ -9,23 +11,35 @@ mod writer;
 use calibration_tables::{ArmFile, FileError, MAX_SEGMENTS};
 use estimator_core::Sample;
 
+pub use camera::{CameraReader, Frame};
 pub(crate) use columns::SENSOR_NAMES;
 pub use error::{Problem, SessionError};
 pub use reader::SessionReader;
-pub use writer::{ImuColumns, SessionWriter};
+pub use writer::{CameraWriter, ImuColumns, SessionWriter};
 
 /// What to say of a file that does not end with a line end.
 pub const LAST_LINE: &str = "the last line has no end; its last number may be cut";
 
-/// What the camera saw of one segment's end in {W}.
+/// What a camera sees of a marker.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pose {
     /// x, m.
     pub x_m: f64,
     /// y, m.
     pub y_m: f64,
-    /// Heading of the tangent, rad.
+    /// Heading, rad.
     pub heading_rad: f64,
+}
+
+/// Where one segment's end truly was, in {W}.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Truth {
+    /// x, m.
+    pub x_m: f64,
+    /// y, m.
+    pub y_m: f64,
+    /// Heading of the tangent, rad; `None` in a session that has places alone.
+    pub heading_rad: Option<f64>,
 }
 
 /// One row: the readings of one tick, and the truth where there is any.
@@ -33,16 +47,16 @@ pub struct Pose {
 pub struct Row {
     /// The readings.
     pub sample: Sample<MAX_SEGMENTS>,
-    /// The pose of each segment's end; `None` where the camera did not see it.
-    pub truth: [Option<Pose>; MAX_SEGMENTS],
+    /// Where each segment's end was; `None` where the camera did not see it.
+    pub truth: [Option<Truth>; MAX_SEGMENTS],
 }
 
 impl Row {
     /// True bend angle of segment `i` (from 0), rad: the difference of neighbouring headings, within ±π.
     #[must_use]
     pub fn true_theta(&self, i: usize) -> Option<f64> {
-        let before = if i == 0 { 0.0 } else { self.truth.get(i - 1)?.as_ref()?.heading_rad };
-        let turn = self.truth.get(i)?.as_ref()?.heading_rad - before;
+        let before = if i == 0 { 0.0 } else { self.truth.get(i - 1)?.as_ref()?.heading_rad? };
+        let turn = self.truth.get(i)?.as_ref()?.heading_rad? - before;
         Some(turn - std::f64::consts::TAU * (turn / std::f64::consts::TAU).round())
     }
 }

@@ -1,33 +1,25 @@
 //! Reads a session row by row, in memory that does not grow with its length.
 
 use std::collections::VecDeque;
-use std::fs::File;
-use std::io::{self, BufReader, Read, Seek, SeekFrom};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use calibration_tables::MAX_SEGMENTS;
-use csv::StringRecord;
 use estimator_core::{ImuReading, Sample};
 
-use super::columns::{Column, Columns, ImuColumn};
-use super::{Needs, Pose, Problem, Row, SessionError, cell};
+use super::columns::{Column, Columns, ImuColumn, is_truth};
+use super::csv_file::{CsvFile, first_empty};
+use super::{Needs, Problem, Row, SessionError, cell};
 
 /// Rows at the start whose time stamps tell the sample rate.
 const RATE_ROWS: usize = 1001;
 
 /// A session that is being read.
 pub struct SessionReader {
-    path: PathBuf,
-    size_bytes: u64,
-    names: Vec<String>,
+    file: CsvFile,
     columns: Columns,
-    csv: csv::Reader<File>,
-    record: StringRecord,
     last_time_us: u64,
     ahead: VecDeque<Row>,
     rate_hz: Option<f64>,
-    ends_with_line: bool,
-    is_regular_file: bool,
 }
 
 impl SessionReader {
@@ -36,35 +28,9 @@ impl SessionReader {
     /// # Errors
     /// Any [`SessionError`] of the header and the first rows.
     pub fn open(path: &Path, needs: &Needs) -> Result<Self, SessionError> {
-        let fail = |line, problem| SessionError { path: path.to_owned(), line, column: None, problem };
-        let mut file = File::open(path).map_err(|error| fail(None, Problem::Read(error)))?;
-        let metadata = file.metadata().map_err(|error| fail(None, Problem::Read(error)))?;
-        if metadata.is_dir() {
-            return Err(fail(None, Problem::Directory));
-        }
-        let is_regular_file = metadata.is_file();
-        let ends_with_line =
-            !is_regular_file || ends_with_line(&mut file).map_err(|error| fail(None, Problem::Read(error)))?;
-        let mut csv = csv::ReaderBuilder::new().buffer_capacity(1 << 16).from_reader(file);
-        let header = csv.headers().map_err(|error| csv_error(path, error))?;
-        if header.iter().all(str::is_empty) {
-            return Err(fail(None, Problem::NoHeader));
-        }
-        let names: Vec<String> = header.iter().map(|name| name.trim().to_owned()).collect();
-        let columns = Columns::find(&names, needs).map_err(|problem| fail(Some(1), problem))?;
-        let mut reader = Self {
-            path: path.to_owned(),
-            size_bytes: metadata.len(),
-            names,
-            columns,
-            csv,
-            record: StringRecord::new(),
-            last_time_us: 0,
-            ahead: VecDeque::new(),
-            rate_hz: None,
-            ends_with_line,
-            is_regular_file,
-        };
+        let file = CsvFile::open(path)?;
+        let columns = Columns::find(file.names(), needs).map_err(|problem| file.header_error(problem))?;
+        let mut reader = Self { file, columns, last_time_us: 0, ahead: VecDeque::new(), rate_hz: None };
         reader.look_ahead()?;
         Ok(reader)
     }
@@ -75,7 +41,7 @@ impl SessionReader {
             self.ahead.push_back(row);
         }
         if self.ahead.is_empty() {
-            return Err(self.error(None, None, Problem::NoSamples));
+            return Err(self.file.error(Problem::NoSamples));
         }
         let times = self.ahead.iter().map(|row| row.sample.time_us);
         self.rate_hz = rate_hz(times.clone().zip(times.skip(1)).map(|(from, to)| to - from).collect());
@@ -97,7 +63,7 @@ impl SessionReader {
     /// Whether the session can be read twice, which a pipe cannot.
     #[must_use]
     pub fn is_regular_file(&self) -> bool {
-        self.is_regular_file
+        self.file.is_regular_file()
     }
 
     /// Which bend sensors of each segment the session has.
@@ -105,16 +71,22 @@ impl SessionReader {
         self.columns.segments.iter().map(|segment| segment.bend.map(|column| column.is_some()))
     }
 
+    /// The first column of truth, if there is any.
+    #[must_use]
+    pub fn truth_column(&self) -> Option<&str> {
+        self.file.names().iter().map(String::as_str).find(|name| is_truth(name))
+    }
+
     /// Whether the last line is ended; if not, its last number may have been cut.
     #[must_use]
     pub fn ends_with_line(&self) -> bool {
-        self.ends_with_line
+        self.file.ends_with_line()
     }
 
     /// How far the file was read, and its size, in bytes.
     #[must_use]
     pub fn progress(&self) -> (u64, u64) {
-        (self.csv.position().byte(), self.size_bytes)
+        self.file.progress()
     }
 
     /// The next row, or `None` at the end.
@@ -129,60 +101,36 @@ impl SessionReader {
     }
 
     fn read_row(&mut self) -> Result<Option<Row>, SessionError> {
-        if !self.csv.read_record(&mut self.record).map_err(|error| csv_error(&self.path, error))? {
+        if !self.file.advance()? {
             return Ok(None);
         }
-        let time_us = self.cell(self.columns.time, cell::time_us)?;
+        let time_us = self.file.cell(self.columns.time, cell::time_us)?;
         if time_us < self.last_time_us {
             let (from_s, to_s) = (self.last_time_us as f64 / 1e6, time_us as f64 / 1e6);
-            return Err(self.cell_error(self.columns.time, Problem::Backwards { from_s, to_s }));
+            return Err(self.file.cell_error(self.columns.time, Problem::Backwards { from_s, to_s }));
         }
         self.last_time_us = time_us;
         let mut row = Row { sample: Sample::missing(time_us), truth: [None; MAX_SEGMENTS] };
         let sample = row.sample.bend.iter_mut().zip(&mut row.sample.imu).zip(&mut row.truth);
         for (segment, ((bend, imu), truth)) in self.columns.segments.iter().zip(sample) {
             for (counts, column) in bend.iter_mut().zip(segment.bend) {
-                *counts = column.map_or(Ok(None), |column| self.cell(column, cell::counts))?;
+                *counts = column.map_or(Ok(None), |column| self.file.cell(column, cell::counts))?;
             }
             *imu = self.imu(segment.imu)?;
-            *truth = segment.truth.map_or(Ok(None), |columns| self.pose(columns))?;
+            *truth = segment.truth.map_or(Ok(None), |columns| self.file.truth(columns))?;
         }
         Ok(Some(row))
     }
 
     fn imu(&self, column: ImuColumn) -> Result<Option<ImuReading>, SessionError> {
         match column {
-            ImuColumn::Heading(Column { index, factor }) => self.cell(index, |text| cell::heading(text, factor)),
+            ImuColumn::Heading(Column { index, factor }) => self.file.cell(index, |text| cell::heading(text, factor)),
             ImuColumn::Quaternion(columns) => {
-                let [w, x, y, z] = columns.map(|index| self.cell(index, cell::number));
+                let [w, x, y, z] = columns.map(|index| self.file.cell(index, cell::number));
                 let parts = [w?, x?, y?, z?];
-                cell::quaternion(parts).map_err(|problem| self.cell_error(columns[first_empty(&parts)], problem))
+                cell::quaternion(parts).map_err(|problem| self.file.cell_error(columns[first_empty(&parts)], problem))
             }
         }
-    }
-
-    fn pose(&self, columns: [Column; 3]) -> Result<Option<Pose>, SessionError> {
-        let value = |Column { index, factor }| self.cell(index, |text| cell::truth(text, factor));
-        let [x, y, heading] = columns.map(value);
-        let parts = [x?, y?, heading?];
-        match parts {
-            [None, None, None] => Ok(None),
-            [Some(x_m), Some(y_m), Some(heading_rad)] => Ok(Some(Pose { x_m, y_m, heading_rad })),
-            _ => Err(self.cell_error(columns[first_empty(&parts)].index, Problem::PartialTruth)),
-        }
-    }
-
-    fn cell<T>(&self, index: usize, parse: impl Fn(&str) -> Result<T, Problem>) -> Result<T, SessionError> {
-        parse(self.record.get(index).unwrap_or_default()).map_err(|problem| self.cell_error(index, problem))
-    }
-
-    fn cell_error(&self, index: usize, problem: Problem) -> SessionError {
-        let line = self.record.position().map(|position| line_at(&self.path, position));
-        self.error(line, self.names.get(index).cloned(), problem)
-    }
-
-    fn error(&self, line: Option<u64>, column: Option<String>, problem: Problem) -> SessionError {
-        SessionError { path: self.path.clone(), line, column, problem }
     }
 }
 
@@ -193,56 +141,4 @@ fn rate_hz(mut steps_us: Vec<u64>) -> Option<f64> {
     let without_gaps = steps_us.partition_point(|step| *step <= 2 * median);
     let sum = steps_us[..without_gaps].iter().sum::<u64>();
     (sum > 0).then(|| without_gaps as f64 * 1e6 / sum as f64)
-}
-
-/// The part to name: the first that is empty, else the first.
-fn first_empty(parts: &[Option<f64>]) -> usize {
-    parts.iter().position(Option::is_none).unwrap_or(0)
-}
-
-/// Looks at the last byte, and goes back to the first.
-fn ends_with_line(file: &mut File) -> io::Result<bool> {
-    let mut last = [b'\n'];
-    if file.seek(SeekFrom::End(-1)).is_ok() {
-        file.read_exact(&mut last)?;
-        file.rewind()?;
-    }
-    Ok(last == [b'\n'])
-}
-
-/// Line of a row, from 1. The parser counts a line end only when it reads on, which the `\r\n` and the empty lines
-/// before a row mislead; so the file is looked at again, where it can be: a pipe is gone once it is read.
-fn line_at(path: &Path, row: &csv::Position) -> u64 {
-    if !path.is_file() {
-        return row.line();
-    }
-    File::open(path).and_then(|file| lines_before(file, row.byte())).map_or(row.line(), |lines| lines + 1)
-}
-
-/// Line ends before a row that begins at `byte`, or behind the line ends there.
-fn lines_before(file: File, byte: u64) -> io::Result<u64> {
-    let mut lines = 0;
-    for (place, next) in (0..).zip(BufReader::new(file).bytes()) {
-        let next = next?;
-        if place >= byte && !matches!(next, b'\r' | b'\n') {
-            break;
-        }
-        lines += u64::from(next == b'\n');
-    }
-    Ok(lines)
-}
-
-fn csv_error(path: &Path, error: csv::Error) -> SessionError {
-    let mut line = error.position().map(|position| line_at(path, position));
-    let problem = match error.into_kind() {
-        csv::ErrorKind::Io(error) => {
-            line = None;
-            Problem::Read(error)
-        }
-        csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
-            Problem::RowLength { found: len, expected: expected_len }
-        }
-        _ => Problem::NotText,
-    };
-    SessionError { path: path.to_owned(), line, column: None, problem }
 }

@@ -1,6 +1,5 @@
 //! The figures of sessions, as `replay` prints them.
 
-/// The file.
 use estimator_core::Method;
 use serde::Serialize;
 use serde::ser::{SerializeMap, Serializer};
@@ -9,11 +8,11 @@ use crate::score::Figures;
 
 /// The figures of one or more sessions, in the form of `replay --json`.
 #[derive(Debug, Serialize)]
-pub struct Report {
+pub struct AllFigures {
     /// Each session by itself.
-    pub sessions: Vec<SessionReport>,
+    pub sessions: Vec<SessionFigures>,
     /// All of them together.
-    pub all: Methods,
+    pub all: ByMethod,
     /// Length of the arm, mm.
     #[serde(skip)]
     pub length_mm: f64,
@@ -21,7 +20,7 @@ pub struct Report {
 
 /// The figures of one session.
 #[derive(Debug, Serialize)]
-pub struct SessionReport {
+pub struct SessionFigures {
     /// The file.
     pub path: String,
     /// Number of samples.
@@ -30,12 +29,12 @@ pub struct SessionReport {
     pub seconds: f64,
     /// Its figures.
     #[serde(flatten)]
-    pub figures: Methods,
+    pub figures: ByMethod,
 }
 
 /// Figures by method.
 #[derive(Debug, Serialize)]
-pub struct Methods {
+pub struct ByMethod {
     /// Those of each of [`Method::ALL`].
     #[serde(serialize_with = "by_name")]
     pub methods: [Figures; Method::ALL.len()],

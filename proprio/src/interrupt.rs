@@ -1,0 +1,38 @@
+//! Ctrl-C: the program ends at once, but for work that can end early and has something to show for it.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+
+static IS_HEEDED: AtomicBool = AtomicBool::new(false);
+static IS_REQUESTED: AtomicBool = AtomicBool::new(false);
+
+/// While this lives, the first interrupt asks its owner to come to an end, and only a second one ends the program.
+#[derive(Debug)]
+pub struct Heed(());
+
+impl Heed {
+    /// From now on interrupts are heeded.
+    #[must_use]
+    pub fn interrupts() -> Self {
+        IS_REQUESTED.store(false, Ordering::SeqCst);
+        IS_HEEDED.store(true, Ordering::SeqCst);
+        Self(())
+    }
+
+    /// Whether there was one.
+    #[must_use]
+    pub fn is_requested(&self) -> bool {
+        IS_REQUESTED.load(Ordering::SeqCst)
+    }
+}
+
+impl Drop for Heed {
+    fn drop(&mut self) {
+        IS_HEEDED.store(false, Ordering::SeqCst);
+    }
+}
+
+/// Takes an interrupt, for the program's handler. Whether somebody heeds it; if not, the program is to end.
+#[must_use]
+pub fn is_heeded() -> bool {
+    IS_HEEDED.load(Ordering::SeqCst) && !IS_REQUESTED.swap(true, Ordering::SeqCst)
+}
