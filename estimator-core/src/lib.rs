@@ -38,7 +38,6 @@
 mod anchor;
 mod angle;
 mod bend;
-mod contact;
 mod drift;
 mod estimator;
 mod filter;
@@ -52,7 +51,6 @@ mod q;
 mod sample;
 mod scalar;
 mod table;
-mod uncertainty;
 
 pub use anchor::{Anchor, AnchorRule, Pace, Slot};
 pub use angle::{Angle, Phase, Turns};
@@ -68,4 +66,3 @@ pub use q::Q;
 pub use sample::{ImuReading, SENSORS_PER_SEGMENT, Sample};
 pub use scalar::{Constant, Scalar};
 pub use table::{OffsetAt, Segment, Table, TableError};
-pub use uncertainty::{Covariance, SCALE, Spread};

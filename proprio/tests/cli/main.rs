@@ -13,6 +13,7 @@ mod estimates;
 mod figures;
 mod guide;
 mod missing_readings;
+mod observer;
 mod output_files;
 mod recordings;
 mod report;
