@@ -45,10 +45,10 @@ fn fixed_point_and_floats_agree_on_the_drift() {
     let args = ["replay", "session.csv", "--table", "observer.toml", "--out"];
     folder.done(&[&args[..], &["fixed.csv"]].concat());
     folder.done(&[&args[..], &["float.csv", "--float"]].concat());
-    let columns = columns(&folder);
     let [fixed, float] = ["fixed.csv", "float.csv"].map(|name| folder.csv(name));
+    let names = &fixed.names;
     for (fixed, float) in fixed.rows.iter().zip(&float.rows) {
-        for ((fixed, float), column) in fixed.iter().zip(float).zip(&columns) {
+        for ((fixed, float), column) in fixed.iter().zip(float).zip(names) {
             assert_eq!(fixed.is_empty(), float.is_empty(), "{column}");
             let difference = number(fixed) - number(float);
             // 1e-6 rad and 0.002 mm, and what rounding to six and five decimals adds.
@@ -56,12 +56,6 @@ fn fixed_point_and_floats_agree_on_the_drift() {
             assert!(difference.abs() < most, "{column}: {fixed} and {float}");
         }
     }
-}
-
-/// Names of the columns of the estimates.
-fn columns(folder: &Folder) -> Vec<String> {
-    let text = folder.read("fixed.csv");
-    text.lines().next().unwrap_or_default().split(',').map(str::to_owned).collect()
 }
 
 /// An empty cell is 0, as its counterpart must be empty too.
