@@ -41,7 +41,6 @@ pub fn tuning(record: &TuningKeys, time: Duration) -> String {
     let stopped = match record.stopped {
         Stopped::Converged => "converged",
         Stopped::Interrupted => "interrupted",
-        Stopped::Iterations => "not converged",
     };
     let each_s = time.as_secs_f64() / record.iterations.max(1) as f64;
     let (iterations, kept) = (record.iterations, record.kept);
