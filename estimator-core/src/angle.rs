@@ -59,11 +59,11 @@ impl Phase {
     #[inline]
     #[must_use]
     pub fn atan2(y: i64, x: i64) -> Option<Self> {
-        let (abs_y, abs_x) = (y.unsigned_abs(), x.unsigned_abs());
-        // Half of a unit quaternion's vector, in units of 2⁻⁶⁰, unless it is steep.
-        let (abs_y, abs_x) = match abs_y.wrapping_add(abs_x) >> 58 {
-            1..4 => ((abs_y >> 28) as u32, (abs_x >> 28) as u32),
-            _ => scaled(abs_y, abs_x)?,
+        // Half of a unit quaternion's vector, in units of 2⁻⁶⁰, unless it is steep. A unit less of what is negative is no error.
+        let [magnitude_y, magnitude_x] = [y, x].map(|value| (value ^ (value >> 63)) as u64);
+        let (abs_y, abs_x) = match (magnitude_y.wrapping_add(magnitude_x)) >> 58 {
+            1..4 => ((magnitude_y >> 28) as u32, (magnitude_x >> 28) as u32),
+            _ => scaled(y.unsigned_abs(), x.unsigned_abs())?,
         };
         // Fold the first quadrant on |angle| ≤ π/8 about 0, π/4 or π/2, where six terms of atan suffice.
         let (base, num, den) = if abs_y < times_tan_eighth(abs_x) {
@@ -183,23 +183,30 @@ impl Turns {
         self.0.unsigned_abs() > limit.0 as u64
     }
 
-    /// `self / count`, rounded towards zero, for `count` of 1 to 65 535; zero for a `count` of 0.
+    /// The angle under a mask of all ones, none under one of zeros.
+    #[inline]
+    pub(crate) fn masked(self, mask: i32) -> Self {
+        Self(self.0 & i64::from(mask))
+    }
+
+    /// `self / count`, rounded down, for `count` of 1 to 65 535; zero for a `count` of 0.
     ///
     /// Schoolbook division by 16-bit digits: the Cortex-M3 divides 32 bits in hardware, 64 bits it does not.
+    #[inline]
     #[must_use]
     pub fn mean_of(self, count: u16) -> Self {
         if count == 0 {
             return Self::ZERO;
         }
-        let divisor = u32::from(count);
-        let magnitude = self.0.unsigned_abs();
-        let (upper, lower) = ((magnitude >> 32) as u32, magnitude as u32);
-        let part = ((upper % divisor) << 16) | (lower >> 16);
+        let (divisor, upper, lower) = (i32::from(count), (self.0 >> 32) as i32, self.0 as u32);
+        // The only digit with a sign, rounded down.
+        let (first, rest) = (upper / divisor, upper % divisor);
+        let (first, rest) = (first + (rest >> 31), (rest + (divisor & (rest >> 31))) as u32);
+        let divisor = divisor as u32;
+        let part = (rest << 16) | (lower >> 16);
         let last = ((part % divisor) << 16) | (lower & 0xFFFF);
-        let quotient = (u64::from(upper / divisor) << 32) | u64::from(((part / divisor) << 16) | (last / divisor));
-        // The sign again, word by word.
-        let sign = self.0 >> 63;
-        Self((quotient as i64 ^ sign).wrapping_sub(sign))
+        let quotient = ((part / divisor) << 16) | (last / divisor);
+        Self((i64::from(first) << 32) | i64::from(quotient))
     }
 }
 
