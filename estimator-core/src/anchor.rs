@@ -102,19 +102,27 @@ impl<const W: usize> Anchor<W> {
     /// An anchor that has seen nothing.
     #[must_use]
     pub const fn new() -> Self {
-        Self { offset: None, mean: Mean::EMPTY, group: Mean::EMPTY, window: [Turns::ZERO; W], counts: [0; W] }
+        Self {
+            offset: None,
+            mean: Mean::EMPTY,
+            group: Mean::EMPTY,
+            window: [Turns::ZERO; W],
+            counts: [0; W],
+        }
     }
 
     /// Takes this sample's difference θ_imu,i − θ_bend,i, or `None` where one of the two is unknown.
     ///
     /// Every sample costs the same, whether it completes a value of the window or not.
+    #[inline]
+    pub fn push(&mut self, slot: Slot, difference: Option<Turns>) {
+        self.take(difference.unwrap_or_default(), u16::from(difference.is_some()), slot);
+    }
+
     #[inline(never)]
-    pub fn push(&mut self, Slot { oldest, complete }: Slot, difference: Option<Turns>) {
+    fn take(&mut self, sum: Turns, count: u16, Slot { oldest, complete }: Slot) {
         let Self { offset, mean, group, window, counts } = self;
-        if let Some(difference) = difference {
-            group.sum = group.sum + difference;
-            group.count += 1;
-        }
+        *group = Mean { sum: group.sum + sum, count: group.count + count };
         let k = usize::from(oldest);
         let (Some(place), Some(counts)) = (window.get_mut(k), counts.get_mut(k)) else { return };
         let newest = group.value();

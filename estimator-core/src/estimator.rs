@@ -242,18 +242,21 @@ fn bend_angle<S: Scalar>(
     maps: &[Option<BendMap<S>>; SENSORS_PER_SEGMENT],
     counts: [Option<u16>; SENSORS_PER_SEGMENT],
 ) -> (Option<S>, u8) {
-    let (mut sum, mut read) = (S::zero(), 0);
-    for (map, counts) in maps.iter().zip(counts) {
-        if let Some(angle) = map.as_ref().zip(counts).and_then(|(map, counts)| map.angle(counts)) {
-            sum += angle;
-            read += 1;
-        }
+    let ([map_a, map_b], [counts_a, counts_b]) = (maps, counts);
+    let Some(a) = read(map_a, counts_a) else {
+        let b = read(map_b, counts_b);
+        return (b, u8::from(b.is_some()));
+    };
+    match read(map_b, counts_b) {
+        Some(b) => (Some((a + b).half()), 2),
+        None => (Some(a), 1),
     }
-    match read {
-        0 => (None, 0),
-        1 => (Some(sum), 1),
-        _ => (Some(sum.half()), read),
-    }
+}
+
+#[expect(clippy::inline_always, reason = "measured")]
+#[inline(always)]
+fn read<S: Scalar>(map: &Option<BendMap<S>>, counts: Option<u16>) -> Option<S> {
+    map.as_ref()?.angle(counts?)
 }
 
 impl<S: Scalar, const W: usize> State<S, W> {
