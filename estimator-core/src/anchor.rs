@@ -86,7 +86,7 @@ impl Pace {
 #[derive(Debug, Clone, Copy)]
 struct Mean {
     sum: Turns,
-    count: u16,
+    count: i32,
 }
 
 impl Mean {
@@ -94,7 +94,7 @@ impl Mean {
 
     #[inline]
     fn value(self) -> Option<Turns> {
-        (self.count > 0).then(|| self.sum.mean_of(self.count))
+        (self.count != 0).then(|| self.sum.mean_of(self.count as u16))
     }
 }
 
@@ -116,22 +116,22 @@ impl<const W: usize> Anchor<W> {
     /// Every sample costs the same, whether it completes a value of the window or not.
     #[inline]
     pub fn push(&mut self, slot: Slot, difference: Option<Turns>) {
-        self.take(difference.unwrap_or_default(), u16::from(difference.is_some()), slot);
+        self.take(difference.unwrap_or_default(), i32::from(difference.is_some()), slot);
     }
 
     #[inline(never)]
-    fn take(&mut self, sum: Turns, count: u16, Slot { oldest, complete }: Slot) {
+    fn take(&mut self, sum: Turns, count: i32, Slot { oldest, complete }: Slot) {
         let Self { offset, mean, group, window, counts } = self;
-        *group = Mean { sum: group.sum + sum, count: group.count + count };
         let k = usize::from(oldest);
         let (Some(place), Some(counts)) = (window.get_mut(k), counts.get_mut(k)) else { return };
-        let newest = group.value();
+        let whole = Mean { sum: group.sum + sum, count: group.count + count };
+        let newest = whole.value();
         // What is not complete adds nothing, by masks, so that it costs the same.
         let more = (newest.unwrap_or_default() - *place).masked(complete);
         let more_counts = (i32::from(newest.is_some()) - i32::from(*counts)) & complete;
+        *group = Mean { sum: whole.sum.masked(!complete), count: whole.count & !complete };
         (*place, *counts) = (*place + more, (i32::from(*counts) + more_counts) as u8);
-        *group = Mean { sum: group.sum.masked(!complete), count: group.count & !complete as u16 };
-        *mean = Mean { sum: mean.sum + more, count: (i32::from(mean.count) + more_counts) as u16 };
+        *mean = Mean { sum: mean.sum + more, count: mean.count + more_counts };
         if let Some(mean) = mean.value() {
             *offset = Some(mean);
         }
