@@ -37,12 +37,11 @@ pub struct AnchorRule {
 /// assert_eq!(anchor.offset(), Some(Turns::from_bits(4)));
 /// ```
 #[derive(Debug, Clone, Copy)]
-#[repr(C)]
 pub struct Anchor<const W: usize> {
     offset: Option<Turns>,
     mean: Mean,
     group: Mean,
-    /// A value that is missing is zero and counts none.
+    /// The values; a missing one is zero, and its count is none.
     window: [Turns; W],
     counts: [u8; W],
 }
@@ -83,6 +82,7 @@ impl Pace {
     }
 }
 
+/// A mean of up to 65 535 values.
 #[derive(Debug, Clone, Copy)]
 struct Mean {
     sum: Turns,
@@ -102,13 +102,7 @@ impl<const W: usize> Anchor<W> {
     /// An anchor that has seen nothing.
     #[must_use]
     pub const fn new() -> Self {
-        Self {
-            offset: None,
-            mean: Mean::EMPTY,
-            group: Mean::EMPTY,
-            window: [Turns::ZERO; W],
-            counts: [0; W],
-        }
+        Self { offset: None, mean: Mean::EMPTY, group: Mean::EMPTY, window: [Turns::ZERO; W], counts: [0; W] }
     }
 
     /// Takes this sample's difference θ_imu,i − θ_bend,i, or `None` where one of the two is unknown.
@@ -119,6 +113,7 @@ impl<const W: usize> Anchor<W> {
         self.take(difference.unwrap_or_default(), i32::from(difference.is_some()), slot);
     }
 
+    /// Out of line, with all registers for itself.
     #[inline(never)]
     fn take(&mut self, sum: Turns, count: i32, Slot { oldest, complete }: Slot) {
         let Self { offset, mean, group, window, counts } = self;
@@ -126,7 +121,7 @@ impl<const W: usize> Anchor<W> {
         let (Some(place), Some(counts)) = (window.get_mut(k), counts.get_mut(k)) else { return };
         let whole = Mean { sum: group.sum + sum, count: group.count + count };
         let newest = whole.value();
-        // What is not complete adds nothing, by masks, so that it costs the same.
+        // What is not complete adds nothing: by masks, which cost the same.
         let more = (newest.unwrap_or_default() - *place).masked(complete);
         let more_counts = (i32::from(newest.is_some()) - i32::from(*counts)) & complete;
         *group = Mean { sum: whole.sum.masked(!complete), count: whole.count & !complete };

@@ -59,11 +59,11 @@ impl Phase {
     #[inline]
     #[must_use]
     pub fn atan2(y: i64, x: i64) -> Option<Self> {
-        // Half of a unit quaternion's vector, in units of 2⁻⁶⁰, unless it is steep. A unit less of what is negative is no error.
-        let [magnitude_y, magnitude_x] = [y, x].map(|value| (value ^ (value >> 63)) as u64);
-        let (abs_y, abs_x) = match (magnitude_y.wrapping_add(magnitude_x)) >> 58 {
-            1..4 => ((magnitude_y >> 28) as u32, (magnitude_x >> 28) as u32),
-            _ => scaled(y.unsigned_abs(), x.unsigned_abs())?,
+        let (abs_y, abs_x) = (y.unsigned_abs(), x.unsigned_abs());
+        // Half of a unit quaternion's vector, in units of 2⁻⁶⁰, unless it is steep.
+        let (abs_y, abs_x) = match abs_y.wrapping_add(abs_x) >> 58 {
+            1..4 => ((abs_y >> 28) as u32, (abs_x >> 28) as u32),
+            _ => scaled(abs_y, abs_x)?,
         };
         // Fold the first quadrant on |angle| ≤ π/8 about 0, π/4 or π/2, where six terms of atan suffice.
         let (base, num, den) = if abs_y < times_tan_eighth(abs_x) {

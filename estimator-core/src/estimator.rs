@@ -96,7 +96,7 @@ pub struct Estimator<'t, S, const N: usize, const W: usize> {
     fused: Shape<S, N>,
 }
 
-/// What is remembered of one segment. The anchor's long window comes last, so that all else is near.
+/// What is remembered of one segment, in this order: behind the anchor's long window a load would need its address first.
 #[derive(Debug, Clone)]
 #[repr(C)]
 struct State<S, const W: usize> {
@@ -167,7 +167,7 @@ impl<'t, S: Scalar, const N: usize, const W: usize> Estimator<'t, S, N, W> {
     pub fn step(&mut self, sample: &Sample<N>) -> Estimate<S, N> {
         let mut segments = Vec::new();
         self.take(sample, |state, thetas| {
-            let _ = segments.push(state.estimate(&thetas)); // There is room for all segments: `start` has checked.
+            let _ = segments.push(state.estimate(&thetas)); // There is room: `start` has checked.
         });
         Estimate { time_us: sample.time_us, segments }
     }
@@ -187,7 +187,7 @@ impl<'t, S: Scalar, const N: usize, const W: usize> Estimator<'t, S, N, W> {
         fused
     }
 
-    /// Takes one sample, segment by segment from the base to the tip, and gives each to `then`.
+    /// Takes one sample, segment by segment from the base to the tip, and tells `then` of each.
     #[inline]
     fn take(&mut self, sample: &Sample<N>, mut then: impl FnMut(&State<S, W>, Thetas<S>)) {
         let Self { table: Table { anchor: rule, .. }, has_bend_sensors, pace, states, .. } = self;
@@ -201,7 +201,7 @@ impl<'t, S: Scalar, const N: usize, const W: usize> Estimator<'t, S, N, W> {
             let [difference, zero] = state.heading.tangent().minus(before);
             state.anchor.push(slot, difference.zip(bend).map(|(imu, bend)| imu - bend.to_turns()));
             let imu_o = difference.zip(zero).map(|(imu, zero)| Angle::from(imu - zero));
-            // θ_imu,i − (offset_i − zero) is the difference less the offset, in which the tare is still.
+            // θ_imu,i = difference − zero, and offset_i = `offset` − zero: the tare is still in the anchor's values.
             let imu_c = difference.zip(zero).filter(|_| has_bend_sensors).map(|(imu, zero)| {
                 let exceeds = |offset: &Turns| (*offset - zero).exceeds(rule.threshold);
                 Angle::<S>::from(imu - state.anchor.offset().filter(exceeds).unwrap_or(zero))
@@ -237,26 +237,29 @@ fn all<T, const N: usize>(segments: impl Iterator<Item = T>) -> Vec<T, N> {
 }
 
 /// θ_bend,i, the mean of the segment's sensors that were read, and their number.
-#[inline]
+#[expect(clippy::inline_always, reason = "measured")]
+#[inline(always)]
 fn bend_angle<S: Scalar>(
     maps: &[Option<BendMap<S>>; SENSORS_PER_SEGMENT],
     counts: [Option<u16>; SENSORS_PER_SEGMENT],
 ) -> (Option<S>, u8) {
     let ([map_a, map_b], [counts_a, counts_b]) = (maps, counts);
-    let Some(a) = read(map_a, counts_a) else {
-        let b = read(map_b, counts_b);
+    // Branch by branch, so that no flags are kept where both are read.
+    let Some(a) = read(map_a.as_ref(), counts_a) else {
+        let b = read(map_b.as_ref(), counts_b);
         return (b, u8::from(b.is_some()));
     };
-    match read(map_b, counts_b) {
+    match read(map_b.as_ref(), counts_b) {
         Some(b) => (Some((a + b).half()), 2),
         None => (Some(a), 1),
     }
 }
 
+/// What one sensor says, where the segment has it and it was read.
 #[expect(clippy::inline_always, reason = "measured")]
 #[inline(always)]
-fn read<S: Scalar>(map: &Option<BendMap<S>>, counts: Option<u16>) -> Option<S> {
-    map.as_ref()?.angle(counts?)
+fn read<S: Scalar>(map: Option<&BendMap<S>>, counts: Option<u16>) -> Option<S> {
+    map?.angle(counts?)
 }
 
 impl<S: Scalar, const W: usize> State<S, W> {
@@ -273,21 +276,21 @@ impl<S: Scalar, const W: usize> State<S, W> {
         }
     }
 
-    /// KF_orient and KF_coord of one segment, with the angles that there are, without whole turns: those of a segment that
-    /// nothing anchors say nothing of its bend, and fixed point ends at 32 rad.
+    /// KF_orient and KF_coord, with the angles that there are; of θ_c without its whole turns, which say nothing of the bend
+    /// of a segment that nothing anchors, and fixed point ends at 32 rad. Out of line, with all registers for itself.
     #[inline(never)]
     fn fuse(&mut self, theta_c: Option<S>, theta_bend: Option<S>) {
-        // Mostly both are there, and then nothing is left of the choice between them.
+        // Mostly both are there, and there the compiler leaves out all choice between them.
         if theta_c.is_some() && theta_bend.is_some() {
             self.filter(theta_c, theta_bend);
         } else {
-            self.filter_what_there_is(theta_c, theta_bend);
+            self.filter_without(theta_c, theta_bend);
         }
     }
 
     #[cold]
     #[inline(never)]
-    fn filter_what_there_is(&mut self, theta_c: Option<S>, theta_bend: Option<S>) {
+    fn filter_without(&mut self, theta_c: Option<S>, theta_bend: Option<S>) {
         self.filter(theta_c, theta_bend);
     }
 

@@ -95,14 +95,14 @@ impl<S: Scalar> Gains<S> {
         if p < self.room { p + self.q } else { S::constant(LIMIT) }
     }
 
-    /// u and P of one sample's measurements. Out of line, as it has little to do with what is around it.
+    /// u and P after one sample's measurements. Out of line, with all registers for itself.
     #[inline(never)]
     fn measured(&self, p: S, weights: &Weights<S>) -> (S, S) {
         let ratio = self.predicted(p).quotient(weights.r, weights.h_squared);
         (ratio, ratio.bounded_product(weights.r))
     }
 
-    /// Those of the first measurements, as if P⁻ were without bounds.
+    /// Those after the first measurements, before which nothing is known: P⁻ is beyond all bounds.
     #[cold]
     #[inline(never)]
     fn begun(weights: &Weights<S>) -> (S, S) {

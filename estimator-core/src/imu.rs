@@ -25,11 +25,14 @@ pub struct Heading<S> {
     tare: Tare<S>,
 }
 
-/// Where one IMU points, and what to subtract from it.
+/// Where one IMU points.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Tangent {
+    /// Unwrapped, counted from anywhere; the newest that was read.
     heading: Turns,
+    /// What to subtract from it.
     zero: Turns,
+    /// In this tick.
     is_read: bool,
     is_tared: bool,
 }
@@ -69,6 +72,7 @@ impl<S: Scalar> Heading<S> {
             sin: Turns::ZERO,
             scalar: core::marker::PhantomData,
         };
+        // From a heading of zero on, the first reading is unwrapped to within ±180°.
         let tangent = Tangent { is_read: false, is_tared: tare_samples == 0, ..Tangent::BASE };
         Self { tangent, reference, tare }
     }

@@ -75,5 +75,5 @@ fn quaternion_heading(quaternion: &[i32; 4]) -> Option<Phase> {
         return None;
     }
     // Half of the formula's numerator and denominator, in units of 2⁻⁶⁰.
-    Phase::atan2(-(w * z + x * y), (1 << 59) - y2_z2 as i64)
+    Phase::atan2(w * z + x * y, (1 << 59) - y2_z2 as i64).map(|counter_clockwise| Phase::default() - counter_clockwise)
 }
