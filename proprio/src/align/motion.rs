@@ -94,7 +94,7 @@ impl Readings {
         for ((imu, bend), (imu_read, bend_read)) in
             self.imu.iter_mut().zip(&mut self.bend).zip(sample.imu.iter().zip(&sample.bend))
         {
-            if let Some(heading) = imu_read.and_then(ImuReading::heading) {
+            if let Some(heading) = imu_read.as_ref().and_then(ImuReading::heading) {
                 imu.push((time_s, heading.rad()));
             }
             for (sensor, counts) in bend.iter_mut().zip(bend_read) {

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use estimator_core::{Estimator, Pcc};
+use estimator_core::Estimator;
 
 use super::error::TuningError;
 use crate::calibrate::{MISFIT_PERCENT, truth_misfit};
@@ -46,7 +46,6 @@ impl Training {
         let baked = table.bake::<f64>(rate_hz)?;
         let baked = baked.table();
         let mut estimator: Box<HostEstimator<f64>> = Box::new(Estimator::new(&baked).expect("the file was checked"));
-        let pccs: Vec<Pcc<f64>> = baked.segments.iter().map(Pcc::new).collect();
 
         let mut progress = Progress::new(format!("reading {}", session.display()), reader.progress().1);
         let (mut measured, mut misfit, mut tips) = (Vec::new(), 0.0, 0.0);
@@ -55,10 +54,9 @@ impl Training {
                 (misfit, tips) = (misfit + distance * distance, tips + 1.0);
             }
             let estimate = estimator.step(&row.sample);
-            let segments = estimate.segments.iter().zip(&pccs).zip(row.truth);
-            measured.extend(segments.map(|((segment, pcc), truth)| {
-                let [imu_c, bend] =
-                    [segment.imu_c, segment.bend].map(|link| link.map(|link| pcc.within_a_turn(link).theta.rest));
+            measured.extend(estimate.segments.iter().zip(row.truth).map(|(segment, truth)| {
+                // Without whole turns, as the filters take them.
+                let [imu_c, bend] = [segment.imu_c, segment.bend].map(|link| link.map(|link| link.theta.rest));
                 Measured { imu_c, bend, truth }
             }));
             progress.set(reader.progress().0);
@@ -68,7 +66,7 @@ impl Training {
             rate_hz,
             ends_with_line: reader.ends_with_line(),
             misfit_percent: (misfit / f64::max(tips, 1.0)).sqrt() * 1e5 / table.file.length_mm(),
-            segments: pccs.len(),
+            segments: baked.segments.len(),
             measured,
         })
     }
