@@ -1,10 +1,13 @@
 //! What can be typed.
 
+mod link;
+
 use std::path::PathBuf;
 
 use clap::builder::Styles;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
+pub use link::{LinkArgs, Ports, Status};
 use proprio::session::ImuColumns;
 
 /// Colours of help and errors; off where stderr is no terminal or NO_COLOR is set.
@@ -29,6 +32,10 @@ pub enum Command {
     Replay(Replay),
     /// Record a session of the simulated arm
     Simulate(Simulate),
+    /// List the serial ports, and which of them a Due is on
+    Ports(Ports),
+    /// Say how a board is: versions, sensors, rates, losses
+    Status(Status),
     /// Print a completion script for a shell
     Completions(Completions),
 }

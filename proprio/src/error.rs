@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use calibration_tables::FileError;
 
 use crate::calibrate::CalibrationError;
+use crate::link::LinkError;
 use crate::session::SessionError;
 
 /// Why a command stopped.
@@ -30,6 +31,9 @@ pub enum Error {
         /// What is wrong with it.
         source: CalibrationError,
     },
+    /// A board cannot be reached.
+    #[error(transparent)]
+    Link(#[from] LinkError),
     /// A file cannot be written.
     #[error("{}: cannot be written: {source}", path.display())]
     Output {
@@ -63,6 +67,7 @@ impl Error {
             Self::Session(error) => error.problem.remedy().to_owned(),
             Self::Table { source, .. } => source.remedy().to_owned(),
             Self::Calibration { source, .. } => source.remedy(),
+            Self::Link(error) => error.remedy().to_owned(),
             Self::Output { .. } => "choose a folder that exists, can be written to and has room".to_owned(),
             Self::Overwrite(_) => "give the output another name".to_owned(),
             Self::Stdout(_) => "write to a place that has room, or use --out".to_owned(),

@@ -1,4 +1,4 @@
-//! The host side of `proprio`: sessions, calibration, replay and simulation.
+//! The host side of `proprio`: sessions, calibration, replay, simulation, and the link to a board.
 //!
 //! The command-line tool is a thin layer over these modules; the tests and benchmarks of the workspace use them as well.
 //!
@@ -22,6 +22,8 @@
 pub mod calibrate;
 pub mod error;
 pub mod estimates;
+pub mod interrupt;
+pub mod link;
 pub mod output;
 pub mod progress;
 pub mod replay;
@@ -29,3 +31,4 @@ pub mod report;
 pub mod score;
 pub mod session;
 pub mod simulate;
+pub mod status;

@@ -2,8 +2,11 @@
 
 mod calibrate;
 mod completions;
+mod link;
+mod ports;
 mod replay;
 mod simulate;
+mod status;
 
 use std::io::{self, Write};
 
@@ -17,6 +20,8 @@ impl Command {
             Self::Calibrate(args) => calibrate::run(&args),
             Self::Replay(args) => replay::run(&args),
             Self::Simulate(args) => simulate::run(&args),
+            Self::Ports(args) => ports::run(&args),
+            Self::Status(args) => status::run(&args),
             Self::Completions(args) => completions::run(&args),
         }
     }
@@ -29,6 +34,11 @@ fn print(text: &str) -> Result<(), Error> {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(Error::Stdout(error)),
         _ => Ok(()),
     }
+}
+
+/// A report as JSON, on one line.
+fn json(report: &impl serde::Serialize) -> String {
+    serde_json::to_string(report).expect("numbers and names have a form in JSON") + "\n"
 }
 
 /// Writes a line to standard error, if that can be written at all.

@@ -33,11 +33,7 @@ pub fn run(args: &Replay) -> Result<(), Error> {
             "fixed point saturated {times} times: a reading or the table is out of range; compare with --float"
         )),
     }
-    let text = if args.json {
-        serde_json::to_string(&report).expect("numbers and names have a form in JSON") + "\n"
-    } else {
-        tables::replay(&report)
-    };
+    let text = if args.json { super::json(&report) } else { tables::replay(&report) };
     // The file gets its name last, so that a command that fails leaves none.
     super::print(&text)?;
     out.map_or(Ok(()), EstimateWriter::finish)
