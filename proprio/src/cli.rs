@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use clap::builder::Styles;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
-pub use link::{LinkArgs, Ports, Status};
+pub use link::{Convert, LinkArgs, Ports, Record, Recover, Status};
 use proprio::session::ImuColumns;
 
 /// Colours of help and errors; off where stderr is no terminal or NO_COLOR is set.
@@ -36,6 +36,12 @@ pub enum Command {
     Ports(Ports),
     /// Say how a board is: versions, sensors, rates, losses
     Status(Status),
+    /// Record what a board says
+    Record(Record),
+    /// Turn a session into CSV, a recording or raw bytes
+    Convert(Convert),
+    /// Save what is whole of a recording that was cut
+    Recover(Recover),
     /// Print a completion script for a shell
     Completions(Completions),
 }

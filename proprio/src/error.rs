@@ -45,6 +45,15 @@ pub enum Error {
     /// An output that would replace its own input.
     #[error("{}: is read by this command and cannot be its output as well", .0.display())]
     Overwrite(PathBuf),
+    /// An output that would replace a file which cannot be made again.
+    #[error("{}: is there already, and a recording cannot be had again", .0.display())]
+    Exists(PathBuf),
+    /// A name that tells no kind of file.
+    #[error("{}: ends with none of .csv, .mcap and .bin, which tell what to write", .0.display())]
+    OutputKind(PathBuf),
+    /// A conversion to what the input is.
+    #[error("{}: is of this kind already", .0.display())]
+    SameKind(PathBuf),
     /// Standard output cannot be written.
     #[error("standard output cannot be written: {0}")]
     Stdout(io::Error),
@@ -69,7 +78,9 @@ impl Error {
             Self::Calibration { source, .. } => source.remedy(),
             Self::Link(error) => error.remedy().to_owned(),
             Self::Output { .. } => "choose a folder that exists, can be written to and has room".to_owned(),
-            Self::Overwrite(_) => "give the output another name".to_owned(),
+            Self::Overwrite(_) | Self::Exists(_) => "give the output another name".to_owned(),
+            Self::OutputKind(_) => "give the output one of these endings".to_owned(),
+            Self::SameKind(_) => "copy the file, or give the output another ending".to_owned(),
             Self::Stdout(_) => "write to a place that has room, or use --out".to_owned(),
             Self::OneSession(_) => "replay the sessions one by one".to_owned(),
             Self::Rate(_) | Self::Seconds(_) => "give a value in this range".to_owned(),

@@ -20,12 +20,14 @@
 //! ```
 
 pub mod calibrate;
+pub mod convert;
 pub mod error;
 pub mod estimates;
 pub mod interrupt;
 pub mod link;
 pub mod output;
 pub mod progress;
+pub mod recording;
 pub mod replay;
 pub mod report;
 pub mod score;

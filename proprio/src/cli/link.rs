@@ -46,3 +46,32 @@ pub struct Status {
     #[arg(long)]
     pub json: bool,
 }
+
+#[derive(Debug, Args)]
+pub struct Record {
+    #[command(flatten)]
+    pub link: LinkArgs,
+    /// Recording to write
+    #[arg(short, long, value_name = "FILE.mcap")]
+    pub output: PathBuf,
+    /// Duration, s [default: until Ctrl-C]
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
+    pub seconds: Option<f64>,
+}
+
+#[derive(Debug, Args)]
+pub struct Convert {
+    /// Session: CSV, recording or raw bytes (.bin)
+    pub input: PathBuf,
+    /// What to make of it: .csv, .mcap or .bin
+    pub output: PathBuf,
+}
+
+#[derive(Debug, Args)]
+pub struct Recover {
+    /// Recording that was cut
+    pub input: PathBuf,
+    /// Recording to write
+    #[arg(short, long, value_name = "WHOLE.mcap")]
+    pub output: PathBuf,
+}

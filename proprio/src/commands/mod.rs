@@ -2,8 +2,11 @@
 
 mod calibrate;
 mod completions;
+mod convert;
 mod link;
 mod ports;
+mod record;
+mod recover;
 mod replay;
 mod simulate;
 mod status;
@@ -22,6 +25,9 @@ impl Command {
             Self::Simulate(args) => simulate::run(&args),
             Self::Ports(args) => ports::run(&args),
             Self::Status(args) => status::run(&args),
+            Self::Record(args) => record::run(&args),
+            Self::Convert(args) => convert::run(&args),
+            Self::Recover(args) => recover::run(&args),
             Self::Completions(args) => completions::run(&args),
         }
     }

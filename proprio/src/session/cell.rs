@@ -51,6 +51,13 @@ pub(super) fn time_us(cell: &str) -> Result<u64, Problem> {
     }
 }
 
+/// The tare's number.
+pub(super) fn tare(cell: &str) -> Result<Option<u64>, Problem> {
+    let cell = cell.trim();
+    let number = |_| Problem::Tare(shown(cell));
+    if cell.is_empty() { Ok(None) } else { cell.parse().map(Some).map_err(number) }
+}
+
 /// A heading in units of `factor` rad. A whole turn is let pass: it is what 359.99999 is rounded to.
 pub(super) fn heading(cell: &str, factor: f64) -> Result<Option<ImuReading>, Problem> {
     let Some(value) = number(cell)? else { return Ok(None) };

@@ -35,13 +35,18 @@ pub(super) struct SegmentColumns {
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Columns {
     pub time: usize,
+    /// Number that changes where the estimator starts anew.
+    pub tare: Option<usize>,
     pub segments: Vec<SegmentColumns>,
 }
 
 /// Names of the sensors of a segment.
 pub(crate) const SENSOR_NAMES: [char; SENSORS_PER_SEGMENT] = ['a', 'b'];
 
-struct Header<'h> {
+/// The column of the tare's number.
+pub(crate) const TARE: &str = "tare";
+
+struct Places<'h> {
     places: HashMap<&'h str, usize>,
 }
 
@@ -58,7 +63,7 @@ impl Columns {
                 return Err(Problem::OtherArm { column: name.clone(), segment, segments });
             }
         }
-        let header = Header { places };
+        let header = Places { places };
         let time = header.required("time_s")?;
         let has_truth = needs.truth || (1..=needs.bend.len()).any(|i| header.truth(i).is_ok());
         let segment = |(i, sensors): (usize, &Option<usize>)| {
@@ -68,11 +73,12 @@ impl Columns {
                 truth: if has_truth { Some(header.truth(i + 1)?) } else { None },
             })
         };
-        Ok(Self { time, segments: needs.bend.iter().enumerate().map(segment).collect::<Result<_, _>>()? })
+        let tare = header.optional(TARE);
+        Ok(Self { time, tare, segments: needs.bend.iter().enumerate().map(segment).collect::<Result<_, _>>()? })
     }
 }
 
-impl Header<'_> {
+impl Places<'_> {
     fn optional(&self, name: &str) -> Option<usize> {
         self.places.get(name).copied()
     }
@@ -127,9 +133,9 @@ impl Header<'_> {
     }
 }
 
-/// The segment that a known column belongs to; 0 for the time, `None` for a column that is none of ours.
-fn segment_of(name: &str) -> Option<usize> {
-    if name == "time_s" {
+/// The segment that a known column belongs to; 0 for those of the whole arm, `None` for a column that is none of ours.
+pub(super) fn segment_of(name: &str) -> Option<usize> {
+    if name == "time_s" || name == TARE {
         return Some(0);
     }
     let (stem, rest) = name.split_once('_')?;

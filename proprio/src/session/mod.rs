@@ -1,17 +1,21 @@
-//! Recorded sessions: CSV, a row a sample, units in the column names, an empty cell for a missing reading.
+//! Recorded sessions: CSV, a row a sample, units in the column names, an empty cell for a missing reading; or a board's
+//! recording.
 
 mod cell;
 mod columns;
+mod csv;
 mod error;
+mod header;
 mod reader;
 mod writer;
 
 use calibration_tables::{ArmFile, FileError, MAX_SEGMENTS};
 use estimator_core::Sample;
 
-pub(crate) use columns::SENSOR_NAMES;
+pub(crate) use columns::{SENSOR_NAMES, TARE};
 pub use error::{Problem, SessionError};
-pub use reader::SessionReader;
+pub use header::Header;
+pub use reader::{Kind, SessionReader};
 pub use writer::{ImuColumns, SessionWriter};
 
 /// What to say of a file that does not end with a line end.
@@ -35,6 +39,21 @@ pub struct Row {
     pub sample: Sample<MAX_SEGMENTS>,
     /// The pose of each segment's end; `None` where the camera did not see it.
     pub truth: [Option<Pose>; MAX_SEGMENTS],
+    /// Whether the estimator starts anew before it.
+    pub starts: bool,
+    /// Where it is from a board's recording: what the board said of it.
+    pub board: Option<OnBoard>,
+}
+
+/// What a board said of one sample.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct OnBoard {
+    /// Number of the tick.
+    pub tick: u32,
+    /// Whether every sample since the estimator's start is in the recording, so that a replay must give the same.
+    pub complete: bool,
+    /// The board's estimate, where it was received.
+    pub estimate: Option<telemetry::Estimate>,
 }
 
 impl Row {

@@ -2,32 +2,65 @@
 
 use std::collections::VecDeque;
 use std::fs::File;
-use std::io::{self, BufReader, Read, Seek, SeekFrom};
+use std::io::{self, BufReader, Cursor, Read, Seek};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 
-use calibration_tables::MAX_SEGMENTS;
-use csv::StringRecord;
-use estimator_core::{ImuReading, Sample};
+use telemetry::{Hello, SEGMENTS};
 
-use super::columns::{Column, Columns, ImuColumn};
-use super::{Needs, Pose, Problem, Row, SessionError, cell};
+use super::csv::{CsvRows, ends_with_line};
+use super::{Needs, Problem, Row, SessionError};
+use crate::recording::{Item, RawReader, ReadError, Reader, RecordedRows, is_recording};
 
 /// Rows at the start whose time stamps tell the sample rate.
 const RATE_ROWS: usize = 1001;
 
-/// A session that is being read.
+/// Bytes at the start that tell what a file is.
+pub(super) const BEGIN: u64 = 8;
+
+/// A session that is being read, of any [`Kind`].
 pub struct SessionReader {
     path: PathBuf,
     size_bytes: u64,
-    names: Vec<String>,
-    columns: Columns,
-    csv: csv::Reader<File>,
-    record: StringRecord,
-    last_time_us: u64,
+    rows: Rows,
     ahead: VecDeque<Row>,
     rate_hz: Option<f64>,
     ends_with_line: bool,
     is_regular_file: bool,
+    bend_sensors: Vec<[bool; 2]>,
+    kind: Kind,
+}
+
+/// What a file is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// Text, a row a sample.
+    Csv,
+    /// A board's recording.
+    Recording,
+    /// The bytes of a board as they came.
+    Raw,
+}
+
+impl Kind {
+    /// By its first bytes; raw bytes have no mark and are known by their name, `.bin`.
+    pub(super) fn of(path: &Path, begin: &[u8]) -> Self {
+        if is_recording(begin) {
+            Self::Recording
+        } else if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("bin")) {
+            Self::Raw
+        } else {
+            Self::Csv
+        }
+    }
+}
+
+type Items = Box<dyn Iterator<Item = Result<Item, ReadError>>>;
+
+enum Rows {
+    Csv(CsvRows),
+    Recorded(Box<RecordedRows<Items>>, Arc<AtomicU64>),
 }
 
 impl SessionReader {
@@ -36,50 +69,99 @@ impl SessionReader {
     /// # Errors
     /// Any [`SessionError`] of the header and the first rows.
     pub fn open(path: &Path, needs: &Needs) -> Result<Self, SessionError> {
-        let fail = |line, problem| SessionError { path: path.to_owned(), line, column: None, problem };
-        let mut file = File::open(path).map_err(|error| fail(None, Problem::Read(error)))?;
-        let metadata = file.metadata().map_err(|error| fail(None, Problem::Read(error)))?;
+        let fail = |problem| SessionError { path: path.to_owned(), line: None, column: None, problem };
+        let unreadable = |error| fail(Problem::Read(error));
+        let mut file = File::open(path).map_err(unreadable)?;
+        let metadata = file.metadata().map_err(unreadable)?;
         if metadata.is_dir() {
-            return Err(fail(None, Problem::Directory));
+            return Err(fail(Problem::Directory));
         }
         let is_regular_file = metadata.is_file();
-        let ends_with_line =
-            !is_regular_file || ends_with_line(&mut file).map_err(|error| fail(None, Problem::Read(error)))?;
-        let mut csv = csv::ReaderBuilder::new().buffer_capacity(1 << 16).from_reader(file);
-        let header = csv.headers().map_err(|error| csv_error(path, error))?;
-        if header.iter().all(str::is_empty) {
-            return Err(fail(None, Problem::NoHeader));
+        let mut begin = Vec::new();
+        file.by_ref().take(BEGIN).read_to_end(&mut begin).map_err(unreadable)?;
+        let kind = Kind::of(path, &begin);
+        let ends_with_line = kind != Kind::Csv || !is_regular_file || ends_with_line(&mut file).map_err(unreadable)?;
+        // A pipe cannot go back.
+        let source: Box<dyn Read> = if is_regular_file {
+            file.rewind().map_err(unreadable)?;
+            Box::new(file)
+        } else {
+            Box::new(Cursor::new(begin).chain(file))
+        };
+        let segments = needs.bend.len();
+        if kind != Kind::Csv && segments > SEGMENTS {
+            return Err(fail(Problem::RecordedSegments(segments)));
         }
-        let names: Vec<String> = header.iter().map(|name| name.trim().to_owned()).collect();
-        let columns = Columns::find(&names, needs).map_err(|problem| fail(Some(1), problem))?;
+        let position = Arc::new(AtomicU64::new(0));
+        let counted = |source| BufReader::with_capacity(1 << 16, Counted { source, position: Arc::clone(&position) });
+        let recorded = |items| Rows::Recorded(Box::new(RecordedRows::new(items)), Arc::clone(&position));
+        let rows = match kind {
+            Kind::Csv => Rows::Csv(CsvRows::new(path, source, needs)?),
+            Kind::Recording => recorded(Box::new(Reader::new(counted(source))) as Items),
+            Kind::Raw => recorded(Box::new(RawReader::new(counted(source))) as Items),
+        };
         let mut reader = Self {
             path: path.to_owned(),
             size_bytes: metadata.len(),
-            names,
-            columns,
-            csv,
-            record: StringRecord::new(),
-            last_time_us: 0,
+            bend_sensors: match &rows {
+                Rows::Csv(csv) => csv.bend_sensors(),
+                Rows::Recorded(..) => vec![[false; 2]; segments],
+            },
+            rows,
             ahead: VecDeque::new(),
             rate_hz: None,
             ends_with_line,
             is_regular_file,
+            kind,
         };
-        reader.look_ahead()?;
+        reader.look_ahead(needs)?;
         Ok(reader)
     }
 
-    fn look_ahead(&mut self) -> Result<(), SessionError> {
+    fn look_ahead(&mut self, needs: &Needs) -> Result<(), SessionError> {
         while self.ahead.len() < RATE_ROWS {
             let Some(row) = self.read_row()? else { break };
             self.ahead.push_back(row);
         }
         if self.ahead.is_empty() {
-            return Err(self.error(None, None, Problem::NoSamples));
+            return Err(self.error(Problem::NoSamples));
         }
         let times = self.ahead.iter().map(|row| row.sample.time_us);
         self.rate_hz = rate_hz(times.clone().zip(times.skip(1)).map(|(from, to)| to - from).collect());
+        if matches!(self.rows, Rows::Recorded(..)) {
+            // A board has no columns: the sensors are those that it has read at all.
+            for (i, present) in self.bend_sensors.iter_mut().enumerate() {
+                let reads = |place: usize| self.ahead.iter().any(|row| row.sample.bend[i][place].is_some());
+                *present = [reads(0), reads(1)];
+            }
+            if needs.truth && !self.has_truth() {
+                return Err(self.error(Problem::NoTruth));
+            }
+        }
         Ok(())
+    }
+
+    /// What the file is.
+    #[must_use]
+    pub fn kind(&self) -> Kind {
+        self.kind
+    }
+
+    /// Whether there is truth in the first rows.
+    #[must_use]
+    pub fn has_truth(&self) -> bool {
+        self.ahead.iter().any(|row| row.truth.iter().any(Option::is_some))
+    }
+
+    /// Segments from the base to the last one of which a sensor was read, or the truth seen, in the first rows.
+    #[must_use]
+    pub fn segments_read(&self) -> usize {
+        let is_read = |i: &usize| {
+            self.ahead.iter().any(|Row { sample, truth, .. }| {
+                sample.bend[*i].iter().any(Option::is_some) || sample.imu[*i].is_some() || truth[*i].is_some()
+            })
+        };
+        (0..self.bend_sensors.len()).rev().find(is_read).map_or(0, |last| last + 1)
     }
 
     /// Sample rate: that of the mean step of the first rows without gaps, for jitter and rounded time stamps; where an
@@ -102,7 +184,7 @@ impl SessionReader {
 
     /// Which bend sensors of each segment the session has.
     pub fn bend_sensors(&self) -> impl Iterator<Item = [bool; 2]> {
-        self.columns.segments.iter().map(|segment| segment.bend.map(|column| column.is_some()))
+        self.bend_sensors.iter().copied()
     }
 
     /// Whether the last line is ended; if not, its last number may have been cut.
@@ -114,7 +196,20 @@ impl SessionReader {
     /// How far the file was read, and its size, in bytes.
     #[must_use]
     pub fn progress(&self) -> (u64, u64) {
-        (self.csv.position().byte(), self.size_bytes)
+        let position = match &self.rows {
+            Rows::Csv(csv) => csv.position(),
+            Rows::Recorded(_, position) => position.load(Ordering::Relaxed),
+        };
+        (position, self.size_bytes)
+    }
+
+    /// Where it is from a board: its last `Hello` so far, if there was one.
+    #[must_use]
+    pub fn recorded(&self) -> Option<Option<&Hello>> {
+        match &self.rows {
+            Rows::Csv(_) => None,
+            Rows::Recorded(rows, _) => Some(rows.hello()),
+        }
     }
 
     /// The next row, or `None` at the end.
@@ -129,60 +224,29 @@ impl SessionReader {
     }
 
     fn read_row(&mut self) -> Result<Option<Row>, SessionError> {
-        if !self.csv.read_record(&mut self.record).map_err(|error| csv_error(&self.path, error))? {
-            return Ok(None);
-        }
-        let time_us = self.cell(self.columns.time, cell::time_us)?;
-        if time_us < self.last_time_us {
-            let (from_s, to_s) = (self.last_time_us as f64 / 1e6, time_us as f64 / 1e6);
-            return Err(self.cell_error(self.columns.time, Problem::Backwards { from_s, to_s }));
-        }
-        self.last_time_us = time_us;
-        let mut row = Row { sample: Sample::missing(time_us), truth: [None; MAX_SEGMENTS] };
-        let sample = row.sample.bend.iter_mut().zip(&mut row.sample.imu).zip(&mut row.truth);
-        for (segment, ((bend, imu), truth)) in self.columns.segments.iter().zip(sample) {
-            for (counts, column) in bend.iter_mut().zip(segment.bend) {
-                *counts = column.map_or(Ok(None), |column| self.cell(column, cell::counts))?;
-            }
-            *imu = self.imu(segment.imu)?;
-            *truth = segment.truth.map_or(Ok(None), |columns| self.pose(columns))?;
-        }
-        Ok(Some(row))
+        let row = match &mut self.rows {
+            Rows::Csv(csv) => return csv.next_row(),
+            Rows::Recorded(rows, _) => rows.next_row(),
+        };
+        row.map_err(|error| self.error(Problem::Recording(error)))
     }
 
-    fn imu(&self, column: ImuColumn) -> Result<Option<ImuReading>, SessionError> {
-        match column {
-            ImuColumn::Heading(Column { index, factor }) => self.cell(index, |text| cell::heading(text, factor)),
-            ImuColumn::Quaternion(columns) => {
-                let [w, x, y, z] = columns.map(|index| self.cell(index, cell::number));
-                let parts = [w?, x?, y?, z?];
-                cell::quaternion(parts).map_err(|problem| self.cell_error(columns[first_empty(&parts)], problem))
-            }
-        }
+    fn error(&self, problem: Problem) -> SessionError {
+        SessionError { path: self.path.clone(), line: None, column: None, problem }
     }
+}
 
-    fn pose(&self, columns: [Column; 3]) -> Result<Option<Pose>, SessionError> {
-        let value = |Column { index, factor }| self.cell(index, |text| cell::truth(text, factor));
-        let [x, y, heading] = columns.map(value);
-        let parts = [x?, y?, heading?];
-        match parts {
-            [None, None, None] => Ok(None),
-            [Some(x_m), Some(y_m), Some(heading_rad)] => Ok(Some(Pose { x_m, y_m, heading_rad })),
-            _ => Err(self.cell_error(columns[first_empty(&parts)].index, Problem::PartialTruth)),
-        }
-    }
+/// Counts what is read.
+struct Counted {
+    source: Box<dyn Read>,
+    position: Arc<AtomicU64>,
+}
 
-    fn cell<T>(&self, index: usize, parse: impl Fn(&str) -> Result<T, Problem>) -> Result<T, SessionError> {
-        parse(self.record.get(index).unwrap_or_default()).map_err(|problem| self.cell_error(index, problem))
-    }
-
-    fn cell_error(&self, index: usize, problem: Problem) -> SessionError {
-        let line = self.record.position().map(|position| line_at(&self.path, position));
-        self.error(line, self.names.get(index).cloned(), problem)
-    }
-
-    fn error(&self, line: Option<u64>, column: Option<String>, problem: Problem) -> SessionError {
-        SessionError { path: self.path.clone(), line, column, problem }
+impl Read for Counted {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let count = self.source.read(buffer)?;
+        self.position.fetch_add(count as u64, Ordering::Relaxed);
+        Ok(count)
     }
 }
 
@@ -193,56 +257,4 @@ fn rate_hz(mut steps_us: Vec<u64>) -> Option<f64> {
     let without_gaps = steps_us.partition_point(|step| *step <= 2 * median);
     let sum = steps_us[..without_gaps].iter().sum::<u64>();
     (sum > 0).then(|| without_gaps as f64 * 1e6 / sum as f64)
-}
-
-/// The part to name: the first that is empty, else the first.
-fn first_empty(parts: &[Option<f64>]) -> usize {
-    parts.iter().position(Option::is_none).unwrap_or(0)
-}
-
-/// Looks at the last byte, and goes back to the first.
-fn ends_with_line(file: &mut File) -> io::Result<bool> {
-    let mut last = [b'\n'];
-    if file.seek(SeekFrom::End(-1)).is_ok() {
-        file.read_exact(&mut last)?;
-        file.rewind()?;
-    }
-    Ok(last == [b'\n'])
-}
-
-/// Line of a row, from 1. The parser counts a line end only when it reads on, which the `\r\n` and the empty lines
-/// before a row mislead; so the file is looked at again, where it can be: a pipe is gone once it is read.
-fn line_at(path: &Path, row: &csv::Position) -> u64 {
-    if !path.is_file() {
-        return row.line();
-    }
-    File::open(path).and_then(|file| lines_before(file, row.byte())).map_or(row.line(), |lines| lines + 1)
-}
-
-/// Line ends before a row that begins at `byte`, or behind the line ends there.
-fn lines_before(file: File, byte: u64) -> io::Result<u64> {
-    let mut lines = 0;
-    for (place, next) in (0..).zip(BufReader::new(file).bytes()) {
-        let next = next?;
-        if place >= byte && !matches!(next, b'\r' | b'\n') {
-            break;
-        }
-        lines += u64::from(next == b'\n');
-    }
-    Ok(lines)
-}
-
-fn csv_error(path: &Path, error: csv::Error) -> SessionError {
-    let mut line = error.position().map(|position| line_at(path, position));
-    let problem = match error.into_kind() {
-        csv::ErrorKind::Io(error) => {
-            line = None;
-            Problem::Read(error)
-        }
-        csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
-            Problem::RowLength { found: len, expected: expected_len }
-        }
-        _ => Problem::NotText,
-    };
-    SessionError { path: path.to_owned(), line, column: None, problem }
 }

@@ -1,0 +1,160 @@
+//! `proprio record`.
+
+use std::fs::{self, File, OpenOptions};
+use std::io::{BufWriter, IsTerminal, Write};
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use indicatif::{ProgressBar, ProgressStyle};
+use proprio::error::Error;
+use proprio::interrupt;
+use proprio::link::{Event, HostClock, HostNs, Link, LinkError, Subscription, What};
+use proprio::recording::Recorder;
+use proprio::replay::NamedTable;
+use telemetry::Message;
+
+use super::link;
+use crate::cli::Record;
+
+/// Time from one status line to the next.
+const LOOK: Duration = Duration::from_millis(500);
+
+pub fn run(args: &Record) -> Result<(), Error> {
+    if args.seconds.is_some_and(|seconds| !(seconds > 0.0 && seconds <= 1e7)) {
+        return Err(Error::Seconds(args.seconds.unwrap_or_default()));
+    }
+    let (table, link) = link::open(&args.link)?;
+    let events = link.subscribe();
+    interrupt::wait_for();
+    let file = create(&args.output)?;
+    let mut session = Session::begin(file, &args.output, &link, table.as_ref())?;
+    let end = args.seconds.map(|seconds| Instant::now() + Duration::from_secs_f64(seconds));
+    while !interrupt::is_asked() && end.is_none_or(|end| Instant::now() < end) {
+        session.step(&link, &events)?;
+    }
+    session.finish(&link, &events)
+}
+
+/// A file of this name, where there was none: a recording cannot be had again. A pipe or device is written to.
+fn create(path: &Path) -> Result<File, Error> {
+    let is_other = fs::metadata(path).is_ok_and(|found| !found.is_file() && !found.is_dir());
+    let mut options = OpenOptions::new();
+    let options = if is_other { options.write(true) } else { options.write(true).create_new(true) };
+    options.open(path).map_err(|source| match source.kind() {
+        std::io::ErrorKind::AlreadyExists => Error::Exists(path.to_owned()),
+        _ => Error::Output { path: path.to_owned(), source },
+    })
+}
+
+/// A recording under way.
+struct Session<'p> {
+    recorder: Recorder<BufWriter<File>>,
+    path: &'p Path,
+    clock: HostClock,
+    start: Instant,
+    samples: u64,
+    bar: ProgressBar,
+    looked: Instant,
+    samples_then: u64,
+}
+
+impl<'p> Session<'p> {
+    fn begin(file: File, path: &'p Path, link: &Link, table: Option<&NamedTable>) -> Result<Self, Error> {
+        let clock = HostClock::new();
+        let failed = |source| Error::Output { path: path.to_owned(), source };
+        let line = link.state().port.unwrap_or_default();
+        let mut recorder = Recorder::new(BufWriter::new(file), clock.now(), &line).map_err(failed)?;
+        if let Some(table) = table {
+            let toml = fs::read(table.path)
+                .map_err(|source| Error::Table { path: table.path.to_owned(), source: source.into() })?;
+            recorder.attach_table(clock.now(), &toml).map_err(failed)?;
+        }
+        let bar = if std::io::stderr().is_terminal() { ProgressBar::no_length() } else { ProgressBar::hidden() };
+        bar.set_style(ProgressStyle::with_template("{msg}").unwrap_or_else(|_| ProgressStyle::default_bar()));
+        let now = Instant::now();
+        Ok(Self { recorder, path, clock, start: now, samples: 0, bar, looked: now, samples_then: 0 })
+    }
+
+    /// Takes one event, or waits a little for one.
+    fn step(&mut self, link: &Link, events: &Subscription) -> Result<(), Error> {
+        let event = events.next(Duration::from_millis(50));
+        let is_idle = event.is_none();
+        if let Some(event) = event {
+            self.take(event)?;
+        }
+        if is_idle {
+            self.write(|recorder, now| recorder.flush_if_due(now), None)?;
+        }
+        let since = self.looked.elapsed();
+        if since >= LOOK {
+            let rate_hz = (self.samples - self.samples_then) as f64 / since.as_secs_f64();
+            (self.looked, self.samples_then) = (Instant::now(), self.samples);
+            self.bar.set_message(self.line(link, events, rate_hz));
+        }
+        Ok(())
+    }
+
+    fn take(&mut self, event: Event) -> Result<(), Error> {
+        let Event { at, what } = event;
+        match what {
+            What::Bytes(bytes) => self.write(|recorder, at| recorder.bytes(at, &bytes), Some(at)),
+            What::Message(message) => {
+                self.samples += u64::from(matches!(message, Message::Sample(_)));
+                self.write(|recorder, at| recorder.message(at, &message), Some(at))
+            }
+            What::Ended(reason) => Err(LinkError::Ended(reason).into()),
+            What::Lost(reason) => self.warn(&format_args!("{reason}; waiting for it to come back")),
+            What::Restarted => self.warn(&"the board has restarted"),
+            What::Mismatch(mismatch) => self.warn(&mismatch),
+            What::Opened(_) | What::Undecoded(_) => Ok(()),
+        }
+    }
+
+    fn write(
+        &mut self,
+        write: impl FnOnce(&mut Recorder<BufWriter<File>>, HostNs) -> std::io::Result<()>,
+        at: Option<HostNs>,
+    ) -> Result<(), Error> {
+        let at = at.unwrap_or_else(|| self.clock.now());
+        write(&mut self.recorder, at).map_err(|source| Error::Output { path: self.path.to_owned(), source })
+    }
+
+    fn warn(&self, warning: &impl std::fmt::Display) -> Result<(), Error> {
+        self.bar.suspend(|| super::warn(warning));
+        Ok(())
+    }
+
+    /// What was recorded so far.
+    fn line(&self, link: &Link, events: &Subscription, rate_hz: f64) -> String {
+        let seconds = self.start.elapsed().as_secs();
+        let counts = link.state().counts;
+        let mut line = format!(
+            "{}:{:02}:{:02}  {} samples  {rate_hz:.1}/s  {} frames lost, {} damaged",
+            seconds / 3600,
+            seconds / 60 % 60,
+            seconds % 60,
+            self.samples,
+            counts.lost,
+            counts.damaged
+        );
+        if events.dropped() > 0 {
+            line += &format!(", {} events not written: this machine or its disk is too slow", events.dropped());
+        }
+        line
+    }
+
+    /// Takes what has come until now, and completes the file.
+    fn finish(mut self, link: &Link, events: &Subscription) -> Result<(), Error> {
+        while let Some(event) = events.next(Duration::ZERO) {
+            self.take(event)?;
+        }
+        let rate_hz = self.samples as f64 / self.start.elapsed().as_secs_f64();
+        let line = self.line(link, events, rate_hz);
+        self.bar.finish_and_clear();
+        let failed = |source| Error::Output { path: self.path.to_owned(), source };
+        let mut sink = self.recorder.finish().map_err(failed)?;
+        sink.flush().map_err(failed)?;
+        super::say(&format_args!("{}: {line}", self.path.display()));
+        Ok(())
+    }
+}
