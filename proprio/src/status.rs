@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use serde::Serialize;
 use telemetry::{Health, Hello, Message, TICK_HZ};
 
-use crate::link::{Link, LinkError, Mismatch, What};
+use crate::link::{Link, LinkError, Mismatch, Subscription, What};
 
 /// How long a board may be silent, s.
 const PATIENCE_S: u64 = 5;
@@ -77,8 +77,7 @@ impl Status {
     ///
     /// # Errors
     /// [`LinkError::Silent`] and [`LinkError::Ended`].
-    pub fn of(link: &Link, table_given: bool) -> Result<Self, LinkError> {
-        let events = link.subscribe();
+    pub fn of(link: &Link, events: &Subscription, table_given: bool) -> Result<Self, LinkError> {
         let (start, mut seen) = (Instant::now(), Seen::default());
         loop {
             match events.next(Duration::from_millis(50)).map(|event| event.what) {

@@ -2,14 +2,14 @@
 
 use estimator_core::Q;
 use proprio::error::Error;
-use proprio::link::{Link, PortSource, Source, VirtualDue};
+use proprio::link::{Link, PortSource, Source, Subscription, VirtualDue};
 use proprio::replay::NamedTable;
 use telemetry::TICK_HZ;
 
 use crate::cli::LinkArgs;
 
-/// The table that was given, and a link to the board that was.
-pub fn open(args: &LinkArgs) -> Result<(Option<NamedTable<'_>>, Link), Error> {
+/// The table that was given, a link to the board that was, and all that it will say.
+pub fn open(args: &LinkArgs) -> Result<(Option<NamedTable<'_>>, Link, Subscription), Error> {
     let table = args.table.as_deref().map(NamedTable::load).transpose()?;
     let checksum = table.as_ref().map(|table| Ok::<_, Error>(table.bake::<Q>(TICK_HZ)?.checksum())).transpose()?;
     let source: Box<dyn Source> = if args.emulated {
@@ -17,5 +17,6 @@ pub fn open(args: &LinkArgs) -> Result<(Option<NamedTable<'_>>, Link), Error> {
     } else {
         Box::new(PortSource::new(args.port.clone(), args.baud))
     };
-    Ok((table, Link::start(source, checksum)?))
+    let (link, events) = Link::start(source, checksum)?;
+    Ok((table, link, events))
 }

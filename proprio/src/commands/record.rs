@@ -23,8 +23,7 @@ pub fn run(args: &Record) -> Result<(), Error> {
     if args.seconds.is_some_and(|seconds| !(seconds > 0.0 && seconds <= 1e7)) {
         return Err(Error::Seconds(args.seconds.unwrap_or_default()));
     }
-    let (table, link) = link::open(&args.link)?;
-    let events = link.subscribe();
+    let (table, link, events) = link::open(&args.link)?;
     interrupt::wait_for();
     let file = create(&args.output)?;
     let mut session = Session::begin(file, &args.output, &link, table.as_ref())?;

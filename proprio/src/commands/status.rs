@@ -8,8 +8,8 @@ use super::link;
 use crate::{cli, tables};
 
 pub fn run(args: &cli::Status) -> Result<(), Error> {
-    let (table, link) = link::open(&args.link)?;
-    let status = Status::of(&link, table.is_some())?;
+    let (table, link, events) = link::open(&args.link)?;
+    let status = Status::of(&link, &events, table.is_some())?;
     super::print(&if args.json { super::json(&status) } else { screen(&status) })
 }
 

@@ -66,30 +66,27 @@ pub struct LinkState {
 }
 
 impl Link {
-    /// Opens a line and starts the thread. `table` is the checksum that the board's table should have.
+    /// Opens a line and starts the thread. `table` is the checksum that the board's table should have. The subscription
+    /// hears everything from the first byte on.
     ///
     /// # Errors
     /// What keeps the line from being opened the first time.
-    pub fn start(mut source: Box<dyn Source>, table: Option<u32>) -> Result<Self, LinkError> {
+    pub fn start(mut source: Box<dyn Source>, table: Option<u32>) -> Result<(Self, Subscription), LinkError> {
         let (name, transport) = source.open()?;
         let shared = Arc::new(Shared::default());
         let (asks, asked) = channel();
+        shared.state().port = Some(name.clone());
+        let subscription = shared.subscribe();
         let worker = Worker::new(source, table, asked, Arc::clone(&shared));
         let thread = std::thread::Builder::new().name("link".to_owned());
         let thread = thread.spawn(move || worker.run(name, transport)).map_err(LinkError::Thread)?;
-        Ok(Self { asks, shared, thread: Some(thread) })
+        Ok((Self { asks, shared, thread: Some(thread) }, subscription))
     }
 
     /// Listens from now on.
     #[must_use]
     pub fn subscribe(&self) -> Subscription {
-        let queue = Arc::new(Queue::new(ROOM));
-        let mut listeners = self.shared.listeners();
-        if let Some(end) = &listeners.end {
-            queue.push(end.clone());
-        }
-        listeners.queues.push(Arc::downgrade(&queue));
-        Subscription { queue }
+        self.shared.subscribe()
     }
 
     /// How the link is now.
@@ -123,6 +120,16 @@ impl Drop for Link {
 impl Shared {
     fn listeners(&self) -> MutexGuard<'_, Listeners> {
         self.listeners.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn subscribe(&self) -> Subscription {
+        let queue = Arc::new(Queue::new(ROOM));
+        let mut listeners = self.listeners();
+        if let Some(end) = &listeners.end {
+            queue.push(end.clone());
+        }
+        listeners.queues.push(Arc::downgrade(&queue));
+        Subscription { queue }
     }
 
     pub(super) fn state(&self) -> MutexGuard<'_, LinkState> {

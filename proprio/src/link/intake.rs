@@ -3,6 +3,7 @@
 use telemetry::{Counts, DecodeError, Decoder, Hello, Message, SCHEMA};
 
 use super::event::Mismatch;
+use super::runs::{Place, Runs};
 
 /// What came of one byte.
 #[derive(Debug, Clone, PartialEq)]
@@ -27,7 +28,7 @@ pub struct Intake {
     /// two runs of the board.
     losses_begin: Option<u32>,
     hello: Option<Hello>,
-    tick: Option<u32>,
+    runs: Runs,
     restarts: u32,
     table: Option<u32>,
     mismatches: Vec<Mismatch>,
@@ -85,7 +86,11 @@ impl Intake {
             None => {}
             Some(Ok(Message::Hello(hello))) => self.greet(hello, &mut tell),
             Some(Ok(message)) if self.is_trusted() => {
-                self.watch_tick(&message, &mut tell);
+                if let Message::Sample(sample) = &message
+                    && self.runs.sample(sample.tick) == Place::Restarted
+                {
+                    self.restart(&mut tell);
+                }
                 tell(Taken::Message(message));
             }
             // Its form may mean something else.
@@ -109,7 +114,7 @@ impl Intake {
 
     fn greet(&mut self, hello: Hello, tell: &mut impl FnMut(Taken)) {
         self.losses_begin.get_or_insert(self.decoder.counts().lost);
-        if self.hello.as_ref().is_some_and(|before| before.boot != hello.boot) {
+        if self.runs.hello(hello.boot) {
             self.restart(tell);
         }
         let firmware = hello.firmware.as_str().to_owned();
@@ -126,23 +131,8 @@ impl Intake {
         tell(Taken::Message(Message::Hello(hello)));
     }
 
-    /// A tick that goes back is another run of the board, though its boot may have the same number, as after a power cut.
-    fn watch_tick(&mut self, message: &Message, tell: &mut impl FnMut(Taken)) {
-        let tick = match message {
-            Message::Sample(sample) => sample.tick,
-            _ => return,
-        };
-        if self.tick.is_some_and(|before| tick < before) {
-            // The next `Hello`, whatever its boot, is of this run.
-            self.hello = None;
-            self.restart(tell);
-        }
-        self.tick = Some(tick);
-    }
-
     fn restart(&mut self, tell: &mut impl FnMut(Taken)) {
         self.restarts += 1;
-        self.tick = None;
         tell(Taken::Restarted);
     }
 

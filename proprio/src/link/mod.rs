@@ -11,8 +11,7 @@
 //! use proprio::link::{Baud, Link, PortSource, What};
 //! use telemetry::{Command, Message};
 //!
-//! let link = Link::start(Box::new(PortSource::new(None, Baud::default())), None)?;
-//! let events = link.subscribe();
+//! let (link, events) = Link::start(Box::new(PortSource::new(None, Baud::default())), None)?;
 //! link.request(Command::Tare)?;
 //! while let Some(event) = events.next(Duration::from_secs(1)) {
 //!     if let What::Message(Message::Estimate(estimate)) = event.what {
@@ -26,7 +25,7 @@
 //! |---|---|
 //! | `handle.rs` | [`Link`]: what the rest of the program holds of it |
 //! | `worker.rs` | the thread |
-//! | `intake.rs` | bytes to messages; restarts, losses and mismatches |
+//! | `intake.rs`, `runs.rs` | bytes to messages; losses, mismatches and restarts |
 //! | `requests.rs` | ids, answers and repetitions |
 //! | `event.rs`, `queue.rs`, `clock.rs` | what the thread says, to whom, and when it came |
 //! | `source.rs` | where a line comes from, and that it may come again |
@@ -40,6 +39,7 @@ mod intake;
 mod ports;
 mod queue;
 mod requests;
+mod runs;
 mod serial;
 mod source;
 mod virtual_due;
@@ -52,6 +52,7 @@ pub use handle::{Link, LinkState, Subscription};
 pub use intake::{Intake, Taken};
 pub use ports::{Kind, Port, find_due, list};
 pub use requests::RequestError;
+pub(crate) use runs::{Place, Runs};
 pub use serial::{Baud, PortSource};
 pub use source::{Source, Transport};
 pub use virtual_due::VirtualDue;

@@ -6,7 +6,7 @@ use calibration_tables::MAX_SEGMENTS;
 use telemetry::{Decoder, Estimate, Hello, Message, SCHEMA, Sample};
 
 use super::{Item, ReadError};
-use crate::link::HostNs;
+use crate::link::{HostNs, Place, Runs};
 use crate::session::{OnBoard, Pose, Row};
 
 /// Time from one tick to the next, µs.
@@ -17,6 +17,9 @@ pub(crate) struct RecordedRows<I> {
     items: I,
     decoder: Decoder<Message>,
     hello: Option<Hello>,
+    runs: Runs,
+    /// The board has restarted since the last sample.
+    restarted: bool,
     /// The row that waits for its estimate and its truth.
     open: Option<Row>,
     whole: VecDeque<Row>,
@@ -43,6 +46,8 @@ impl<I: Iterator<Item = Result<Item, ReadError>>> RecordedRows<I> {
             items,
             decoder: Decoder::new(),
             hello: None,
+            runs: Runs::default(),
+            restarted: false,
             open: None,
             whole: VecDeque::new(),
             last: None,
@@ -92,10 +97,17 @@ impl<I: Iterator<Item = Result<Item, ReadError>>> RecordedRows<I> {
                 );
                 return Err(ReadError::Damaged(text));
             }
-            Message::Hello(hello) => self.hello = Some(hello),
+            Message::Hello(hello) => {
+                self.restarted |= self.runs.hello(hello.boot);
+                self.hello = Some(hello);
+            }
             Message::Sample(sample) => {
-                self.whole.extend(self.open.take());
-                self.open = Some(self.row(at, &sample));
+                let place = self.runs.sample(sample.tick);
+                self.restarted |= place == Place::Restarted;
+                if place != Place::Repeated {
+                    self.whole.extend(self.open.take());
+                    self.open = Some(self.row(at, &sample));
+                }
             }
             Message::Estimate(estimate) => self.estimate(estimate),
             Message::Health(_) | Message::Event(_) | Message::Reply(_) => {}
@@ -104,13 +116,13 @@ impl<I: Iterator<Item = Result<Item, ReadError>>> RecordedRows<I> {
     }
 
     fn row(&mut self, at: HostNs, sample: &Sample) -> Row {
-        let lost = self.decoder.counts().lost;
+        let (lost, restarted) = (self.decoder.counts().lost, std::mem::take(&mut self.restarted));
         let mut starts = true;
         if let Some(last) = &self.last {
             let follows = sample.tick == last.sample.tick.wrapping_add(1);
             let is_whole = follows || lost == last.lost;
-            if sample.tick <= last.sample.tick || sample.time_us <= last.sample.time_us {
-                // Another boot: its time goes on where the host's does.
+            if restarted || self.base_us + sample.time_us < last.row_us {
+                // Its time goes on where the host's does.
                 let passed_us = (at.0.saturating_sub(last.at.0) / 1000).max(TICK_US);
                 self.base_us = (last.row_us + passed_us).saturating_sub(sample.time_us);
                 self.complete = sample.tick == 0;
