@@ -3,13 +3,19 @@
 mod accepted_sessions;
 mod bad_cells;
 mod bad_sessions;
+mod board;
 mod calibrate;
 mod calibrate_faults;
 mod calibrate_gaps;
 mod common;
+mod convert;
 mod estimates;
 mod figures;
 mod missing_readings;
 mod output_files;
+mod ports;
+#[cfg(unix)]
+mod recording_live;
+mod recordings;
 mod simulate;
 mod streams;
