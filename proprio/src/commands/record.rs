@@ -11,7 +11,7 @@ use proprio::interrupt;
 use proprio::link::{Event, HostClock, HostNs, Link, LinkError, Subscription, What};
 use proprio::recording::Recorder;
 use proprio::replay::NamedTable;
-use telemetry::Message;
+use telemetry::{Counts, Message};
 
 use super::link;
 use crate::cli::Record;
@@ -31,7 +31,7 @@ pub fn run(args: &Record) -> Result<(), Error> {
     while !interrupt::is_asked() && end.is_none_or(|end| Instant::now() < end) {
         session.step(&link, &events)?;
     }
-    session.finish(&link, &events)
+    session.finish(link, &events)
 }
 
 /// A file of this name, where there was none: a recording cannot be had again. A pipe or device is written to.
@@ -88,7 +88,7 @@ impl<'p> Session<'p> {
         if since >= LOOK {
             let rate_hz = (self.samples - self.samples_then) as f64 / since.as_secs_f64();
             (self.looked, self.samples_then) = (Instant::now(), self.samples);
-            self.bar.set_message(self.line(link, events, rate_hz));
+            self.bar.set_message(self.line(link.state().counts, events, rate_hz));
         }
         Ok(())
     }
@@ -124,9 +124,8 @@ impl<'p> Session<'p> {
     }
 
     /// What was recorded so far.
-    fn line(&self, link: &Link, events: &Subscription, rate_hz: f64) -> String {
+    fn line(&self, counts: Counts, events: &Subscription, rate_hz: f64) -> String {
         let seconds = self.start.elapsed().as_secs();
-        let counts = link.state().counts;
         let mut line = format!(
             "{}:{:02}:{:02}  {} samples  {rate_hz:.1}/s  {} frames lost, {} damaged",
             seconds / 3600,
@@ -143,12 +142,15 @@ impl<'p> Session<'p> {
     }
 
     /// Takes what has come until now, and completes the file.
-    fn finish(mut self, link: &Link, events: &Subscription) -> Result<(), Error> {
+    fn finish(mut self, link: Link, events: &Subscription) -> Result<(), Error> {
+        let counts = link.state().counts;
+        // Nothing comes any more.
+        drop(link);
         while let Some(event) = events.next(Duration::ZERO) {
             self.take(event)?;
         }
         let rate_hz = self.samples as f64 / self.start.elapsed().as_secs_f64();
-        let line = self.line(link, events, rate_hz);
+        let line = self.line(counts, events, rate_hz);
         self.bar.finish_and_clear();
         let failed = |source| Error::Output { path: self.path.to_owned(), source };
         let mut sink = self.recorder.finish().map_err(failed)?;

@@ -4,6 +4,8 @@ mod boot;
 mod engine;
 mod faults;
 mod pressures;
+#[cfg(unix)]
+mod recording;
 mod replay;
 mod requests;
 mod sensors;
