@@ -4,11 +4,11 @@ use std::path::Path;
 
 use calibration_tables::{ArmFile, Baked, FileError, MAX_SEGMENTS, MAX_WINDOW};
 use estimator_core::{Estimate, Estimator, Method, Q, Scalar, Shape};
-use telemetry::TICK_HZ;
+use telemetry::{Hello, TICK_HZ};
 
 use crate::error::Error;
 use crate::progress::Progress;
-use crate::session::{Needs, Row, SessionReader};
+use crate::session::{Kind, Needs, Row, SessionReader};
 
 /// The estimator with room for every arm.
 pub type HostEstimator<'t, S> = Estimator<'t, S, MAX_SEGMENTS, { MAX_WINDOW as usize }>;
@@ -82,6 +82,14 @@ pub struct Recording {
     pub table_matches: Option<bool>,
 }
 
+impl Recording {
+    fn new(hello: Option<&Hello>, table: &NamedTable) -> Result<Self, Error> {
+        let Some(hello) = hello else { return Ok(Self { table_matches: None }) };
+        let checksum = table.bake::<Q>(TICK_HZ)?.checksum();
+        Ok(Self { table_matches: Some(hello.table == checksum) })
+    }
+}
+
 /// Replays a session and shows every row and its outcome to `visit`.
 ///
 /// # Errors
@@ -113,10 +121,7 @@ pub fn replay<S: Scalar>(
         samples += 1;
         progress.set(reader.progress().0);
     }
-    let recording = reader.recorded().map(|hello| {
-        let checksum = hello.map(|hello| Ok::<_, Error>((hello.table, table.bake::<Q>(TICK_HZ)?.checksum())));
-        Ok::<_, Error>(Recording { table_matches: checksum.transpose()?.map(|(board, given)| board == given) })
-    });
+    let recording = if reader.kind() == Kind::Csv { None } else { Some(Recording::new(reader.hello(), table)?) };
     let seconds = (last_us - first_us.unwrap_or(last_us)) as f64 / 1e6;
-    Ok(Extent { samples, seconds, ends_with_line: reader.ends_with_line(), recording: recording.transpose()? })
+    Ok(Extent { samples, seconds, ends_with_line: reader.ends_with_line(), recording })
 }

@@ -73,7 +73,7 @@ pub fn ports(ports: &[Port]) -> String {
 
 /// Names to the left of what they mean.
 pub fn pairs(lines: &[(&str, String)]) -> String {
-    lines.iter().map(|(name, value)| format!("{name:<13} {value}\n")).collect()
+    lines.iter().map(|(name, value)| format!("{name:<13} {value}\n")).collect::<Vec<_>>().concat()
 }
 
 fn table(heads: &[&str]) -> Table {

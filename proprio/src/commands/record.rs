@@ -20,15 +20,15 @@ use crate::cli::Record;
 const LOOK: Duration = Duration::from_millis(500);
 
 pub fn run(args: &Record) -> Result<(), Error> {
-    if args.seconds.is_some_and(|seconds| !(seconds > 0.0 && seconds <= 1e7)) {
-        return Err(Error::Seconds(args.seconds.unwrap_or_default()));
+    if let Some(seconds) = args.seconds.filter(|seconds| !(*seconds > 0.0 && *seconds <= 1e7)) {
+        return Err(Error::Seconds(seconds));
     }
     let (table, link, events) = link::open(&args.link)?;
     interrupt::wait_for();
     let file = create(&args.output)?;
     let mut session = Session::begin(file, &args.output, &link, table.as_ref())?;
     let end = args.seconds.map(|seconds| Instant::now() + Duration::from_secs_f64(seconds));
-    while !interrupt::is_asked() && end.is_none_or(|end| Instant::now() < end) {
+    while session.ended.is_none() && !interrupt::is_asked() && end.is_none_or(|end| Instant::now() < end) {
         session.step(&link, &events)?;
     }
     session.finish(link, &events)
@@ -45,9 +45,11 @@ fn create(path: &Path) -> Result<File, Error> {
     })
 }
 
+type Output = Recorder<BufWriter<File>>;
+
 /// A recording under way.
 struct Session<'p> {
-    recorder: Recorder<BufWriter<File>>,
+    recorder: Output,
     path: &'p Path,
     clock: HostClock,
     start: Instant,
@@ -55,6 +57,8 @@ struct Session<'p> {
     bar: ProgressBar,
     looked: Instant,
     samples_then: u64,
+    /// The line is gone for good, and why.
+    ended: Option<String>,
 }
 
 impl<'p> Session<'p> {
@@ -71,18 +75,14 @@ impl<'p> Session<'p> {
         let bar = if std::io::stderr().is_terminal() { ProgressBar::no_length() } else { ProgressBar::hidden() };
         bar.set_style(ProgressStyle::with_template("{msg}").unwrap_or_else(|_| ProgressStyle::default_bar()));
         let now = Instant::now();
-        Ok(Self { recorder, path, clock, start: now, samples: 0, bar, looked: now, samples_then: 0 })
+        Ok(Self { recorder, path, clock, start: now, samples: 0, bar, looked: now, samples_then: 0, ended: None })
     }
 
     /// Takes one event, or waits a little for one.
     fn step(&mut self, link: &Link, events: &Subscription) -> Result<(), Error> {
-        let event = events.next(Duration::from_millis(50));
-        let is_idle = event.is_none();
-        if let Some(event) = event {
-            self.take(event)?;
-        }
-        if is_idle {
-            self.write(|recorder, now| recorder.flush_if_due(now), None)?;
+        match events.next(Duration::from_millis(50)) {
+            Some(event) => self.take(event)?,
+            None => self.written(Recorder::flush_if_due)?,
         }
         let since = self.looked.elapsed();
         if since >= LOOK {
@@ -96,49 +96,45 @@ impl<'p> Session<'p> {
     fn take(&mut self, event: Event) -> Result<(), Error> {
         let Event { at, what } = event;
         match what {
-            What::Bytes(bytes) => self.write(|recorder, at| recorder.bytes(at, &bytes), Some(at)),
+            What::Bytes(bytes) => return self.written(|recorder, _| recorder.bytes(at, &bytes)),
             What::Message(message) => {
                 self.samples += u64::from(matches!(message, Message::Sample(_)));
-                self.write(|recorder, at| recorder.message(at, &message), Some(at))
+                return self.written(|recorder, _| recorder.message(at, &message));
             }
-            What::Ended(reason) => Err(LinkError::Ended(reason).into()),
+            What::Ended(reason) => self.ended = Some(reason),
             What::Lost(reason) => self.warn(&format_args!("{reason}; waiting for it to come back")),
             What::Restarted => self.warn(&"the board has restarted"),
             What::Mismatch(mismatch) => self.warn(&mismatch),
-            What::Opened(_) | What::Undecoded(_) => Ok(()),
+            What::Opened(_) | What::Undecoded(_) => {}
         }
-    }
-
-    fn write(
-        &mut self,
-        write: impl FnOnce(&mut Recorder<BufWriter<File>>, HostNs) -> std::io::Result<()>,
-        at: Option<HostNs>,
-    ) -> Result<(), Error> {
-        let at = at.unwrap_or_else(|| self.clock.now());
-        write(&mut self.recorder, at).map_err(|source| Error::Output { path: self.path.to_owned(), source })
-    }
-
-    fn warn(&self, warning: &impl std::fmt::Display) -> Result<(), Error> {
-        self.bar.suspend(|| super::warn(warning));
         Ok(())
+    }
+
+    fn written(&mut self, write: impl FnOnce(&mut Output, HostNs) -> std::io::Result<()>) -> Result<(), Error> {
+        let now = self.clock.now();
+        write(&mut self.recorder, now).map_err(|source| Error::Output { path: self.path.to_owned(), source })
+    }
+
+    fn warn(&self, warning: &impl std::fmt::Display) {
+        self.bar.suspend(|| super::warn(warning));
     }
 
     /// What was recorded so far.
     fn line(&self, counts: Counts, events: &Subscription, rate_hz: f64) -> String {
         let seconds = self.start.elapsed().as_secs();
-        let mut line = format!(
-            "{}:{:02}:{:02}  {} samples  {rate_hz:.1}/s  {} frames lost, {} damaged",
+        let dropped = match events.dropped() {
+            0 => String::new(),
+            dropped => format!(", {dropped} events not written: this machine or its disk is too slow"),
+        };
+        format!(
+            "{}:{:02}:{:02}  {} samples  {rate_hz:.1}/s  {} frames lost, {} damaged{dropped}",
             seconds / 3600,
             seconds / 60 % 60,
             seconds % 60,
             self.samples,
             counts.lost,
             counts.damaged
-        );
-        if events.dropped() > 0 {
-            line += &format!(", {} events not written: this machine or its disk is too slow", events.dropped());
-        }
-        line
+        )
     }
 
     /// Takes what has come until now, and completes the file.
@@ -156,6 +152,6 @@ impl<'p> Session<'p> {
         let mut sink = self.recorder.finish().map_err(failed)?;
         sink.flush().map_err(failed)?;
         super::say(&format_args!("{}: {line}", self.path.display()));
-        Ok(())
+        self.ended.map_or(Ok(()), |reason| Err(LinkError::Ended(reason).into()))
     }
 }

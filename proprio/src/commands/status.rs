@@ -1,6 +1,7 @@
 //! `proprio status`.
 
 use proprio::error::Error;
+use proprio::recording::chip_number;
 use proprio::status::Status;
 use telemetry::{SensorHealth, SensorState};
 
@@ -21,13 +22,12 @@ fn screen(status: &Status) -> String {
         Some(false) => ", NOT the one given",
         None => "",
     };
-    let chip: String = hello.chip.iter().map(|byte| format!("{byte:02x}")).collect();
     let pressures = health.pressures_pa.map(|pressure_pa| format!("{:.1}", f64::from(pressure_pa) / 1e3)).join(" ");
     let lines = [
         ("line", format!("{}, {}", status.port, if status.answers { "answers" } else { "does NOT answer requests" })),
         ("firmware", format!("{} ({}), proprio {}", hello.firmware, hello.revision, status.proprio)),
         ("arm", format!("{}, table {:08x}{table}", hello.arm, hello.table)),
-        ("chip", chip),
+        ("chip", chip_number(&hello.chip)),
         ("boot", format!("number {} since power-on, by {:?}, {}", hello.boot, hello.reset, up(health.tick))),
         ("last panic", hello.last_panic.as_deref().unwrap_or("none").to_owned()),
         (
@@ -76,9 +76,7 @@ fn up(tick: u32) -> String {
 /// All that are well in one word, each other one by its name, state and how often it was missed.
 fn sensors(sensors: &[SensorHealth], name: impl Fn(usize) -> String) -> String {
     let ok = sensors.iter().filter(|sensor| sensor.state == SensorState::Ok).count();
-    let mut text = format!("{ok} of {} ok", sensors.len());
-    for (i, sensor) in sensors.iter().enumerate().filter(|(_, sensor)| sensor.state != SensorState::Ok) {
-        text += &format!(", {} {:?} ({} missed)", name(i), sensor.state, sensor.missed);
-    }
-    text
+    let others = sensors.iter().enumerate().filter(|(_, sensor)| sensor.state != SensorState::Ok);
+    let others = others.map(|(i, sensor)| format!("{} {:?} ({} missed)", name(i), sensor.state, sensor.missed));
+    [format!("{ok} of {} ok", sensors.len())].into_iter().chain(others).collect::<Vec<_>>().join(", ")
 }

@@ -137,7 +137,7 @@ impl Shared {
     }
 
     /// Hands an event to all who listen.
-    pub(super) fn tell(&self, event: Event) {
+    pub(super) fn tell(&self, event: &Event) {
         let mut listeners = self.listeners();
         if matches!(event.what, What::Ended(_)) {
             listeners.end = Some(event.clone());

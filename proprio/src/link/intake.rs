@@ -83,7 +83,6 @@ impl Intake {
     /// Takes one byte and tells what it completes.
     pub fn push(&mut self, byte: u8, mut tell: impl FnMut(Taken)) {
         match self.decoder.push(byte) {
-            None => {}
             Some(Ok(Message::Hello(hello))) => self.greet(hello, &mut tell),
             Some(Ok(message)) if self.is_trusted() => {
                 if let Message::Sample(sample) = &message
@@ -93,8 +92,8 @@ impl Intake {
                 }
                 tell(Taken::Message(message));
             }
-            // Its form may mean something else.
-            Some(Ok(_)) => {}
+            // No frame is complete; or its form may mean something else.
+            None | Some(Ok(_)) => {}
             Some(Err(error)) => {
                 match error {
                     DecodeError::Version(version) => self.mismatch(Mismatch::Protocol(version), &mut tell),

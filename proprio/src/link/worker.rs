@@ -96,10 +96,10 @@ impl Worker {
 
     fn take(&mut self, bytes: &[u8]) {
         let at = self.clock.now();
-        self.shared.tell(Event { at, what: What::Bytes(bytes.into()) });
+        self.shared.tell(&Event { at, what: What::Bytes(bytes.into()) });
         let Self { intake, requests, shared, .. } = self;
         for byte in bytes {
-            intake.push(*byte, |taken| shared.tell(event(at, taken, requests)));
+            intake.push(*byte, |taken| shared.tell(&event(at, taken, requests)));
         }
         let mut state = shared.state();
         state.bytes += bytes.len() as u64;
@@ -115,7 +115,7 @@ impl Worker {
     }
 
     fn tell(&self, what: What) {
-        self.shared.tell(Event { at: self.clock.now(), what });
+        self.shared.tell(&Event { at: self.clock.now(), what });
     }
 }
 

@@ -50,6 +50,13 @@ impl CdrWriter {
         self.put(value.to_le_bytes());
     }
 
+    /// Numbers without their count, as an array has them.
+    pub fn floats(&mut self, values: &[f64]) {
+        for value in values {
+            self.f64(*value);
+        }
+    }
+
     /// With the zero that CDR ends a string with.
     pub fn string(&mut self, text: &str) {
         self.length(text.len() + 1);

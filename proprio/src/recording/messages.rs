@@ -44,7 +44,7 @@ pub fn joint_state(stamp: HostNs, estimate: &Estimate) -> Vec<u8> {
     cdr.length(SEGMENTS);
     (1..=SEGMENTS).for_each(|i| cdr.string(&format!("theta{i}")));
     cdr.length(SEGMENTS);
-    estimate.segments.iter().for_each(|segment| cdr.f64(segment.map_or(f64::NAN, |segment| value(segment.theta))));
+    cdr.floats(&estimate.segments.map(|segment| segment.map_or(f64::NAN, |segment| value(segment.theta))));
     // No velocity, no effort.
     cdr.length(0);
     cdr.length(0);
@@ -61,7 +61,7 @@ pub fn pose_array(stamp: HostNs, estimate: &Estimate) -> Vec<u8> {
         heading += segment.map_or(f64::NAN, |segment| value(segment.theta));
         // Headings count clockwise from y, turns about z counter-clockwise from x.
         let (sin, cos) = ((FRAC_PI_2 - heading) / 2.0).sin_cos();
-        [x, y, 0.0, 0.0, 0.0, sin, cos].into_iter().for_each(|number| cdr.f64(number));
+        cdr.floats(&[x, y, 0.0, 0.0, 0.0, sin, cos]);
     }
     cdr.into_bytes()
 }
@@ -73,7 +73,7 @@ fn value(bits: i32) -> f64 {
 
 /// `diagnostic_msgs/msg/DiagnosticArray`: the board, then each sensor.
 pub fn diagnostics(stamp: HostNs, health: &Health, hello: Option<&Hello>) -> Vec<u8> {
-    let chip: String = hello.iter().flat_map(|hello| hello.chip).map(|byte| format!("{byte:02x}")).collect();
+    let chip = hello.map(|hello| chip_number(&hello.chip)).unwrap_or_default();
     let mut cdr = header(stamp);
     cdr.length(1 + BEND_SENSORS + SEGMENTS);
     board(&mut cdr, health, hello, &chip);
@@ -84,6 +84,11 @@ pub fn diagnostics(stamp: HostNs, health: &Health, hello: Option<&Hello>) -> Vec
         sensor_status(&mut cdr, &format!("imu {}", i + 1), *sensor, &chip);
     }
     cdr.into_bytes()
+}
+
+/// The chip's number in hexadecimal.
+pub fn chip_number(chip: &[u8; 16]) -> String {
+    format!("{:032x}", u128::from_be_bytes(*chip))
 }
 
 fn board(cdr: &mut CdrWriter, health: &Health, hello: Option<&Hello>, chip: &str) {
@@ -145,7 +150,8 @@ pub fn truth(stamp: HostNs, ends: &[Option<Pose>]) -> Vec<u8> {
     let mut cdr = header(stamp);
     for part in [|pose: &Pose| pose.x_m, |pose: &Pose| pose.y_m, |pose: &Pose| pose.heading_rad] {
         cdr.length(ends.len());
-        ends.iter().for_each(|end| cdr.f64(end.as_ref().map_or(f64::NAN, part)));
+        let values: Vec<f64> = ends.iter().map(|end| end.as_ref().map_or(f64::NAN, part)).collect();
+        cdr.floats(&values);
     }
     cdr.into_bytes()
 }

@@ -26,6 +26,7 @@ mod writer;
 
 pub use board_clock::BoardClock;
 pub use compare::{Comparison, Difference, Values};
+pub use messages::chip_number;
 pub use reader::{Item, RawReader, ReadError, Reader, is_recording};
 pub use recover::{RecoverError, Recovery, recover};
 pub(crate) use rows::RecordedRows;

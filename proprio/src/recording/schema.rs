@@ -57,7 +57,7 @@ impl Schema {
     pub fn text(&self) -> String {
         let mut text = self.definition.to_owned();
         for (name, definition) in self.needs {
-            text += &format!("{}\nMSG: {name}\n{definition}", "=".repeat(80));
+            text.extend([&"=".repeat(80), "\nMSG: ", name, "\n", definition]);
         }
         text
     }

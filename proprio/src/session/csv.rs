@@ -19,7 +19,8 @@ pub(super) struct CsvRows {
     csv: csv::Reader<Box<dyn Read>>,
     record: StringRecord,
     last_time_us: u64,
-    last_tare: Option<Option<u64>>,
+    has_started: bool,
+    last_tare: Option<u64>,
 }
 
 impl CsvRows {
@@ -34,7 +35,16 @@ impl CsvRows {
         let names: Vec<String> = header.iter().map(|name| name.trim().to_owned()).collect();
         let columns = Columns::find(&names, needs).map_err(|problem| fail(Some(1), problem))?;
         let path = path.to_owned();
-        Ok(Self { path, names, columns, csv, record: StringRecord::new(), last_time_us: 0, last_tare: None })
+        Ok(Self {
+            path,
+            names,
+            columns,
+            csv,
+            record: StringRecord::new(),
+            last_time_us: 0,
+            has_started: false,
+            last_tare: None,
+        })
     }
 
     /// Which bend sensors of each segment it has.
@@ -59,7 +69,8 @@ impl CsvRows {
         }
         self.last_time_us = time_us;
         let tare = self.columns.tare.map_or(Ok(None), |column| self.cell(column, cell::tare))?;
-        let starts = self.last_tare.replace(tare) != Some(tare);
+        let starts = !std::mem::replace(&mut self.has_started, true) || tare != self.last_tare;
+        self.last_tare = tare;
         let mut row = Row { sample: Sample::missing(time_us), truth: [None; MAX_SEGMENTS], starts, board: None };
         let sample = row.sample.bend.iter_mut().zip(&mut row.sample.imu).zip(&mut row.truth);
         for (segment, ((bend, imu), truth)) in self.columns.segments.iter().zip(sample) {

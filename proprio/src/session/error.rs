@@ -136,7 +136,9 @@ impl Problem {
                 "take the arm or table of this session, or add the column; names are as in docs/FORMATS.md, between commas"
             }
             Self::DuplicateColumn(_) => "remove or rename one of them",
-            Self::OtherArm { .. } => "take the arm description or table of the arm that was recorded",
+            Self::OtherArm { .. } | Self::RecordedSegments(_) => {
+                "take the arm description or table of the arm that was recorded"
+            }
             Self::RowLength { .. } => {
                 "the file was cut or edited, or has decimal commas: remove the row, copy the file again, or use points"
             }
@@ -152,7 +154,6 @@ impl Problem {
             Self::Recording(ReadError::Damaged(_)) => {
                 "save what is whole of it with `proprio recover`, or take another"
             }
-            Self::RecordedSegments(_) => "take the arm description or table of the arm that was recorded",
             Self::TooManySegments(_) => "keep it as CSV",
             Self::NoTruth => "give a session with the camera's truth, as docs/FORMATS.md has it",
             Self::Heading(_) => "write headings from 0 up to a full turn: 360 in _deg, 2π in _rad",

@@ -59,7 +59,7 @@ impl Kind {
 type Items = Box<dyn Iterator<Item = Result<Item, ReadError>>>;
 
 enum Rows {
-    Csv(CsvRows),
+    Csv(Box<CsvRows>),
     Recorded(Box<RecordedRows<Items>>, Arc<AtomicU64>),
 }
 
@@ -96,7 +96,7 @@ impl SessionReader {
         let counted = |source| BufReader::with_capacity(1 << 16, Counted { source, position: Arc::clone(&position) });
         let recorded = |items| Rows::Recorded(Box::new(RecordedRows::new(items)), Arc::clone(&position));
         let rows = match kind {
-            Kind::Csv => Rows::Csv(CsvRows::new(path, source, needs)?),
+            Kind::Csv => Rows::Csv(Box::new(CsvRows::new(path, source, needs)?)),
             Kind::Recording => recorded(Box::new(Reader::new(counted(source))) as Items),
             Kind::Raw => recorded(Box::new(RawReader::new(counted(source))) as Items),
         };
@@ -205,10 +205,10 @@ impl SessionReader {
 
     /// Where it is from a board: its last `Hello` so far, if there was one.
     #[must_use]
-    pub fn recorded(&self) -> Option<Option<&Hello>> {
+    pub fn hello(&self) -> Option<&Hello> {
         match &self.rows {
             Rows::Csv(_) => None,
-            Rows::Recorded(rows, _) => Some(rows.hello()),
+            Rows::Recorded(rows, _) => rows.hello(),
         }
     }
 

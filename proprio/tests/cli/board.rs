@@ -58,9 +58,9 @@ impl SyntheticBoard {
         let sample = Sample { tick, time_us: u64::from(tick) * 10_000 + 137, tare: self.arm.tares(), bend, imu };
         let estimate = self.arm.step(&sample);
         let mut messages = Vec::new();
-        messages.extend((tick % 100 == 0).then(|| Message::Hello(self.hello())));
+        messages.extend(tick.is_multiple_of(100).then(|| Message::Hello(self.hello())));
         messages.extend([Message::Sample(sample), Message::Estimate(estimate)]);
-        messages.extend((tick % 20 == 0).then(|| Message::Health(health(tick))));
+        messages.extend(tick.is_multiple_of(20).then(|| Message::Health(health(tick))));
         let mut buffer = [0; MAX_FRAME];
         let frame = |message: &Message| self.encoder.encode(message, &mut buffer).expect("it fits").to_vec();
         Some((messages.iter().map(frame).collect(), estimate))

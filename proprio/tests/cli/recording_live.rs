@@ -53,7 +53,7 @@ fn play(folder: &Folder, seconds: f64, done: impl FnOnce(&mut Child)) -> String 
 
 /// Waits until the recording has so many bytes.
 fn wait_for_bytes(folder: &Folder, bytes: u64) {
-    let end = Instant::now() + Duration::from_secs(60);
+    let end = Instant::now() + Duration::from_mins(1);
     let length = || std::fs::metadata(folder.path("a.mcap")).map_or(0, |file| file.len());
     while length() < bytes {
         assert!(Instant::now() < end, "{} of {bytes} bytes", length());

@@ -97,9 +97,10 @@ fn the_first_estimate_that_differs_is_named() {
     assert_eq!((&first["tick"], &first["segment"]), (&300.into(), &3.into()));
     let difference = |name: &str| {
         let [recorded, computed] = ["recorded", "computed"].map(|of| first[of][name].as_f64().expect("a number"));
-        recorded - computed
+        // Units of 2⁻²⁶, of which both are whole numbers.
+        ((recorded - computed) * 67_108_864.0) as i64
     };
-    assert_eq!(["theta_rad", "x_m", "y_m"].map(difference), [0.0, 0.0, 2.0_f64.powi(-26)]);
+    assert_eq!(["theta_rad", "x_m", "y_m"].map(difference), [0, 0, 1]);
     assert!(stderr.contains("200 of 500 recorded estimates are not those of this replay"), "{stderr}");
     assert!(stderr.contains("tick 300, segment 3, recorded θ "), "{stderr}");
 }

@@ -124,7 +124,10 @@ impl Transport for Line {
     }
 
     fn write(&mut self, bytes: &[u8]) -> io::Result<()> {
-        bytes.iter().for_each(|byte| self.board().hear(*byte));
+        let mut board = self.board();
+        for byte in bytes {
+            board.hear(*byte);
+        }
         Ok(())
     }
 }

@@ -20,7 +20,7 @@ fn told(table: Option<u32>, hello: &Hello) -> Vec<Taken> {
 
 fn mismatches(told: &[Taken]) -> Vec<&Mismatch> {
     let mismatch = |taken| match taken {
-        &Taken::Mismatch(ref mismatch) => Some(mismatch),
+        Taken::Mismatch(mismatch) => Some(mismatch),
         _ => None,
     };
     told.iter().filter_map(mismatch).collect()

@@ -123,7 +123,9 @@ fn a_restart_is_told_by_its_ticks_where_the_boot_has_the_same_number() {
     let first = frames[..200].concat();
     intake.open();
     let mut take = |intake: &mut Intake, bytes: &[u8]| {
-        bytes.iter().for_each(|byte| intake.push(*byte, |taken| restarts += u32::from(taken == Taken::Restarted)));
+        for byte in bytes {
+            intake.push(*byte, |taken| restarts += u32::from(taken == Taken::Restarted));
+        }
     };
     take(&mut intake, &first);
     for message in [Message::Hello(hello(1)), Message::Sample(sample(0)), Message::Hello(hello(1))] {
