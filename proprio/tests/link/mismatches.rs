@@ -19,11 +19,12 @@ fn told(table: Option<u32>, hello: &Hello) -> Vec<Taken> {
 }
 
 fn mismatches(told: &[Taken]) -> Vec<&Mismatch> {
-    let mismatch = |taken| match taken {
-        Taken::Mismatch(mismatch) => Some(mismatch),
-        _ => None,
-    };
-    told.iter().filter_map(mismatch).collect()
+    told.iter()
+        .filter_map(|taken| match taken {
+            Taken::Mismatch(mismatch) => Some(mismatch),
+            _ => None,
+        })
+        .collect()
 }
 
 #[test]
