@@ -18,8 +18,8 @@
 //! ```
 //!
 //! With the feature `rt`, a HardFault (which also stands for every other fault, as none has a handler of its own) calls the
-//! hook of [`on_fault`], records "HardFault pc=… cfsr=…" and resets. It does so on a fresh stack, so that an overflowed
-//! one does no harm.
+//! hook of [`on_fault`], records "HardFault pc=… cfsr=…" and resets. Where the stack has overflowed it does so on a fresh
+//! one.
 
 use core::cell::{Cell, UnsafeCell};
 use core::fmt::{self, Write};

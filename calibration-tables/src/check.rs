@@ -5,6 +5,7 @@ use std::ops::RangeInclusive;
 use estimator_core::{BendMap, H_LIMIT, SENSORS_PER_SEGMENT, VOLTS_PER_COUNT};
 
 use crate::file::{ArmFile, BendKeys, FileError, MAX_SEGMENTS, MAX_WINDOW, NoiseKeys, SegmentKeys};
+use crate::tuning::TuningKeys;
 
 /// Lengths that fixed point holds with room for the chain (m: ±32).
 const MAX_ARM_MM: f64 = 16_000.0;
@@ -14,8 +15,8 @@ const MAX_ANGLE: f64 = std::f64::consts::TAU;
 const MAX_COEFFICIENT: f64 = 31.0;
 /// r_imu over r_bend: beyond it fixed point has no digits left for the smaller one.
 const VARIANCE_RATIO: RangeInclusive<f64> = 1e-5..=1e5;
-/// A measurement that is a multiple of the state, but not another one.
-const H: RangeInclusive<f64> = 0.5..=H_LIMIT;
+/// H of a filter: a measurement that is a multiple of the state, but not another one.
+pub const H_RANGE: RangeInclusive<f64> = 0.5..=H_LIMIT;
 /// Voltages that the ADC can read, with some room for rounding.
 const ADC_VOLTS: RangeInclusive<f64> = -0.001..=3.301;
 
@@ -34,6 +35,7 @@ impl ArmFile {
         ensure((1..=MAX_WINDOW).contains(&window), "anchor.window", &window, &format!("1 to {MAX_WINDOW} values"))?;
         within("anchor.threshold_deg", self.anchor.threshold_deg, 0.0..=360.0)?;
         within("anchor.rate_hz", self.anchor.rate_hz, 0.01..=10_000.0)?;
+        self.tuning.as_ref().map_or(Ok(()), TuningKeys::check)?;
         for (i, segment) in self.segments.iter().enumerate() {
             segment.check(&format!("segment[{}]", i + 1))?;
         }
@@ -130,12 +132,12 @@ impl NoiseKeys {
         within(&format!("{key}.r_bend"), self.r_bend, 1e-12..=1e6)?;
         within(&format!("{key}.r_imu"), self.r_imu, 1e-12..=1e6)?;
         within(&format!("{key}.r_imu / r_bend"), self.r_imu / self.r_bend, VARIANCE_RATIO)?;
-        within(&format!("{key}.h_imu"), self.h_imu, H)?;
-        within(&format!("{key}.h_bend"), self.h_bend, H)
+        within(&format!("{key}.h_imu"), self.h_imu, H_RANGE)?;
+        within(&format!("{key}.h_bend"), self.h_bend, H_RANGE)
     }
 }
 
-fn ensure(holds: bool, key: &str, found: &impl ToString, expected: &str) -> Result<(), FileError> {
+pub(crate) fn ensure(holds: bool, key: &str, found: &impl ToString, expected: &str) -> Result<(), FileError> {
     if holds {
         return Ok(());
     }
@@ -143,6 +145,6 @@ fn ensure(holds: bool, key: &str, found: &impl ToString, expected: &str) -> Resu
 }
 
 /// NaN is within no range.
-fn within(key: &str, value: f64, range: RangeInclusive<f64>) -> Result<(), FileError> {
+pub(crate) fn within(key: &str, value: f64, range: RangeInclusive<f64>) -> Result<(), FileError> {
     ensure(range.contains(&value), key, &format!("{value:?}"), &format!("{:?} to {:?}", range.start(), range.end()))
 }

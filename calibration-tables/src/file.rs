@@ -8,6 +8,7 @@ use serde::{Deserialize, Deserializer, Serialize};
 use toml_edit::Item;
 
 use crate::place::{line_and_column, line_of};
+use crate::tuning::TuningKeys;
 
 /// The `format` that this crate reads and writes.
 const FORMAT: u32 = 1;
@@ -34,6 +35,9 @@ pub struct ArmFile {
     /// The drift anchor.
     #[serde(default)]
     pub anchor: AnchorKeys,
+    /// How the filters were tuned, where they were.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tuning: Option<TuningKeys>,
     /// The segments from the base to the tip.
     #[serde(rename = "segment")]
     pub segments: Vec<SegmentKeys>,

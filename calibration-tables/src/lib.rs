@@ -34,12 +34,15 @@ mod file;
 mod noise;
 mod place;
 mod source;
+mod tuning;
 
 pub use bake::Baked;
+pub use check::H_RANGE;
 pub use file::{
     AnchorKeys, ArmFile, BendKeys, FileError, MAX_SEGMENTS, MAX_WINDOW, NoiseKeys, SegmentKeys, Side, TareKeys,
 };
 pub use noise::{LAG_S, RMSE_DEG_UNKNOWN};
+pub use tuning::{RmseKeys, Stopped, TuningKeys};
 
 /// The reference arm's description, `arms/planar-6.toml`.
 pub const PLANAR_6_ARM: &str = include_str!("../arms/planar-6.toml");

@@ -29,7 +29,8 @@ impl NoiseKeys {
 
 impl SegmentKeys {
     /// KF_orient's parameters: the file's, or those of the maps' residuals.
-    pub(crate) fn orient_or_default(&self) -> NoiseKeys {
+    #[must_use]
+    pub fn orient_or_default(&self) -> NoiseKeys {
         self.orient.clone().unwrap_or_else(|| {
             let sensors = self.bend.as_deref().unwrap_or_default();
             let variance = |rmse_deg: f64| rmse_deg.to_radians().max(1e-4).powi(2);
@@ -42,7 +43,8 @@ impl SegmentKeys {
     }
 
     /// KF_coord's parameters: the file's, or R_bend of KF_orient moved to the arc's end, which an error δθ shifts by L/2 δθ.
-    pub(crate) fn coord_or_default(&self) -> NoiseKeys {
+    #[must_use]
+    pub fn coord_or_default(&self) -> NoiseKeys {
         self.coord.clone().unwrap_or_else(|| {
             let r_bend = self.orient_or_default().r_bend * (self.length_mm / 2000.0).powi(2);
             NoiseKeys::from_variances(COORD_RATIO_UNKNOWN * r_bend, r_bend)

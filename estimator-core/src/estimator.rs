@@ -291,11 +291,7 @@ impl<S: Scalar, const W: usize> State<S, W> {
     /// KF_orient and KF_coord of one segment, with the measurements that there are.
     #[inline]
     fn fuse(&mut self, imu_c: Option<Link<S>>, bend: Option<Link<S>>) -> Option<Fused<S>> {
-        // A segment without bend sensors drifts on; whole turns say nothing of its bend, and fixed point ends at 32 rad.
-        let imu_c = imu_c.map(|link| match link.theta {
-            Angle { turns: 0, .. } => link,
-            Angle { rest, .. } => self.pcc.link(Angle::from(rest)),
-        });
+        let imu_c = imu_c.map(|link| self.pcc.within_a_turn(link));
         let theta = |link: Link<S>| SVector::from([link.theta.rest]);
         self.orient.step(&self.orient_gains, imu_c.map(theta), bend.map(theta));
         self.coord.step(&self.coord_gains, imu_c.map(|link| link.end), bend.map(|link| link.end));

@@ -197,6 +197,17 @@ impl<S: Scalar> Pcc<S> {
         }
     }
 
+    /// The link as the filters take it, without whole turns: a segment without bend sensors drifts on, turns say nothing of
+    /// its bend, and fixed point ends at 32 rad.
+    #[inline]
+    #[must_use]
+    pub fn within_a_turn(&self, link: Link<S>) -> Link<S> {
+        match link.theta {
+            Angle { turns: 0, .. } => link,
+            Angle { rest, .. } => self.link(Angle::from(rest)),
+        }
+    }
+
     #[cold]
     fn by_arc(&self, theta: Angle<S>) -> Link<S> {
         let arc = Arc::new(theta);

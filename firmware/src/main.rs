@@ -3,13 +3,17 @@
 //! A timer triggers the ADC 100 times a second, by hardware and without jitter. 200 µs later, when the scan of the twelve
 //! bend sensors is in memory, its interrupt is the tick: everything else follows from there.
 //!
-//! | task | priority | period | bound |
-//! |---|---|---|---|
-//! | `twi1`, `time` | 4 | a byte on the I²C bus; a timer's alarm | 10 µs |
-//! | `tick` | 3 | 10 ms | 100 µs: scan, pressures, watchdog |
-//! | `requests` | 2 | 10 ms | 1 ms: what the host asks |
-//! | `shape` | 1 | 10 ms | 8 ms: IMUs (4 ms at most), estimator, messages |
-//! | `idle` | 0 | | sleeps |
+//! | task | priority | period | bound, µs | longest measured, µs | what |
+//! |---|---|---|---|---|---|
+//! | `twi1` | 4 | a byte on the I²C bus | 5 | 1.4 | wakes the bus |
+//! | `time` | 4 | a timer's alarm | 5 | 2.3 | wakes who waited |
+//! | `tick` | 3 | 10 ms | 100 | 44 | scan, pressures, watchdog |
+//! | `requests` | 2 | 10 ms | 1000 | 332 | what the host asks |
+//! | `shape` | 1 | 10 ms | 6000 | 4215 | IMUs (4 ms at most), estimator, messages |
+//! | `idle` | 0 | | | | sleeps |
+//!
+//! From a task's interrupt to its end, with what preempts it, and for `shape` from the tick. `cargo xtask bench` measures it
+//! on the emulated board, in a run with faults and floods of requests, and holds it against the bounds.
 //!
 //! The watchdog is fed in `tick`, and only while all tasks report in time. Every panic and fault vents the arm first.
 #![no_std]

@@ -26,10 +26,16 @@ pub struct Cli {
 
 #[derive(Debug, Subcommand)]
 pub enum Command {
+    /// Give a session the truth that a camera saw by its own clock
+    Align(Align),
     /// Make a table of a session with camera truth
     Calibrate(Calibrate),
+    /// Tune the filters of a table on sessions with truth; Ctrl-C keeps the best so far
+    Tune(Tune),
     /// Run sessions through the estimator and compare with truth
     Replay(Replay),
+    /// Make a page of figures of sessions, and the numbers behind them
+    Report(Report),
     /// Record a session of the simulated arm
     Simulate(Simulate),
     /// List the serial ports, and which of them a Due is on
@@ -47,6 +53,21 @@ pub enum Command {
 }
 
 #[derive(Debug, Args)]
+pub struct Align {
+    /// Session without truth, as it was recorded
+    pub session: PathBuf,
+    /// What the camera saw: poses of the markers, a row a frame
+    #[arg(long, value_name = "CAMERA.csv")]
+    pub camera: PathBuf,
+    /// Arm description, or table
+    #[arg(long, value_name = "ARM.toml")]
+    pub arm: PathBuf,
+    /// Session with truth to write
+    #[arg(short, long, value_name = "ALIGNED.csv")]
+    pub output: PathBuf,
+}
+
+#[derive(Debug, Args)]
 pub struct Calibrate {
     /// Session with truth: a slow sweep of every segment through its whole range
     pub session: PathBuf,
@@ -59,9 +80,22 @@ pub struct Calibrate {
 }
 
 #[derive(Debug, Args)]
+pub struct Tune {
+    /// Training sessions with truth, all of the same arm
+    #[arg(required = true, value_name = "SESSION")]
+    pub sessions: Vec<PathBuf>,
+    /// Table of the arm
+    #[arg(long, value_name = "TABLE.toml")]
+    pub table: PathBuf,
+    /// Table to write
+    #[arg(short, long, value_name = "TABLE.toml")]
+    pub output: PathBuf,
+}
+
+#[derive(Debug, Args)]
 pub struct Replay {
     /// Sessions to replay, one after the other
-    #[arg(required = true, value_name = "SESSION.csv")]
+    #[arg(required = true, value_name = "SESSION")]
     pub sessions: Vec<PathBuf>,
     /// Table of the arm
     #[arg(long, value_name = "TABLE.toml")]
@@ -75,6 +109,25 @@ pub struct Replay {
     /// Run the 64-bit float reference instead of the board's fixed point
     #[arg(long)]
     pub float: bool,
+}
+
+#[derive(Debug, Args)]
+pub struct Report {
+    /// Sessions to show, with or without truth
+    #[arg(required = true, value_name = "SESSION")]
+    pub sessions: Vec<PathBuf>,
+    /// Table of the arm
+    #[arg(long, value_name = "TABLE.toml")]
+    pub table: PathBuf,
+    /// Page to write
+    #[arg(short, long, value_name = "REPORT.html")]
+    pub output: PathBuf,
+    /// Write the numbers behind the figures as JSON
+    #[arg(long, value_name = "FILE.json")]
+    pub json: Option<PathBuf>,
+    /// Write the numbers behind the figures as CSV, a row a number
+    #[arg(long, value_name = "FILE.csv")]
+    pub csv: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]
@@ -94,6 +147,9 @@ pub struct Simulate {
     /// Form of the IMU readings
     #[arg(long, value_enum, default_value_t = ImuColumns::Deg)]
     pub imu: ImuColumns,
+    /// Write the truth as a camera above the arm sees it, into a file of its own and by its own clock
+    #[arg(long, value_name = "CAMERA.csv")]
+    pub camera: Option<PathBuf>,
     /// Session to write
     #[arg(short, long, value_name = "SESSION.csv")]
     pub output: PathBuf,

@@ -5,9 +5,11 @@ use std::path::PathBuf;
 
 use calibration_tables::FileError;
 
+use crate::align::AlignmentError;
 use crate::calibrate::CalibrationError;
 use crate::link::LinkError;
 use crate::session::SessionError;
+use crate::tune::TuningError;
 
 /// Why a command stopped.
 #[derive(Debug, thiserror::Error)]
@@ -34,6 +36,22 @@ pub enum Error {
     /// A board cannot be reached.
     #[error(transparent)]
     Link(#[from] LinkError),
+    /// Filters cannot be tuned on a session, or in a table.
+    #[error("{}: {source}", path.display())]
+    Tuning {
+        /// The session or the table.
+        path: PathBuf,
+        /// What is wrong with it.
+        source: TuningError,
+    },
+    /// A camera's file and a session cannot be brought together.
+    #[error("{}: {source}", path.display())]
+    Alignment {
+        /// The file that is to blame, the camera's where it is both.
+        path: PathBuf,
+        /// What is wrong.
+        source: AlignmentError,
+    },
     /// A file cannot be written.
     #[error("{}: cannot be written: {source}", path.display())]
     Output {
@@ -45,6 +63,9 @@ pub enum Error {
     /// An output that would replace its own input.
     #[error("{}: is read by this command and cannot be its output as well", .0.display())]
     Overwrite(PathBuf),
+    /// Two outputs of one name.
+    #[error("{}: cannot hold two outputs of this command", .0.display())]
+    OutputTwice(PathBuf),
     /// An output that would replace a file which cannot be made again.
     #[error("{}: is there already, and a recording cannot be had again", .0.display())]
     Exists(PathBuf),
@@ -77,8 +98,10 @@ impl Error {
             Self::Table { source, .. } => source.remedy().to_owned(),
             Self::Calibration { source, .. } => source.remedy(),
             Self::Link(error) => error.remedy().to_owned(),
+            Self::Tuning { source, .. } => source.remedy().to_owned(),
+            Self::Alignment { source, .. } => source.remedy().to_owned(),
             Self::Output { .. } => "choose a folder that exists, can be written to and has room".to_owned(),
-            Self::Overwrite(_) | Self::Exists(_) => "give the output another name".to_owned(),
+            Self::Overwrite(_) | Self::OutputTwice(_) | Self::Exists(_) => "give the output another name".to_owned(),
             Self::OutputKind(_) => "give the output one of these endings".to_owned(),
             Self::SameKind(_) => "copy the file, or give the output another ending".to_owned(),
             Self::Stdout(_) => "write to a place that has room, or use --out".to_owned(),

@@ -1,4 +1,4 @@
-//! Ctrl-C and termination: a command that runs until it is told to stop ends well, every other one at once.
+//! Ctrl-C and termination: the program ends at once, but for work that can end early and has something to show for it.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -7,29 +7,43 @@ use crate::output::discard_unfinished;
 /// Exit status after Ctrl-C or a termination, as shells have it.
 const INTERRUPTED: i32 = 130;
 
-/// A command ends by itself when it is asked to.
-static AWAITED: AtomicBool = AtomicBool::new(false);
-static ASKED: AtomicBool = AtomicBool::new(false);
+static IS_HEEDED: AtomicBool = AtomicBool::new(false);
+static IS_REQUESTED: AtomicBool = AtomicBool::new(false);
 
 /// Handles interrupts from now on.
 pub fn install() {
     // Without a handler an interrupt leaves an unfinished file behind, and nothing worse.
     let _ = ctrlc::set_handler(|| {
         // Who asks twice does not want to wait.
-        if !AWAITED.load(Ordering::SeqCst) || ASKED.swap(true, Ordering::SeqCst) {
+        if !IS_HEEDED.load(Ordering::SeqCst) || IS_REQUESTED.swap(true, Ordering::SeqCst) {
             discard_unfinished();
             std::process::exit(INTERRUPTED);
         }
     });
 }
 
-/// This command ends by itself, when [`is_asked`] says so.
-pub fn wait_for() {
-    AWAITED.store(true, Ordering::SeqCst);
+/// While this lives, the first interrupt asks its owner to come to an end, and only a second one ends the program.
+#[derive(Debug)]
+pub struct Heed(());
+
+impl Heed {
+    /// From now on interrupts are heeded.
+    #[must_use]
+    pub fn interrupts() -> Self {
+        IS_REQUESTED.store(false, Ordering::SeqCst);
+        IS_HEEDED.store(true, Ordering::SeqCst);
+        Self(())
+    }
+
+    /// Whether there was one.
+    #[must_use]
+    pub fn is_requested(&self) -> bool {
+        IS_REQUESTED.load(Ordering::SeqCst)
+    }
 }
 
-/// Whether the command shall end.
-#[must_use]
-pub fn is_asked() -> bool {
-    ASKED.load(Ordering::SeqCst)
+impl Drop for Heed {
+    fn drop(&mut self) {
+        IS_HEEDED.store(false, Ordering::SeqCst);
+    }
 }

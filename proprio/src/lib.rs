@@ -1,4 +1,4 @@
-//! The host side of `proprio`: sessions, calibration, replay, simulation, and the link to a board.
+//! The host side of `proprio`: sessions, calibration, replay, reports, simulation, and the link to a board.
 //!
 //! The command-line tool is a thin layer over these modules; the tests and benchmarks of the workspace use them as well.
 //!
@@ -19,10 +19,13 @@
 //! # Ok::<(), proprio::error::Error>(())
 //! ```
 
+pub mod align;
 pub mod calibrate;
 pub mod convert;
+pub mod distances;
 pub mod error;
 pub mod estimates;
+pub mod figures;
 pub mod interrupt;
 pub mod link;
 pub mod output;
@@ -34,3 +37,4 @@ pub mod score;
 pub mod session;
 pub mod simulate;
 pub mod status;
+pub mod tune;

@@ -40,6 +40,14 @@ impl Progress {
         self.bar.set_position(done);
     }
 
+    /// `done` parts are done, each of which takes long, and the work is called `what` from here on.
+    pub fn tell(&mut self, done: u64, what: String) {
+        self.what = what;
+        self.calls = CALLS - 1;
+        self.set(done);
+        self.bar.set_message(self.what.clone());
+    }
+
     fn show(&self) {
         let style = ProgressStyle::with_template("{msg} [{bar:40}] {percent} % {eta} left");
         self.bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));

@@ -3,13 +3,14 @@
 use estimator_core::{Method, Scalar};
 use serde::Serialize;
 
+use crate::distances::Distances;
 use crate::replay::Outcome;
 use crate::session::Row;
 
 /// Errors of one method, gathered over one or more sessions.
 #[derive(Debug, Clone, Default)]
 struct Errors {
-    tips_m: Vec<f64>,
+    tips: Distances,
     theta_square_sum: f64,
     thetas: u64,
 }
@@ -28,10 +29,21 @@ pub struct Figures {
     pub tip_rmse_mm: Option<f64>,
     /// The same in % of the arm's length.
     pub tip_rmse_percent: Option<f64>,
-    /// 75th percentile of the tip's distance, mm.
+    /// 75th percentile of the tip's distance, mm; to 10⁻⁴ of it.
     pub tip_p75_mm: Option<f64>,
     /// Root mean square error of the bend angles, over all segments, degrees.
     pub theta_rmse_deg: Option<f64>,
+}
+
+/// Distance of the tip from its true place by each of [`Method::ALL`], where both are known, m.
+#[must_use]
+pub fn tip_errors_m<S: Scalar>(row: &Row, outcome: &Outcome<S>) -> [Option<f64>; Method::ALL.len()] {
+    outcome.shapes.each_ref().map(|shape| {
+        let tip = shape.last()?.end?;
+        let truth = row.truth.get(shape.len() - 1).copied().flatten()?;
+        let (dx, dy) = (tip.x.to_f64() - truth.x_m, tip.y.to_f64() - truth.y_m);
+        Some((dx * dx + dy * dy).sqrt())
+    })
 }
 
 impl Score {
@@ -50,10 +62,10 @@ impl Score {
                     errors.thetas += 1;
                 }
             }
-            let tip = shape.last().and_then(|segment| segment.end);
-            if let Some((tip, truth)) = tip.zip(row.truth.get(shape.len().wrapping_sub(1)).copied().flatten()) {
-                let (dx, dy) = (tip.x.to_f64() - truth.x_m, tip.y.to_f64() - truth.y_m);
-                errors.tips_m.push((dx * dx + dy * dy).sqrt());
+        }
+        for (errors, tip_m) in self.errors.iter_mut().zip(tip_errors_m(row, outcome)) {
+            if let Some(tip_m) = tip_m {
+                errors.tips.add(tip_m);
             }
         }
     }
@@ -61,49 +73,30 @@ impl Score {
     /// Adds all errors of another session of the same arm.
     pub fn append(&mut self, other: &Self) {
         for (errors, other) in self.errors.iter_mut().zip(&other.errors) {
-            errors.tips_m.extend_from_slice(&other.tips_m);
+            errors.tips.append(&other.tips);
             errors.theta_square_sum += other.theta_square_sum;
             errors.thetas += other.thetas;
         }
+    }
+
+    /// Distances of the tip from its true place by `method`.
+    #[must_use]
+    pub fn tips(&self, method: Method) -> &Distances {
+        &self.errors[method as usize].tips
     }
 
     /// The figures of each of [`Method::ALL`].
     #[must_use]
     pub fn figures(&self) -> [Figures; Method::ALL.len()] {
         self.errors.each_ref().map(|errors| {
-            let tip_rmse_m = rms(errors.tips_m.iter().map(|d| d * d).sum(), errors.tips_m.len());
+            let tip_rmse_m = errors.tips.rms_m();
+            let theta_mean_square = errors.theta_square_sum / errors.thetas as f64;
             Figures {
                 tip_rmse_mm: tip_rmse_m.map(|m| m * 1e3),
                 tip_rmse_percent: tip_rmse_m.map(|m| m / self.length_m * 100.0),
-                tip_p75_mm: quantile(errors.tips_m.clone(), 0.75).map(|m| m * 1e3),
-                theta_rmse_deg: rms(errors.theta_square_sum, errors.thetas as usize).map(f64::to_degrees),
+                tip_p75_mm: errors.tips.quantile_m(0.75).map(|m| m * 1e3),
+                theta_rmse_deg: (errors.thetas > 0).then(|| theta_mean_square.sqrt().to_degrees()),
             }
         })
-    }
-}
-
-fn rms(square_sum: f64, count: usize) -> Option<f64> {
-    (count > 0).then(|| (square_sum / count as f64).sqrt())
-}
-
-/// The quantile between the two nearest values, linearly interpolated.
-fn quantile(mut values: Vec<f64>, share: f64) -> Option<f64> {
-    let last = values.len().checked_sub(1)?;
-    values.sort_unstable_by(f64::total_cmp);
-    let place = share * last as f64;
-    let below = place.floor() as usize;
-    let [lo, hi] = [below, (below + 1).min(last)].map(|i| values[i]);
-    Some(lo + (hi - lo) * place.fract())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::quantile;
-
-    #[test]
-    fn a_quantile_lies_between_its_neighbours() {
-        assert_eq!(quantile(vec![4.0, 1.0, 3.0, 2.0], 0.75), Some(3.25));
-        assert_eq!(quantile(vec![7.0], 0.75), Some(7.0));
-        assert_eq!(quantile(Vec::new(), 0.75), None);
     }
 }

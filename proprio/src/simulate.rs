@@ -1,6 +1,6 @@
 //! The twin as a rig that is recorded: its own duty programme, sampled at a fixed rate.
 
-use rig_twin::{BEND_SENSORS, EndPose, Program, Rig, SEGMENTS, Scenario};
+use rig_twin::{BEND_SENSORS, Camera, EndPose, Frame, Program, REGULATORS, Rig, SEGMENTS, Scenario};
 
 use crate::error::Error;
 
@@ -27,6 +27,8 @@ pub struct Simulation {
     rate_hz: f64,
     samples: u64,
     next: u64,
+    camera: Option<Camera>,
+    frames: Vec<Frame>,
 }
 
 impl Simulation {
@@ -43,7 +45,19 @@ impl Simulation {
             return Err(Error::Seconds(seconds));
         }
         let samples = (seconds * rate_hz).round().max(1.0) as u64;
-        Ok(Self { rig: Rig::new(scenario, seed), program: Program::new(scenario, seed), rate_hz, samples, next: 0 })
+        let (rig, program) = (Rig::new(scenario, seed), Program::new(scenario, seed));
+        Ok(Self { rig, program, rate_hz, samples, next: 0, camera: None, frames: Vec::new() })
+    }
+
+    /// The same run under a camera; what the arm and its sensors do stays the same to the bit.
+    #[must_use]
+    pub fn under(self, camera: Camera) -> Self {
+        Self { camera: Some(camera), ..self }
+    }
+
+    /// What the camera saw up to the last sample, since this was last asked.
+    pub fn take_frames(&mut self) -> Vec<Frame> {
+        std::mem::take(&mut self.frames)
     }
 
     /// Number of samples of the whole run.
@@ -61,8 +75,22 @@ impl Simulation {
         let ticks = ((to_s - from_s) / TICK_S - 1e-6).ceil().max(1.0);
         for k in 0..ticks as u32 {
             let dt_s = (to_s - from_s) / ticks;
-            self.rig.step(dt_s, self.program.duties(from_s + f64::from(k) * dt_s));
+            self.step(dt_s, self.program.duties(from_s + f64::from(k) * dt_s));
         }
+    }
+
+    /// Lets time pass, with a stop at every frame in it.
+    fn step(&mut self, mut dt_s: f64, duties: [f64; REGULATORS]) {
+        if let Some(camera) = &mut self.camera {
+            let mut to_frame_s = camera.next_s() - self.rig.time_s();
+            while to_frame_s < dt_s {
+                self.rig.step(to_frame_s, duties);
+                self.frames.extend(camera.take(self.rig.truth()));
+                dt_s -= to_frame_s.max(0.0);
+                to_frame_s = camera.next_s() - self.rig.time_s();
+            }
+        }
+        self.rig.step(dt_s, duties);
     }
 }
 

@@ -1,11 +1,14 @@
 //! Tables for people.
 
+use std::time::Duration;
+
+use calibration_tables::{RmseKeys, Stopped, TuningKeys};
 use comfy_table::presets::NOTHING;
 use comfy_table::{CellAlignment, Table};
 use estimator_core::Method;
 use proprio::calibrate::SensorReport;
+use proprio::figures::{AllFigures, ByMethod};
 use proprio::link::Port;
-use proprio::report::{Methods, Report};
 use proprio::score::Figures;
 
 /// One line a bend sensor.
@@ -26,35 +29,58 @@ pub fn sensors(sensors: &[SensorReport]) -> String {
     format!("{}\nmean RMSE of the V–Orient maps: {mean:.2} deg\n", text(&mut table))
 }
 
+/// What a tuning that took `time` has brought.
+pub fn tuning(record: &TuningKeys, time: Duration) -> String {
+    let mut table = table(&["RMSE", "before", "after", "held back, before", "after"]);
+    let parts = [&record.before, &record.after, &record.held_back_before, &record.held_back_after];
+    let mut add = |name: &str, figure: fn(&RmseKeys) -> f64| {
+        table.add_row([name.to_owned()].into_iter().chain(parts.map(|of| format!("{:.2}", figure(of)))));
+    };
+    add("tip, mm", |of| of.tip_rmse_mm);
+    add("all ends, mm", |of| of.position_rmse_mm);
+    add("headings, deg", |of| of.heading_rmse_deg);
+    let stopped = match record.stopped {
+        Stopped::Converged => "converged",
+        Stopped::Interrupted => "interrupted",
+        Stopped::Iterations => "not converged",
+    };
+    let each_s = time.as_secs_f64() / record.iterations.max(1) as f64;
+    let (iterations, kept) = (record.iterations, record.kept);
+    format!(
+        "{}\n{stopped} after {iterations} iterations of {each_s:.3} s; the table has iteration {kept}\n",
+        text(&mut table)
+    )
+}
+
 /// Picks one figure of a method.
 type Pick = fn(&Figures) -> Option<f64>;
 
 /// A table for each figure: a line a session, a column a method.
-pub fn replay(report: &Report) -> String {
-    let length = report.length_mm;
+pub fn replay(all: &AllFigures) -> String {
+    let length = all.length_mm;
     let parts: [(String, Pick); 4] = [
         ("Tip error, RMSE in mm".to_owned(), |figures| figures.tip_rmse_mm),
         (format!("Tip error, RMSE in % of {length} mm"), |figures| figures.tip_rmse_percent),
         ("Tip error, 75th percentile in mm".to_owned(), |figures| figures.tip_p75_mm),
         ("Bend angles, RMSE in deg".to_owned(), |figures| figures.theta_rmse_deg),
     ];
-    parts.map(|(title, figure)| format!("{title}\n{}\n", figures(report, figure))).join("\n")
+    parts.map(|(title, figure)| format!("{title}\n{}\n", figures(all, figure))).join("\n")
 }
 
-fn figures(report: &Report, figure: Pick) -> String {
+fn figures(all: &AllFigures, figure: Pick) -> String {
     let mut heads = vec!["session", "samples", "seconds"];
     heads.extend(Method::ALL.map(Method::name));
     let mut table = table(&heads);
-    let mut add = |name: String, samples: u64, seconds: f64, of: &Methods| {
+    let mut add = |name: String, samples: u64, seconds: f64, of: &ByMethod| {
         let cells = of.methods.iter().map(|of| figure(of).map_or("–".to_owned(), |value| format!("{value:.2}")));
         table.add_row([name, samples.to_string(), format!("{seconds:.1}")].into_iter().chain(cells));
     };
-    for session in &report.sessions {
+    for session in &all.sessions {
         add(session.path.clone(), session.samples, session.seconds, &session.figures);
     }
-    let samples = report.sessions.iter().map(|session| session.samples).sum();
-    let seconds = report.sessions.iter().map(|session| session.seconds).sum();
-    add("all".to_owned(), samples, seconds, &report.all);
+    let samples = all.sessions.iter().map(|session| session.samples).sum();
+    let seconds = all.sessions.iter().map(|session| session.seconds).sum();
+    add("all".to_owned(), samples, seconds, &all.all);
     text(&mut table)
 }
 

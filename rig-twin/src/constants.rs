@@ -5,6 +5,8 @@
 
 use core::f64::consts::PI;
 
+use crate::shape::EndPose;
+
 /// One degree in radians.
 pub(crate) const DEGREE_RAD: f64 = PI / 180.0;
 
@@ -225,3 +227,24 @@ pub(crate) const ACCELERATION_LAG_S: f64 = 0.3;
 pub(crate) const TILT_SIGMA_RAD: f64 = 1.5 * DEGREE_RAD;
 /// Steps of a quaternion's unit (BNO055 datasheet).
 pub(crate) const QUATERNION_UNIT_STEPS: f64 = 16384.0;
+
+// Camera.
+
+/// Frames a second (assumed: what most cameras give).
+pub(crate) const CAMERA_FRAMES_PER_S: f64 = 30.0;
+/// Share of the frames that get lost (assumed).
+pub(crate) const CAMERA_DROPPED_SHARE: f64 = 0.03;
+/// Share of the frames in which a marker is not found (assumed).
+pub(crate) const CAMERA_HIDDEN_SHARE: f64 = 0.005;
+/// Noise of a frame's time stamp, one sigma (assumed).
+pub(crate) const CAMERA_STAMP_NOISE_S: f64 = 0.002;
+/// What the camera's clock shows when the rig's shows 0 (assumed: seconds since 1970, as most computers count).
+pub(crate) const CAMERA_CLOCK_AHEAD_S: f64 = 1_760_000_000.0;
+/// How much faster the camera's clock runs, a share (assumed: two quartzes).
+pub(crate) const CAMERA_CLOCK_FAST: f64 = 80e-6;
+/// Pose of the arm's base in the camera's frame (assumed: placed by hand).
+pub(crate) const CAMERA_BASE: EndPose = EndPose { x_m: 0.310, y_m: -0.240, heading_rad: 4.0 * DEGREE_RAD };
+/// Noise of a marker's place, each axis, one sigma (assumed).
+pub(crate) const CAMERA_PLACE_NOISE_M: f64 = 0.001;
+/// Noise of a marker's heading, one sigma (assumed).
+pub(crate) const CAMERA_HEADING_NOISE_RAD: f64 = 0.5 * DEGREE_RAD;

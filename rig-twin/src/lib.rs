@@ -41,6 +41,7 @@
 
 mod actuator;
 mod bno055;
+mod camera;
 mod constants;
 mod contact;
 mod flex;
@@ -49,6 +50,7 @@ mod program;
 mod rig;
 mod shape;
 
+pub use camera::{Camera, Frame};
 pub use constants::{BEND_SENSORS, REGULATORS, SEGMENTS};
 pub use contact::Push;
 pub use program::{Program, Scenario};

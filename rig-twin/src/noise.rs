@@ -16,6 +16,7 @@ pub(crate) enum Source {
     Motion,
     Contact,
     CommonMode,
+    Camera,
 }
 
 /// A stream of random numbers.

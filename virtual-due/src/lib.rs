@@ -16,8 +16,8 @@
 //! firmware, world and input do the same.
 //!
 //! Not modelled: HSMCI, EMAC, CAN, DMAC and the memory controllers read as zero; SPI, SSC and DACC are ready at once for
-//! what goes nowhere; the native USB port never sees a host; flash wait states and the bus matrix cost no time; alarms of
-//! the RTC.
+//! what goes nowhere; the native USB port never sees a host; flash wait states and the bus matrix cost no time; the RTC's
+//! time and calendar events.
 
 mod chip;
 mod clock;

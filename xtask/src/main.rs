@@ -4,6 +4,7 @@ mod accept;
 mod bench;
 mod board;
 mod demo;
+mod results;
 mod tool;
 
 use std::process::ExitCode;
@@ -15,7 +16,8 @@ fn main() -> ExitCode {
         Some("accept") => accept::run(),
         Some("verify") => board::verify(),
         Some("bench") => bench::run(),
-        _ => Err("usage: cargo xtask demo | verify | bench | accept".to_owned()),
+        Some("results") => results::run(),
+        _ => Err("usage: cargo xtask demo | verify | bench | results | accept".to_owned()),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

@@ -4,8 +4,12 @@ use core::arch::naked_asm;
 
 use super::{SAFE_STATE, record, stop_or_reset};
 
-/// Entered by the processor. The stack may be the fault's cause, so that nothing is pushed: the frame's address goes on as
-/// an argument, and the stack starts again at its top, since nothing returns to it.
+/// What the handler needs of the stack, with room to spare.
+const ROOM: u32 = 1024;
+
+/// Entered by the processor. The stack may be the fault's cause, so that nothing is pushed before it is known to have
+/// [`ROOM`]; where it has not, it starts again at its top, since nothing returns to it. Else it stays: the frame lies on it,
+/// perhaps at its very top. The frame's address goes on as an argument.
 #[unsafe(naked)]
 #[unsafe(no_mangle)]
 #[unsafe(link_section = ".HardFault.atsam3x8e_hal")]
@@ -16,10 +20,17 @@ unsafe extern "C" fn HardFault() -> ! {
         "ite eq",
         "mrseq r0, msp",
         "mrsne r0, psp",
-        "movw r1, #:lower16:_stack_start",
-        "movt r1, #:upper16:_stack_start",
-        "msr msp, r1",
+        "movw r1, #:lower16:_stack_end",
+        "movt r1, #:upper16:_stack_end",
+        "add r1, r1, {room}",
+        "mrs r2, msp",
+        "cmp r2, r1",
+        "ittt lo",
+        "movwlo r2, #:lower16:_stack_start",
+        "movtlo r2, #:upper16:_stack_start",
+        "msrlo msp, r2",
         "b {handler}",
+        room = const ROOM,
         handler = sym hard_fault,
     )
 }

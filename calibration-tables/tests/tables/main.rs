@@ -5,3 +5,4 @@ mod baked;
 mod common;
 mod refused;
 mod round_trip;
+mod tuning;

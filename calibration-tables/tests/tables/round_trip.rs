@@ -1,6 +1,8 @@
 //! A file is written and read without loss: every number to its last bit, every name to its last character.
 
-use calibration_tables::{AnchorKeys, ArmFile, BendKeys, NoiseKeys, SegmentKeys, Side, TareKeys};
+use calibration_tables::{
+    AnchorKeys, ArmFile, BendKeys, NoiseKeys, RmseKeys, SegmentKeys, Side, Stopped, TareKeys, TuningKeys,
+};
 use proptest::option;
 use proptest::prelude::*;
 
@@ -55,17 +57,46 @@ fn segment() -> impl Strategy<Value = SegmentKeys> {
     )
 }
 
+fn rmse() -> impl Strategy<Value = RmseKeys> {
+    (magnitude(-300.0..9.0), magnitude(-3.0..9.0), prop_oneof![Just(0.0), 0.0..180.0_f64]).prop_map(
+        |(position_rmse_mm, tip_rmse_mm, heading_rmse_deg)| RmseKeys {
+            position_rmse_mm,
+            tip_rmse_mm,
+            heading_rmse_deg,
+        },
+    )
+}
+
+fn tuning() -> impl Strategy<Value = TuningKeys> {
+    let sessions = prop::collection::vec(any::<String>(), 1..4);
+    let stopped = prop_oneof![Just(Stopped::Converged), Just(Stopped::Interrupted), Just(Stopped::Iterations)];
+    let iterations = (0..=300_u64, 0..=300_u64);
+    (sessions, iterations, stopped, [rmse(), rmse(), rmse(), rmse()]).prop_map(
+        |(sessions, (iterations, kept), stopped, [before, after, held_back_before, held_back_after])| TuningKeys {
+            sessions,
+            iterations: iterations.max(kept),
+            kept,
+            stopped,
+            before,
+            after,
+            held_back_before,
+            held_back_after,
+        },
+    )
+}
+
 fn file() -> impl Strategy<Value = ArmFile> {
     let segments = prop::collection::vec(segment(), 1..=16);
     let tare = (0.0..3600.0_f64, prop_oneof![Just(None), Just(Some(-0.0)), (-3600.0..3600.0_f64).prop_map(Some)]);
     let anchor = (1..=1000_u16, 0.0..360.0_f64, magnitude(-2.0..4.0));
-    (any::<String>(), magnitude(-2.0..4.0), tare, anchor, segments).prop_map(
-        |(arm, rate_hz, (seconds, heading), (window, threshold_deg, anchor_hz), segments)| ArmFile {
+    (any::<String>(), magnitude(-2.0..4.0), tare, anchor, option::of(tuning()), segments).prop_map(
+        |(arm, rate_hz, (seconds, heading), (window, threshold_deg, anchor_hz), tuning, segments)| ArmFile {
             format: 1,
             arm,
             rate_hz,
             tare: TareKeys { seconds, heading_deg: heading.map_or_else(Vec::new, |deg| vec![deg; segments.len()]) },
             anchor: AnchorKeys { window, threshold_deg, rate_hz: anchor_hz },
+            tuning,
             segments,
         },
     )

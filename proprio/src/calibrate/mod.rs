@@ -17,6 +17,7 @@ use std::path::Path;
 use calibration_tables::{ArmFile, BendKeys};
 
 pub use error::{CalibrationError, Warning};
+pub(crate) use residuals::truth_misfit;
 
 use crate::error::Error;
 use crate::replay::NamedTable;
@@ -24,7 +25,7 @@ use sweep::Sweep;
 
 /// Truth whose tip lies further from the chain of its own headings than constant curvature explains, % of the length:
 /// a real arm has 3 %.
-const MISFIT_PERCENT: f64 = 10.0;
+pub(crate) const MISFIT_PERCENT: f64 = 10.0;
 
 /// What was found of one bend sensor.
 #[derive(Debug, Clone, PartialEq)]
@@ -63,7 +64,7 @@ pub fn calibrate(session: &Path, arm: &NamedTable) -> Result<Calibration, Error>
     warnings.extend(imus::check(&sweep).map_err(refuse)?);
     let sensors = sensors::fit(&sweep, &mut warnings).map_err(refuse)?;
 
-    let mut table = arm.file.clone();
+    let mut table = ArmFile { tuning: None, ..arm.file.clone() };
     for (i, segment) in table.segments.iter_mut().enumerate() {
         let of_segment = sensors.iter().filter(|sensor| sensor.segment == i);
         segment.bend = Some(of_segment.map(|sensor| sensor.map.clone()).collect::<Vec<BendKeys>>());

@@ -91,7 +91,7 @@ pub(super) fn set_filters(session: &Path, table: &mut NamedTable, rate_hz: f64) 
 }
 
 /// Distance of the true tip from the chain of the true bend angles, m.
-fn truth_misfit(row: &Row, segments: &[Segment<f64>]) -> Option<f64> {
+pub(crate) fn truth_misfit(row: &Row, segments: &[Segment<f64>]) -> Option<f64> {
     let thetas = segments.iter().enumerate().map(|(i, segment)| (row.true_theta(i), segment));
     let links = thetas.map(|(theta, segment)| theta.map(|theta| Pcc::new(segment).link(Angle::from(theta))));
     let tip = chain(links).last()?.end?;

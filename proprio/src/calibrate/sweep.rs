@@ -79,7 +79,7 @@ impl Sweep {
     fn push(&mut self, row: &Row, unwrap: &mut Unwrap) {
         for i in 0..self.theta.len() {
             self.theta[i].push(row.true_theta(i));
-            let truth = row.truth[i].map(|pose| Phase::from_rad(pose.heading_rad));
+            let truth = row.truth[i].and_then(|pose| pose.heading_rad).map(Phase::from_rad);
             self.heading[i].push(unwrap.truth[i].read(truth).map(Turns::rad));
             let imu = row.sample.imu[i].and_then(ImuReading::heading);
             self.imu[i].push(unwrap.imu[i].read(imu).map(Turns::rad));

@@ -1,5 +1,6 @@
 //! One file a command.
 
+mod align;
 mod calibrate;
 mod completions;
 mod convert;
@@ -8,8 +9,10 @@ mod ports;
 mod record;
 mod recover;
 mod replay;
+mod report;
 mod simulate;
 mod status;
+mod tune;
 
 use std::io::{self, Write};
 
@@ -20,8 +23,11 @@ use crate::cli::Command;
 impl Command {
     pub fn run(self) -> Result<(), Error> {
         match self {
+            Self::Align(args) => align::run(&args),
             Self::Calibrate(args) => calibrate::run(&args),
+            Self::Tune(args) => tune::run(&args),
             Self::Replay(args) => replay::run(&args),
+            Self::Report(args) => report::run(&args),
             Self::Simulate(args) => simulate::run(&args),
             Self::Ports(args) => ports::run(&args),
             Self::Status(args) => status::run(&args),

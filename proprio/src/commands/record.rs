@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
 use proprio::error::Error;
-use proprio::interrupt;
+use proprio::interrupt::Heed;
 use proprio::link::{Event, HostClock, HostNs, Link, LinkError, Subscription, What};
 use proprio::recording::Recorder;
 use proprio::replay::NamedTable;
@@ -24,11 +24,11 @@ pub fn run(args: &Record) -> Result<(), Error> {
         return Err(Error::Seconds(seconds));
     }
     let (table, link, events) = link::open(&args.link)?;
-    interrupt::wait_for();
+    let heed = Heed::interrupts();
     let file = create(&args.output)?;
     let mut session = Session::begin(file, &args.output, &link, table.as_ref())?;
     let end = args.seconds.map(|seconds| Instant::now() + Duration::from_secs_f64(seconds));
-    while session.ended.is_none() && !interrupt::is_asked() && end.is_none_or(|end| Instant::now() < end) {
+    while session.ended.is_none() && !heed.is_requested() && end.is_none_or(|end| Instant::now() < end) {
         session.step(&link, &events)?;
     }
     session.finish(link, &events)

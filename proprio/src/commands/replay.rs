@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 use estimator_core::{Q, Scalar, saturations};
 use proprio::error::Error;
 use proprio::estimates::EstimateWriter;
+use proprio::figures::{AllFigures, ByMethod, SessionFigures};
 use proprio::output::OutputFile;
 use proprio::recording::Comparison;
 use proprio::replay::{Extent, NamedTable, Outcome, replay};
-use proprio::report::{Methods, Report, SessionReport};
 use proprio::score::Score;
 use proprio::session::{LAST_LINE, Row};
 
@@ -23,7 +23,7 @@ pub fn run(args: &Replay) -> Result<(), Error> {
     let inputs: Vec<&Path> = args.sessions.iter().map(PathBuf::as_path).chain([table.path]).collect();
     let out = args.out.as_deref().map(|out| OutputFile::create(out, &inputs)).transpose()?;
     let mut out = out.map(|file| EstimateWriter::new(file, &table.file)).transpose()?;
-    let report = if args.float {
+    let figures = if args.float {
         // The board's fixed point says nothing of floats.
         replay_all::<f64>(&args.sessions, &table, out.as_mut(), None)?
     } else {
@@ -35,7 +35,7 @@ pub fn run(args: &Replay) -> Result<(), Error> {
             "fixed point saturated {times} times: a reading or the table is out of range; compare with --float"
         )),
     }
-    let text = if args.json { super::json(&report) } else { tables::replay(&report) };
+    let text = if args.json { super::json(&figures) } else { tables::replay(&figures) };
     // The file gets its name last, so that a command that fails leaves none.
     super::print(&text)?;
     out.map_or(Ok(()), EstimateWriter::finish)
@@ -55,10 +55,10 @@ fn replay_all<S: Scalar>(
     table: &NamedTable,
     mut out: Option<&mut EstimateWriter>,
     compare: Option<Compare<S>>,
-) -> Result<Report, Error> {
+) -> Result<AllFigures, Error> {
     let length_mm = table.file.length_mm();
     let mut all = Score::new(length_mm);
-    let mut reports = Vec::new();
+    let mut each = Vec::new();
     for path in sessions {
         let mut score = Score::new(length_mm);
         let mut comparison = Comparison::default();
@@ -80,8 +80,8 @@ fn replay_all<S: Scalar>(
             tell(path, recorded);
         }
         all.append(&score);
-        let figures = Methods { methods: score.figures() };
-        reports.push(SessionReport { path: path.display().to_string(), samples, seconds, figures, recorded });
+        let figures = ByMethod { methods: score.figures() };
+        each.push(SessionFigures { path: path.display().to_string(), samples, seconds, figures, recorded });
     }
-    Ok(Report { sessions: reports, all: Methods { methods: all.figures() }, length_mm })
+    Ok(AllFigures { sessions: each, all: ByMethod { methods: all.figures() }, length_mm })
 }

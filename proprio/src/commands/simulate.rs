@@ -1,29 +1,52 @@
 //! `proprio simulate`.
 
+use std::io;
+use std::path::Path;
+
 use proprio::error::Error;
 use proprio::output::OutputFile;
 use proprio::progress::Progress;
-use proprio::session::SessionWriter;
+use proprio::session::{CameraWriter, SessionWriter};
 use proprio::simulate::Simulation;
-use rig_twin::Scenario;
+use rig_twin::{Camera, Scenario};
 
 use crate::cli::{ScenarioName, Simulate};
 
 pub fn run(args: &Simulate) -> Result<(), Error> {
-    let simulation = Simulation::new(args.scenario.into(), args.seed, args.seconds, args.rate)?;
-    let mut file = OutputFile::create(&args.output, &[])?;
-    let mut progress = Progress::new("simulating".to_owned(), simulation.samples());
-    write(&mut file, args, simulation, &mut progress).map_err(|error| file.error(error))?;
-    file.finish()
-}
+    let mut simulation = Simulation::new(args.scenario.into(), args.seed, args.seconds, args.rate)?;
+    if args.camera.as_ref() == Some(&args.output) {
+        return Err(Error::OutputTwice(args.output.clone()));
+    }
+    let file = OutputFile::create(&args.output, &[])?;
+    let mut session = match &args.camera {
+        None => SessionWriter::new(file, args.imu),
+        Some(_) => SessionWriter::without_truth(file, args.imu),
+    }
+    .map_err(to_write(&args.output))?;
+    let mut camera = None;
+    if let Some(path) = &args.camera {
+        camera = Some(CameraWriter::new(OutputFile::create(path, &[])?).map_err(to_write(path))?);
+        simulation = simulation.under(Camera::new(args.seed));
+    }
 
-fn write(file: &mut OutputFile, args: &Simulate, run: Simulation, progress: &mut Progress) -> std::io::Result<()> {
-    let mut session = SessionWriter::new(file, args.imu)?;
-    for (done, sample) in (1..).zip(run) {
-        session.write(&sample)?;
+    let mut progress = Progress::new("simulating".to_owned(), simulation.samples());
+    let mut done = 0;
+    while let Some(sample) = simulation.next() {
+        session.write(&sample).map_err(to_write(&args.output))?;
+        if let Some((camera, path)) = camera.as_mut().zip(args.camera.as_ref()) {
+            let mut frames = simulation.take_frames().into_iter();
+            frames.try_for_each(|frame| camera.write(&frame)).map_err(to_write(path))?;
+        }
+        done += 1;
         progress.set(done);
     }
-    Ok(())
+    camera.map_or(Ok(()), |camera| camera.into_inner().finish())?;
+    session.into_inner().finish()
+}
+
+/// The error of a file that cannot be written.
+fn to_write(path: &Path) -> impl Fn(io::Error) -> Error {
+    move |source| Error::Output { path: path.to_owned(), source }
 }
 
 impl From<ScenarioName> for Scenario {

@@ -7,18 +7,20 @@ use estimator_core::{ImuReading, SENSORS_PER_SEGMENT};
 use crate::error::Error;
 use crate::output::OutputFile;
 use crate::progress::Progress;
-use crate::session::{Kind, Row, SENSOR_NAMES, SessionReader, TARE};
+use crate::session::{Kind, Row, SENSOR_NAMES, SessionReader, TARE, Truth};
 
 /// Which columns there are.
 struct Layout {
     bend_sensors: Vec<[bool; SENSORS_PER_SEGMENT]>,
     has_truth: bool,
+    has_true_headings: bool,
 }
 
 /// Writes all rows, and gives what was left out.
 pub fn write(mut reader: SessionReader, mut file: OutputFile) -> Result<(OutputFile, Vec<String>), Error> {
     let bend_sensors = reader.bend_sensors().take(reader.segments_read()).collect();
-    let layout = Layout { bend_sensors, has_truth: reader.has_truth() };
+    let (has_truth, has_true_headings) = (reader.has_truth(), reader.has_true_headings());
+    let layout = Layout { bend_sensors, has_truth, has_true_headings };
     layout.write_header(&mut file).map_err(|error| file.error(error))?;
     let mut progress = Progress::new("converting".to_owned(), reader.progress().1);
     let (mut starts, mut estimates) = (0_u64, 0_u64);
@@ -49,7 +51,10 @@ impl Layout {
         }
         for i in (1..=self.bend_sensors.len()).take_while(|_| self.has_truth) {
             // m and rad, so that no digit is lost on the way.
-            write!(sink, ",truth{i}_x_m,truth{i}_y_m,truth{i}_heading_rad")?;
+            write!(sink, ",truth{i}_x_m,truth{i}_y_m")?;
+            if self.has_true_headings {
+                write!(sink, ",truth{i}_heading_rad")?;
+            }
         }
         writeln!(sink)
     }
@@ -75,9 +80,14 @@ impl Layout {
             }
         }
         for end in row.truth.iter().take(self.bend_sensors.len()).take_while(|_| self.has_truth) {
-            match end {
-                Some(end) => write!(sink, ",{},{},{}", end.x_m, end.y_m, end.heading_rad)?,
-                None => write!(sink, ",,,")?,
+            match (end, self.has_true_headings) {
+                (Some(Truth { x_m, y_m, heading_rad: Some(heading_rad) }), true) => {
+                    write!(sink, ",{x_m},{y_m},{heading_rad}")?;
+                }
+                (Some(Truth { x_m, y_m, .. }), false) => write!(sink, ",{x_m},{y_m}")?,
+                // A session has headings of all truth or of none.
+                (_, true) => write!(sink, ",,,")?,
+                (None, false) => write!(sink, ",,")?,
             }
         }
         writeln!(sink)

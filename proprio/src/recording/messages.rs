@@ -7,7 +7,7 @@ use telemetry::{BEND_SENSORS, Estimate, Health, Hello, SEGMENTS, Sample, SensorH
 
 use super::cdr::{CdrReader, CdrWriter};
 use crate::link::HostNs;
-use crate::session::{Pose, SENSOR_NAMES};
+use crate::session::{SENSOR_NAMES, Truth};
 
 /// The frame of the arm's base, {W}: x to the right, y along the tangent, z up.
 const FRAME: &str = "arm_base";
@@ -146,9 +146,9 @@ fn status(cdr: &mut CdrWriter, level: Level, name: &str, message: &str, chip: &s
 }
 
 /// `proprio_msgs/msg/Truth`.
-pub fn truth(stamp: HostNs, ends: &[Option<Pose>]) -> Vec<u8> {
+pub fn truth(stamp: HostNs, ends: &[Option<Truth>]) -> Vec<u8> {
     let mut cdr = header(stamp);
-    for part in [|pose: &Pose| pose.x_m, |pose: &Pose| pose.y_m, |pose: &Pose| pose.heading_rad] {
+    for part in [|end: &Truth| end.x_m, |end: &Truth| end.y_m, |end: &Truth| end.heading_rad.unwrap_or(f64::NAN)] {
         cdr.length(ends.len());
         let values: Vec<f64> = ends.iter().map(|end| end.as_ref().map_or(f64::NAN, part)).collect();
         cdr.floats(&values);
@@ -157,7 +157,7 @@ pub fn truth(stamp: HostNs, ends: &[Option<Pose>]) -> Vec<u8> {
 }
 
 /// The ends in a `proprio_msgs/msg/Truth`; `None` where it is none.
-pub fn read_truth(message: &[u8]) -> Option<Vec<Option<Pose>>> {
+pub fn read_truth(message: &[u8]) -> Option<Vec<Option<Truth>>> {
     let mut cdr = CdrReader::new(message)?;
     cdr.u32()?;
     cdr.u32()?;
@@ -166,20 +166,24 @@ pub fn read_truth(message: &[u8]) -> Option<Vec<Option<Pose>>> {
     if xs.len() != ys.len() || ys.len() != headings.len() {
         return None;
     }
-    let ends = xs.into_iter().zip(ys).zip(headings).map(|((x_m, y_m), heading_rad)| {
-        let seen = [x_m, y_m, heading_rad].iter().all(|part| part.is_finite());
-        seen.then_some(Pose { x_m, y_m, heading_rad })
+    let ends = xs.into_iter().zip(ys).zip(headings).map(|((x_m, y_m), heading)| {
+        let heading_rad = heading.is_finite().then_some(heading);
+        (x_m.is_finite() && y_m.is_finite()).then_some(Truth { x_m, y_m, heading_rad })
     });
     Some(ends.collect())
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{HostNs, Pose, read_truth, truth};
+    use super::{HostNs, Truth, read_truth, truth};
 
     #[test]
     fn truth_comes_back_to_the_bit() {
-        let ends = [Some(Pose { x_m: 0.1, y_m: -0.2, heading_rad: 7.0 }), None];
+        let ends = [
+            Some(Truth { x_m: 0.1, y_m: -0.2, heading_rad: Some(7.0) }),
+            Some(Truth { x_m: 0.1, y_m: -0.2, heading_rad: None }),
+            None,
+        ];
         assert_eq!(read_truth(&truth(HostNs(5), &ends)), Some(ends.to_vec()));
     }
 }

@@ -8,7 +8,7 @@ use mcap::{McapError, Message};
 
 use super::{RAW, TRUTH, messages};
 use crate::link::HostNs;
-use crate::session::Pose;
+use crate::session::Truth;
 
 /// No record of ours is longer; a longer one is a damaged length.
 const LONGEST_RECORD: usize = 1 << 28;
@@ -19,7 +19,7 @@ pub enum Item {
     /// Bytes as they came, and when.
     Bytes(HostNs, Vec<u8>),
     /// The truth of the sample with this tick, which came before.
-    Truth(u32, Vec<Option<Pose>>),
+    Truth(u32, Vec<Option<Truth>>),
 }
 
 /// Why a recording cannot be read on.

@@ -7,7 +7,7 @@ use telemetry::{Decoder, Estimate, Hello, Message, SCHEMA, Sample};
 
 use super::{Item, ReadError};
 use crate::link::{HostNs, Place, Runs};
-use crate::session::{OnBoard, Pose, Row};
+use crate::session::{OnBoard, Row, Truth};
 
 /// Time from one tick to the next, µs.
 const TICK_US: u64 = 10_000;
@@ -157,7 +157,7 @@ impl<I: Iterator<Item = Result<Item, ReadError>>> RecordedRows<I> {
         }
     }
 
-    fn truth(&mut self, tick: u32, ends: &[Option<Pose>]) {
+    fn truth(&mut self, tick: u32, ends: &[Option<Truth>]) {
         if let Some(row) = self.open(tick) {
             row.truth.iter_mut().zip(ends).for_each(|(truth, end)| *truth = *end);
         }

@@ -13,7 +13,7 @@ use super::board_clock::BoardClock;
 use super::schema::{self, Schema};
 use super::{DIAGNOSTICS, JOINT_STATES, RAW, SAMPLES, SHAPE, TRUTH, messages};
 use crate::link::HostNs;
-use crate::session::Pose;
+use crate::session::Truth;
 
 /// How long anything may wait to be written, ns. A file that is cut loses no more than that.
 const FLUSH_NS: u64 = 900_000_000;
@@ -124,7 +124,7 @@ impl<W: Write> Recorder<W> {
     ///
     /// # Errors
     /// Those of the sink.
-    pub fn truth(&mut self, at: HostNs, tick: u32, ends: &[Option<Pose>]) -> io::Result<()> {
+    pub fn truth(&mut self, at: HostNs, tick: u32, ends: &[Option<Truth>]) -> io::Result<()> {
         let channel = match self.channels.truth {
             Some(channel) => channel,
             None => *self.channels.truth.insert(channel(&mut self.mcap, TRUTH, &schema::TRUTH)?),

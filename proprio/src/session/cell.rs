@@ -58,6 +58,12 @@ pub(super) fn tare(cell: &str) -> Result<Option<u64>, Problem> {
     if cell.is_empty() { Ok(None) } else { cell.parse().map(Some).map_err(number) }
 }
 
+/// A time by a clock that may start anywhere, s.
+pub(super) fn clock_s(cell: &str) -> Result<f64, Problem> {
+    let seconds = number(cell)?.ok_or(Problem::NoTime)?;
+    if seconds.abs() <= MAX_TIME_S { Ok(seconds) } else { Err(Problem::Clock(shown(cell))) }
+}
+
 /// A heading in units of `factor` rad. A whole turn is let pass: it is what 359.99999 is rounded to.
 pub(super) fn heading(cell: &str, factor: f64) -> Result<Option<ImuReading>, Problem> {
     let Some(value) = number(cell)? else { return Ok(None) };

@@ -27,8 +27,22 @@ pub(super) enum ImuColumn {
 pub(super) struct SegmentColumns {
     pub bend: [Option<usize>; SENSORS_PER_SEGMENT],
     pub imu: ImuColumn,
-    /// x, y and heading.
-    pub truth: Option<[Column; 3]>,
+    pub truth: Option<TruthColumns>,
+}
+
+/// Where the truth of one segment stands.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct TruthColumns {
+    pub x: Column,
+    pub y: Column,
+    /// Of all segments or of none.
+    pub heading: Option<Column>,
+}
+
+impl From<[Column; 3]> for TruthColumns {
+    fn from([x, y, heading]: [Column; 3]) -> Self {
+        Self { x, y, heading: Some(heading) }
+    }
 }
 
 /// Where everything stands.
@@ -40,8 +54,21 @@ pub(super) struct Columns {
     pub segments: Vec<SegmentColumns>,
 }
 
+/// Where everything stands in a camera's file.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct CameraColumns {
+    pub time: usize,
+    /// x, y and heading of each segment's end.
+    pub ends: Vec<[Column; 3]>,
+    /// Those of the base's marker.
+    pub base: Option<[Column; 3]>,
+}
+
 /// Names of the sensors of a segment.
 pub(crate) const SENSOR_NAMES: [char; SENSORS_PER_SEGMENT] = ['a', 'b'];
+
+/// Columns of a pose, in both units.
+const POSE_PARTS: [&str; 6] = ["x_mm", "x_m", "y_mm", "y_m", "heading_deg", "heading_rad"];
 
 /// The column of the tare's number.
 pub(crate) const TARE: &str = "tare";
@@ -53,24 +80,14 @@ struct Places<'h> {
 impl Columns {
     /// Finds the columns that are needed. Unknown ones are ignored; those of a segment beyond the last are refused.
     pub fn find(names: &[String], needs: &Needs) -> Result<Self, Problem> {
-        let mut places = HashMap::new();
-        for (index, name) in names.iter().enumerate() {
-            if places.insert(name.as_str(), index).is_some() && segment_of(name).is_some() {
-                return Err(Problem::DuplicateColumn(name.clone()));
-            }
-            let segments = needs.bend.len();
-            if let Some(segment) = segment_of(name).filter(|segment| *segment > segments) {
-                return Err(Problem::OtherArm { column: name.clone(), segment, segments });
-            }
-        }
-        let header = Places { places };
+        let header = Places::of(names, needs.bend.len())?;
         let time = header.required("time_s")?;
-        let has_truth = needs.truth || (1..=needs.bend.len()).any(|i| header.truth(i).is_ok());
+        let has_headings = needs.truth || (1..=needs.bend.len()).any(|i| header.truth_heading(i).is_ok());
         let segment = |(i, sensors): (usize, &Option<usize>)| {
             Ok(SegmentColumns {
                 bend: header.bend(i + 1, *sensors)?,
                 imu: header.imu(i + 1)?,
-                truth: if has_truth { Some(header.truth(i + 1)?) } else { None },
+                truth: if has_headings { Some(header.truth(i + 1)?.into()) } else { header.place(i + 1)? },
             })
         };
         let tare = header.optional(TARE);
@@ -78,7 +95,34 @@ impl Columns {
     }
 }
 
-impl Places<'_> {
+impl CameraColumns {
+    /// Finds the columns of an arm of `segments` segments, all of which are needed, and of the base where it has any.
+    pub fn find(names: &[String], segments: usize) -> Result<Self, Problem> {
+        let header = Places::of(names, segments)?;
+        Ok(Self {
+            time: header.required("time_s")?,
+            ends: (1..=segments).map(|i| header.truth(i)).collect::<Result<_, _>>()?,
+            base: names.iter().any(|name| is_base(name)).then(|| header.pose("base")).transpose()?,
+        })
+    }
+}
+
+impl<'h> Places<'h> {
+    /// Refuses columns that are there twice and those of a segment beyond the last.
+    fn of(names: &'h [String], segments: usize) -> Result<Self, Problem> {
+        let mut places = HashMap::new();
+        for (index, name) in names.iter().enumerate() {
+            let segment = segment_of(name);
+            if places.insert(name.as_str(), index).is_some() && (segment.is_some() || is_base(name)) {
+                return Err(Problem::DuplicateColumn(name.clone()));
+            }
+            if let Some(segment) = segment.filter(|segment| *segment > segments) {
+                return Err(Problem::OtherArm { column: name.clone(), segment, segments });
+            }
+        }
+        Ok(Self { places })
+    }
+
     fn optional(&self, name: &str) -> Option<usize> {
         self.places.get(name).copied()
     }
@@ -127,8 +171,24 @@ impl Places<'_> {
         Ok(ImuColumn::Quaternion([w?, x?, y?, z?]))
     }
 
+    fn truth_heading(&self, segment: usize) -> Result<Column, Problem> {
+        self.angle(&format!("truth{segment}_heading"))
+    }
+
+    /// A true place without a heading, where there is one.
+    fn place(&self, segment: usize) -> Result<Option<TruthColumns>, Problem> {
+        match ["x", "y"].map(|part| self.length(&format!("truth{segment}_{part}"))) {
+            [Err(_), Err(_)] => Ok(None),
+            [x, y] => Ok(Some(TruthColumns { x: x?, y: y?, heading: None })),
+        }
+    }
+
     fn truth(&self, segment: usize) -> Result<[Column; 3], Problem> {
-        let name = |part: &str| format!("truth{segment}_{part}");
+        self.pose(&format!("truth{segment}"))
+    }
+
+    fn pose(&self, of: &str) -> Result<[Column; 3], Problem> {
+        let name = |part: &str| format!("{of}_{part}");
         Ok([self.length(&name("x"))?, self.length(&name("y"))?, self.angle(&name("heading"))?])
     }
 }
@@ -144,7 +204,17 @@ pub(super) fn segment_of(name: &str) -> Option<usize> {
     } else if let Some(digits) = stem.strip_prefix("imu") {
         (digits, &["deg", "rad", "qw", "qx", "qy", "qz"])
     } else {
-        (stem.strip_prefix("truth")?, &["x_mm", "x_m", "y_mm", "y_m", "heading_deg", "heading_rad"])
+        (stem.strip_prefix("truth")?, &POSE_PARTS)
     };
     digits.parse().ok().filter(|_| known.contains(&rest))
+}
+
+/// Whether a column is of the truth.
+pub(super) fn is_truth(name: &str) -> bool {
+    name.starts_with("truth") && segment_of(name).is_some()
+}
+
+/// Whether a column is of the base's marker.
+fn is_base(name: &str) -> bool {
+    name.strip_prefix("base_").is_some_and(|part| POSE_PARTS.contains(&part))
 }

@@ -54,6 +54,12 @@ pub enum Problem {
         /// Segments of the arm.
         segments: usize,
     },
+    /// A session that is to get truth has some.
+    #[error("column {0} is there already, expected a session without truth")]
+    HasTruth(String),
+    /// A session that is to get columns has none.
+    #[error("is a board's recording, expected a CSV, which gets columns of truth")]
+    NotCsv,
     /// A row has too few or too many cells.
     #[error("the row has {found} cells, the header {expected}")]
     RowLength {
@@ -89,6 +95,9 @@ pub enum Problem {
     /// A time that does not fit.
     #[error("time {0} s, expected 0 s to 100 years")]
     Time(String),
+    /// A camera's time that does not fit.
+    #[error("time {0} s, expected one within 100 years of 0")]
+    Clock(String),
     /// Time goes backwards.
     #[error("time goes backwards, from {from_s} s to {to_s} s")]
     Backwards {
@@ -119,7 +128,7 @@ pub enum Problem {
     #[error("the quaternion's norm is {0:.4}, expected 1 within 1 %")]
     NotUnit(f64),
     /// A pose of which only some parts are there.
-    #[error("the truth has an empty part, expected x, y and heading or none")]
+    #[error("the truth has an empty part, expected all of its cells or none")]
     PartialTruth,
 }
 
@@ -142,11 +151,13 @@ impl Problem {
             Self::RowLength { .. } => {
                 "the file was cut or edited, or has decimal commas: remove the row, copy the file again, or use points"
             }
-            Self::NoTime | Self::Time(_) => "give every row its time in seconds",
+            Self::NotCsv => "make a CSV of it with `proprio convert`",
+            Self::HasTruth(_) => "take the session as it was recorded, or use it as it is: it is aligned",
+            Self::NoTime | Self::Time(_) | Self::Clock(_) => "give every row its time in seconds",
             Self::NotANumber(_) => "write numbers with a decimal point, and leave the cell of a missing reading empty",
             Self::NotFinite(_) => "leave the cell empty",
             Self::Counts(_) => "write raw ADC counts, and leave the cell of a missing reading empty",
-            Self::Truth(_) => "correct the value, or leave all three cells empty",
+            Self::Truth(_) => "correct the value, or leave all cells of this truth empty",
             Self::NotAFile => "save it as a file first",
             Self::Tare(_) => "write the number, or remove the column",
             Self::Recording(ReadError::Cut) => "save what is whole of it with `proprio recover`",
@@ -161,7 +172,7 @@ impl Problem {
             Self::PartialQuaternion | Self::NotUnit(_) => {
                 "write unit quaternions w, x, y, z, and leave all four cells of a missing reading empty"
             }
-            Self::PartialTruth => "leave all three cells empty where the camera did not see the segment",
+            Self::PartialTruth => "leave all its cells empty where the camera did not see the segment",
         }
     }
 }

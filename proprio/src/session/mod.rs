@@ -1,35 +1,51 @@
 //! Recorded sessions: CSV, a row a sample, units in the column names, an empty cell for a missing reading; or a board's
 //! recording.
 
+mod camera;
 mod cell;
 mod columns;
-mod csv;
+mod csv_file;
+mod csv_rows;
 mod error;
 mod header;
 mod reader;
+mod source;
 mod writer;
 
 use calibration_tables::{ArmFile, FileError, MAX_SEGMENTS};
 use estimator_core::Sample;
 
+pub use camera::{CameraReader, Frame};
 pub(crate) use columns::{SENSOR_NAMES, TARE};
 pub use error::{Problem, SessionError};
 pub use header::Header;
-pub use reader::{Kind, SessionReader};
-pub use writer::{ImuColumns, SessionWriter};
+pub use reader::SessionReader;
+pub use source::Kind;
+pub use writer::{CameraWriter, ImuColumns, SessionWriter};
 
 /// What to say of a file that does not end with a line end.
 pub const LAST_LINE: &str = "the last line has no end; its last number may be cut";
 
-/// What the camera saw of one segment's end in {W}.
+/// What a camera sees of a marker.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pose {
     /// x, m.
     pub x_m: f64,
     /// y, m.
     pub y_m: f64,
-    /// Heading of the tangent, rad.
+    /// Heading, rad.
     pub heading_rad: f64,
+}
+
+/// Where one segment's end truly was, in {W}.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Truth {
+    /// x, m.
+    pub x_m: f64,
+    /// y, m.
+    pub y_m: f64,
+    /// Heading of the tangent, rad; `None` in a session that has places alone.
+    pub heading_rad: Option<f64>,
 }
 
 /// One row: the readings of one tick, and the truth where there is any.
@@ -37,8 +53,8 @@ pub struct Pose {
 pub struct Row {
     /// The readings.
     pub sample: Sample<MAX_SEGMENTS>,
-    /// The pose of each segment's end; `None` where the camera did not see it.
-    pub truth: [Option<Pose>; MAX_SEGMENTS],
+    /// Where each segment's end was; `None` where the camera did not see it.
+    pub truth: [Option<Truth>; MAX_SEGMENTS],
     /// Whether the estimator starts anew before it.
     pub starts: bool,
     /// Where it is from a board's recording: what the board said of it.
@@ -60,8 +76,8 @@ impl Row {
     /// True bend angle of segment `i` (from 0), rad: the difference of neighbouring headings, within ±π.
     #[must_use]
     pub fn true_theta(&self, i: usize) -> Option<f64> {
-        let before = if i == 0 { 0.0 } else { self.truth.get(i - 1)?.as_ref()?.heading_rad };
-        let turn = self.truth.get(i)?.as_ref()?.heading_rad - before;
+        let before = if i == 0 { 0.0 } else { self.truth.get(i - 1)?.as_ref()?.heading_rad? };
+        let turn = self.truth.get(i)?.as_ref()?.heading_rad? - before;
         Some(turn - std::f64::consts::TAU * (turn / std::f64::consts::TAU).round())
     }
 }

@@ -1,23 +1,20 @@
 //! Reads a session row by row, in memory that does not grow with its length.
 
 use std::collections::VecDeque;
-use std::fs::File;
-use std::io::{self, BufReader, Cursor, Read, Seek};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use telemetry::{Hello, SEGMENTS};
 
-use super::csv::{CsvRows, ends_with_line};
+use super::csv_file::CsvFile;
+use super::csv_rows::CsvRows;
+use super::source::{Kind, Source};
 use super::{Needs, Problem, Row, SessionError};
-use crate::recording::{Item, RawReader, ReadError, Reader, RecordedRows, is_recording};
+use crate::recording::{Item, RawReader, ReadError, Reader, RecordedRows};
 
 /// Rows at the start whose time stamps tell the sample rate.
 const RATE_ROWS: usize = 1001;
-
-/// Bytes at the start that tell what a file is.
-pub(super) const BEGIN: u64 = 8;
 
 /// A session that is being read, of any [`Kind`].
 pub struct SessionReader {
@@ -26,34 +23,9 @@ pub struct SessionReader {
     rows: Rows,
     ahead: VecDeque<Row>,
     rate_hz: Option<f64>,
-    ends_with_line: bool,
     is_regular_file: bool,
     bend_sensors: Vec<[bool; 2]>,
     kind: Kind,
-}
-
-/// What a file is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
-    /// Text, a row a sample.
-    Csv,
-    /// A board's recording.
-    Recording,
-    /// The bytes of a board as they came.
-    Raw,
-}
-
-impl Kind {
-    /// By its first bytes; raw bytes have no mark and are known by their name, `.bin`.
-    pub(super) fn of(path: &Path, begin: &[u8]) -> Self {
-        if is_recording(begin) {
-            Self::Recording
-        } else if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("bin")) {
-            Self::Raw
-        } else {
-            Self::Csv
-        }
-    }
 }
 
 type Items = Box<dyn Iterator<Item = Result<Item, ReadError>>>;
@@ -63,55 +35,44 @@ enum Rows {
     Recorded(Box<RecordedRows<Items>>, Arc<AtomicU64>),
 }
 
+impl Rows {
+    fn new(source: Source, needs: &Needs) -> Result<Self, SessionError> {
+        let kind = source.kind;
+        if kind == Kind::Csv {
+            return Ok(Self::Csv(Box::new(CsvRows::new(CsvFile::new(source)?, needs)?)));
+        }
+        let (bytes, position) = source.into_counted()?;
+        let items: Items =
+            if kind == Kind::Raw { Box::new(RawReader::new(bytes)) } else { Box::new(Reader::new(bytes)) };
+        Ok(Self::Recorded(Box::new(RecordedRows::new(items)), position))
+    }
+}
+
 impl SessionReader {
     /// Opens a session, finds its columns and reads the first rows.
     ///
     /// # Errors
     /// Any [`SessionError`] of the header and the first rows.
     pub fn open(path: &Path, needs: &Needs) -> Result<Self, SessionError> {
-        let fail = |problem| SessionError { path: path.to_owned(), line: None, column: None, problem };
-        let unreadable = |error| fail(Problem::Read(error));
-        let mut file = File::open(path).map_err(unreadable)?;
-        let metadata = file.metadata().map_err(unreadable)?;
-        if metadata.is_dir() {
-            return Err(fail(Problem::Directory));
-        }
-        let is_regular_file = metadata.is_file();
-        let mut begin = Vec::new();
-        file.by_ref().take(BEGIN).read_to_end(&mut begin).map_err(unreadable)?;
-        let kind = Kind::of(path, &begin);
-        let ends_with_line = kind != Kind::Csv || !is_regular_file || ends_with_line(&mut file).map_err(unreadable)?;
-        // A pipe cannot go back.
-        let source: Box<dyn Read> = if is_regular_file {
-            file.rewind().map_err(unreadable)?;
-            Box::new(file)
-        } else {
-            Box::new(Cursor::new(begin).chain(file))
-        };
+        let source = Source::open(path)?;
+        let (kind, size_bytes, is_regular_file) = (source.kind, source.size_bytes, source.is_regular_file);
         let segments = needs.bend.len();
         if kind != Kind::Csv && segments > SEGMENTS {
-            return Err(fail(Problem::RecordedSegments(segments)));
+            return Err(source.error(Problem::RecordedSegments(segments)));
         }
-        let position = Arc::new(AtomicU64::new(0));
-        let counted = |source| BufReader::with_capacity(1 << 16, Counted { source, position: Arc::clone(&position) });
-        let recorded = |items| Rows::Recorded(Box::new(RecordedRows::new(items)), Arc::clone(&position));
-        let rows = match kind {
-            Kind::Csv => Rows::Csv(Box::new(CsvRows::new(path, source, needs)?)),
-            Kind::Recording => recorded(Box::new(Reader::new(counted(source))) as Items),
-            Kind::Raw => recorded(Box::new(RawReader::new(counted(source))) as Items),
+        let rows = Rows::new(source, needs)?;
+        let bend_sensors = match &rows {
+            Rows::Csv(csv) => csv.bend_sensors(),
+            Rows::Recorded(..) => vec![[false; 2]; segments],
         };
         let mut reader = Self {
             path: path.to_owned(),
-            size_bytes: metadata.len(),
-            bend_sensors: match &rows {
-                Rows::Csv(csv) => csv.bend_sensors(),
-                Rows::Recorded(..) => vec![[false; 2]; segments],
-            },
+            size_bytes,
             rows,
             ahead: VecDeque::new(),
             rate_hz: None,
-            ends_with_line,
             is_regular_file,
+            bend_sensors,
             kind,
         };
         reader.look_ahead(needs)?;
@@ -134,7 +95,7 @@ impl SessionReader {
                 let reads = |place: usize| self.ahead.iter().any(|row| row.sample.bend[i][place].is_some());
                 *present = [reads(0), reads(1)];
             }
-            if needs.truth && !self.has_truth() {
+            if needs.truth && !self.has_true_headings() {
                 return Err(self.error(Problem::NoTruth));
             }
         }
@@ -151,6 +112,21 @@ impl SessionReader {
     #[must_use]
     pub fn has_truth(&self) -> bool {
         self.ahead.iter().any(|row| row.truth.iter().any(Option::is_some))
+    }
+
+    /// Whether that truth has headings.
+    #[must_use]
+    pub fn has_true_headings(&self) -> bool {
+        self.ahead.iter().any(|row| row.truth.iter().flatten().any(|end| end.heading_rad.is_some()))
+    }
+
+    /// The first column of truth in a CSV, if there is any.
+    #[must_use]
+    pub fn truth_column(&self) -> Option<&str> {
+        match &self.rows {
+            Rows::Csv(csv) => csv.truth_column(),
+            Rows::Recorded(..) => None,
+        }
     }
 
     /// Segments from the base to the last one of which a sensor was read, or the truth seen, in the first rows.
@@ -190,7 +166,10 @@ impl SessionReader {
     /// Whether the last line is ended; if not, its last number may have been cut.
     #[must_use]
     pub fn ends_with_line(&self) -> bool {
-        self.ends_with_line
+        match &self.rows {
+            Rows::Csv(csv) => csv.ends_with_line(),
+            Rows::Recorded(..) => true,
+        }
     }
 
     /// How far the file was read, and its size, in bytes.
@@ -233,20 +212,6 @@ impl SessionReader {
 
     fn error(&self, problem: Problem) -> SessionError {
         SessionError { path: self.path.clone(), line: None, column: None, problem }
-    }
-}
-
-/// Counts what is read.
-struct Counted {
-    source: Box<dyn Read>,
-    position: Arc<AtomicU64>,
-}
-
-impl Read for Counted {
-    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        let count = self.source.read(buffer)?;
-        self.position.fetch_add(count as u64, Ordering::Relaxed);
-        Ok(count)
     }
 }
 

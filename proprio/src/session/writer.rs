@@ -1,9 +1,9 @@
-//! Writes samples and their truth as a session.
+//! Writes samples and their truth as a session, and what a camera saw as a file of its own.
 
 use std::io::{self, Write};
 
 use estimator_core::ImuReading;
-use rig_twin::SEGMENTS;
+use rig_twin::{EndPose, Frame, SEGMENTS};
 
 use super::SENSOR_NAMES;
 use crate::simulate::Recorded;
@@ -21,6 +21,7 @@ pub enum ImuColumns {
 pub struct SessionWriter<W> {
     sink: W,
     imu: ImuColumns,
+    truth: bool,
 }
 
 impl<W: Write> SessionWriter<W> {
@@ -28,7 +29,19 @@ impl<W: Write> SessionWriter<W> {
     ///
     /// # Errors
     /// Those of `sink`.
-    pub fn new(mut sink: W, imu: ImuColumns) -> io::Result<Self> {
+    pub fn new(sink: W, imu: ImuColumns) -> io::Result<Self> {
+        Self::begin(sink, imu, true)
+    }
+
+    /// Begins a session without truth.
+    ///
+    /// # Errors
+    /// Those of `sink`.
+    pub fn without_truth(sink: W, imu: ImuColumns) -> io::Result<Self> {
+        Self::begin(sink, imu, false)
+    }
+
+    fn begin(mut sink: W, imu: ImuColumns, truth: bool) -> io::Result<Self> {
         write!(sink, "time_s")?;
         for i in 1..=SEGMENTS {
             for sensor in SENSOR_NAMES {
@@ -41,11 +54,11 @@ impl<W: Write> SessionWriter<W> {
                 ImuColumns::Quaternion => write!(sink, ",imu{i}_qw,imu{i}_qx,imu{i}_qy,imu{i}_qz")?,
             }
         }
-        for i in 1..=SEGMENTS {
+        for i in (1..=SEGMENTS).take_while(|_| truth) {
             write!(sink, ",truth{i}_x_mm,truth{i}_y_mm,truth{i}_heading_deg")?;
         }
         writeln!(sink)?;
-        Ok(Self { sink, imu })
+        Ok(Self { sink, imu, truth })
     }
 
     /// Writes one sample.
@@ -66,9 +79,8 @@ impl<W: Write> SessionWriter<W> {
                 ImuColumns::Quaternion => self.write_quaternion(quaternion)?,
             }
         }
-        for end in sample.truth {
-            let (x_mm, y_mm) = (end.x_m * 1e3, end.y_m * 1e3);
-            write!(self.sink, ",{x_mm:.4},{y_mm:.4},{:.4}", end.heading_rad.to_degrees())?;
+        for end in sample.truth.iter().take_while(|_| self.truth) {
+            write_pose(&mut self.sink, end)?;
         }
         writeln!(self.sink)
     }
@@ -86,6 +98,51 @@ impl<W: Write> SessionWriter<W> {
     pub fn into_inner(self) -> W {
         self.sink
     }
+}
+
+/// A camera's file that is being written.
+pub struct CameraWriter<W> {
+    sink: W,
+}
+
+impl<W: Write> CameraWriter<W> {
+    /// Begins the file with its header.
+    ///
+    /// # Errors
+    /// Those of `sink`.
+    pub fn new(mut sink: W) -> io::Result<Self> {
+        write!(sink, "time_s,base_x_mm,base_y_mm,base_heading_deg")?;
+        for i in 1..=SEGMENTS {
+            write!(sink, ",truth{i}_x_mm,truth{i}_y_mm,truth{i}_heading_deg")?;
+        }
+        writeln!(sink)?;
+        Ok(Self { sink })
+    }
+
+    /// Writes one frame; the cells of a marker that was not found stay empty.
+    ///
+    /// # Errors
+    /// Those of the sink.
+    pub fn write(&mut self, frame: &Frame) -> io::Result<()> {
+        write!(self.sink, "{:.6}", frame.time_s)?;
+        for pose in std::iter::once(&frame.base).chain(&frame.ends) {
+            match pose {
+                Some(pose) => write_pose(&mut self.sink, pose)?,
+                None => write!(self.sink, ",,,")?,
+            }
+        }
+        writeln!(self.sink)
+    }
+
+    /// The sink, when all frames are written.
+    pub fn into_inner(self) -> W {
+        self.sink
+    }
+}
+
+fn write_pose(sink: &mut impl Write, pose: &EndPose) -> io::Result<()> {
+    let (x_mm, y_mm) = (pose.x_m * 1e3, pose.y_m * 1e3);
+    write!(sink, ",{x_mm:.4},{y_mm:.4},{:.4}", pose.heading_rad.to_degrees())
 }
 
 /// The heading in [0, 360) with five decimals; empty where the quaternion is no orientation.

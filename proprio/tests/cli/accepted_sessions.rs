@@ -222,3 +222,30 @@ fn rounded_time_stamps_give_the_same_estimates() {
     };
     assert!(estimates("exact") == estimates("rounded"));
 }
+
+/// Markers without orientation are a common ground truth.
+#[test]
+fn truth_without_headings_scores_the_tip_and_no_angle() {
+    let mut places = session();
+    (1..=6).for_each(|i| places.remove(&format!("truth{i}_heading")));
+    same_tip_figures(places);
+}
+
+#[test]
+fn a_marker_at_the_tip_alone_scores_the_tip() {
+    let mut tip = session();
+    (1..=5).for_each(|i| tip.remove(&format!("truth{i}_")));
+    tip.remove("truth6_heading");
+    same_tip_figures(tip);
+}
+
+fn same_tip_figures(places: Csv) {
+    let (poses, places) = (report(session()), report(places));
+    for method in ["bend", "imu_o", "imu_c", "fusion"] {
+        for name in ["tip_rmse_mm", "tip_rmse_percent", "tip_p75_mm"] {
+            let of = |report: &serde_json::Value| report["all"]["methods"][method][name].clone();
+            assert!(of(&places).is_number() && of(&places) == of(&poses), "{method} {name}");
+        }
+        assert_eq!(places["all"]["methods"][method]["theta_rmse_deg"], serde_json::Value::Null, "{method}");
+    }
+}

@@ -60,6 +60,22 @@ fn a_missing_part_of_the_truth_is_named() {
 }
 
 #[test]
+fn a_heading_without_its_place_is_named() {
+    refuses_column("truth1_x_mm", |session| {
+        session.remove("truth1_x_mm");
+        session.remove("truth1_y_mm");
+    });
+}
+
+#[test]
+fn a_place_of_which_a_part_is_missing_is_named() {
+    refuses_column("truth5_x_mm", |session| {
+        (1..=6).for_each(|i| session.remove(&format!("truth{i}_heading")));
+        session.remove("truth5_x_mm");
+    });
+}
+
+#[test]
 fn a_missing_part_of_a_quaternion_is_named() {
     refuses_column("imu3_qy", |session| {
         session.rename("imu3_deg", "imu3_qw");

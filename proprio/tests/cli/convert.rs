@@ -2,7 +2,7 @@
 
 use super::board::SyntheticBoard;
 use super::common::{Folder, Run, estimates, quaternion_session, session, table};
-use super::recordings::{record, recorded};
+use super::recording_files::{record, recorded};
 
 fn with_recording() -> (Folder, Vec<u8>) {
     let bytes: Vec<Vec<u8>> = SyntheticBoard::new(1, 12.0).map(|(frames, _)| frames.concat()).collect();

@@ -1,6 +1,8 @@
 //! The command-line tool as its users meet it: what it accepts, what it refuses and how, and what it writes.
 
 mod accepted_sessions;
+mod align;
+mod align_faults;
 mod bad_cells;
 mod bad_sessions;
 mod board;
@@ -11,11 +13,18 @@ mod common;
 mod convert;
 mod estimates;
 mod figures;
+mod guide;
 mod missing_readings;
 mod output_files;
 mod ports;
+mod recording_files;
 #[cfg(unix)]
 mod recording_live;
 mod recordings;
+mod report;
+mod report_numbers;
 mod simulate;
 mod streams;
+mod tune;
+mod tune_interrupted;
+mod tune_refused;

@@ -11,7 +11,7 @@ use serialport::{SerialPort, TTYPort};
 
 use super::board::SyntheticBoard;
 use super::common::{Folder, table};
-use super::recordings::recorded;
+use super::recording_files::recorded;
 
 /// Starts the recorder on a pseudo-terminal and plays the board's stream, four times as fast as a board, until `done`.
 fn play(folder: &Folder, seconds: f64, done: impl FnOnce(&mut Child)) -> String {

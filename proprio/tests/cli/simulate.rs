@@ -4,6 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use super::common::{Folder, arm, simulate};
+use super::recordings::Recording;
 
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the crate is in a workspace")
@@ -159,4 +160,31 @@ fn words_that_the_command_does_not_know_have_status_2() {
         assert!(run.stdout.is_empty() && run.stderr.starts_with("error: "), "{args}: {}", run.stderr);
         assert!(!folder.path("session.csv").exists(), "{args}");
     }
+}
+
+#[test]
+fn a_camera_takes_the_truth_out_of_the_session_and_changes_nothing_else() {
+    for args in ["--scenario 2 --seconds 20 --seed 77", "--scenario 1 --seconds 3 --seed 77 --rate 130"] {
+        let mut expected = simulate(args);
+        expected.remove("truth");
+        assert!(Recording::simulate(args).session == expected, "{args}");
+    }
+}
+
+/// Frames of the arm that are dropped, and stamped by another clock; see `rig_twin::Camera`.
+#[test]
+fn the_camera_gives_30_frames_a_second_less_3_percent_in_order() {
+    let camera = Recording::simulate("--scenario 1 --seconds 100 --seed 78").camera;
+    assert!((2850..=2960).contains(&camera.rows.len()), "{}", camera.rows.len());
+    let times = camera.numbers("time_s");
+    assert!(times.windows(2).all(|pair| pair[0] < pair[1]));
+    assert!((times[0] - 1.76e9).abs() < 0.1, "{}", times[0]);
+}
+
+#[test]
+fn session_and_camera_are_two_files() {
+    let args = ["simulate", "--scenario", "1", "--seconds", "1", "--seed", "1", "-o", "a.csv", "--camera"];
+    let folder = Folder::new();
+    assert!(folder.refused(&[&args[..], &["a.csv"]].concat()).starts_with("a.csv: cannot hold two outputs"));
+    assert!(folder.refused(&[&args[..], &["none/b.csv"]].concat()).starts_with("none/b.csv: cannot be written"));
 }

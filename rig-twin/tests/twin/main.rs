@@ -1,6 +1,7 @@
 //! What the twin promises to those who build on it: the same bits, a believable arm, sensors with the paper's flaws.
 
 mod calibration;
+mod camera;
 mod determinism;
 mod kinematics;
 mod motion;

@@ -1,4 +1,5 @@
-//! RTC: the calendar (datasheet 15). Time of day and date run from what was set; alarms are not modelled.
+//! RTC: the calendar (datasheet 15). Time of day and date run from what was set, and alarms come; the events of CR's selections
+//! do not.
 
 use crate::model::{CYCLES_PER_SECOND, Context, Cycles, Peripheral};
 
@@ -6,6 +7,8 @@ const CR: u32 = 0x00;
 const MR: u32 = 0x04;
 const TIMR: u32 = 0x08;
 const CALR: u32 = 0x0C;
+const TIMALR: u32 = 0x10;
+const CALALR: u32 = 0x14;
 const SR: u32 = 0x18;
 const SCCR: u32 = 0x1C;
 const IER: u32 = 0x20;
@@ -15,7 +18,12 @@ const VER: u32 = 0x2C;
 const UPDTIM: u32 = 1;
 const UPDCAL: u32 = 2;
 const ACKUPD: u32 = 1;
+const ALARM: u32 = 1 << 1;
 const SEC: u32 = 1 << 2;
+
+/// Fields of TIMALR and of CALALR, each with the bit that enables it: seconds, minutes, hours; month, date.
+const TIME_FIELDS: [(u32, u32); 3] = [(0x7F, 1 << 7), (0x7F00, 1 << 15), (0x7F_0000, 1 << 23)];
+const CALENDAR_FIELDS: [(u32, u32); 2] = [(0x1F_0000, 1 << 23), (0x3F00_0000, 1 << 31)];
 
 const MINUTE: u64 = 60;
 const HOUR: u64 = 60 * MINUTE;
@@ -55,6 +63,8 @@ pub struct Rtc {
     mode: u32,
     status: u32,
     mask: u32,
+    time_alarm: u32,
+    calendar_alarm: u32,
     /// Seconds of the day and date at a board time.
     seconds: u64,
     date: Date,
@@ -65,7 +75,17 @@ impl Rtc {
     /// Midnight of 1 January 2007, a Monday, as power-on leaves it (datasheet 15.6).
     pub fn new() -> Self {
         let date = Date { year: 2007, month: 1, day: 1, weekday: 1 };
-        Self { control: 0, mode: 0, status: 0, mask: 0, seconds: 0, date, since: 0 }
+        Self {
+            control: 0,
+            mode: 0,
+            status: 0,
+            mask: 0,
+            time_alarm: 0,
+            calendar_alarm: 0x0101_0000,
+            seconds: 0,
+            date,
+            since: 0,
+        }
     }
 
     fn stopped(&self) -> bool {
@@ -108,6 +128,30 @@ impl Rtc {
             weekday: (value >> 21 & 7).clamp(1, 7),
         };
     }
+
+    /// The next second begins.
+    fn step(&mut self) {
+        self.seconds += 1;
+        if self.seconds == DAY {
+            self.seconds = 0;
+            self.date = self.date.next();
+        }
+        self.status |= SEC;
+        if self.alarm_is_now() {
+            self.status |= ALARM;
+        }
+    }
+
+    /// Whether all fields match whose alarm is enabled, and one is (datasheet 15.5.4).
+    fn alarm_is_now(&self) -> bool {
+        let differs = |alarm: u32, now: u32, fields: &[(u32, u32)]| {
+            fields.iter().any(|(field, enable)| alarm & enable != 0 && (alarm ^ now) & field != 0)
+        };
+        let enabled = |alarm: u32, fields: &[(u32, u32)]| fields.iter().any(|(_, enable)| alarm & enable != 0);
+        (enabled(self.time_alarm, &TIME_FIELDS) || enabled(self.calendar_alarm, &CALENDAR_FIELDS))
+            && !differs(self.time_alarm, self.time(), &TIME_FIELDS)
+            && !differs(self.calendar_alarm, self.calendar(), &CALENDAR_FIELDS)
+    }
 }
 
 fn bcd(value: u32) -> u32 {
@@ -125,6 +169,8 @@ impl Peripheral for Rtc {
             MR => self.mode,
             TIMR => self.time(),
             CALR => self.calendar(),
+            TIMALR => self.time_alarm,
+            CALALR => self.calendar_alarm,
             SR => self.status,
             IMR => self.mask,
             SCCR | IER | IDR | VER => 0,
@@ -149,6 +195,8 @@ impl Peripheral for Rtc {
             TIMR if self.stopped() => self.set_time(value),
             CALR if self.stopped() => self.set_calendar(value),
             TIMR | CALR => {}
+            TIMALR => self.time_alarm = value & 0x00FF_FFFF,
+            CALALR => self.calendar_alarm = value & 0xBF9F_0000,
             SCCR => self.status &= !value,
             IER => self.mask |= value & 0x1F,
             IDR => self.mask &= !value,
@@ -160,20 +208,14 @@ impl Peripheral for Rtc {
         if self.stopped() {
             return;
         }
-        let passed = (context.now - self.since) / CYCLES_PER_SECOND;
-        if passed > 0 {
-            self.since += passed * CYCLES_PER_SECOND;
-            self.seconds += passed;
-            self.status |= SEC;
-            while self.seconds >= DAY {
-                self.seconds -= DAY;
-                self.date = self.date.next();
-            }
+        while context.now - self.since >= CYCLES_PER_SECOND {
+            self.since += CYCLES_PER_SECOND;
+            self.step();
         }
     }
 
     fn next_event(&self) -> Option<Cycles> {
-        (self.mask & SEC != 0 && !self.stopped()).then_some(self.since + CYCLES_PER_SECOND)
+        (self.mask & (SEC | ALARM) != 0 && !self.stopped()).then_some(self.since + CYCLES_PER_SECOND)
     }
 
     fn interrupt(&self) -> bool {
@@ -185,8 +227,8 @@ impl Peripheral for Rtc {
 
 #[cfg(test)]
 mod tests {
-    use super::{CALR, CR, Rtc, TIMR};
-    use crate::model::CYCLES_PER_SECOND;
+    use super::{ALARM, CALALR, CALR, CR, IER, Rtc, SCCR, SR, TIMALR, TIMR};
+    use crate::model::{CYCLES_PER_SECOND, Peripheral};
     use crate::peripherals::bench::Bench;
 
     #[test]
@@ -200,5 +242,33 @@ mod tests {
         bench.run(2 * CYCLES_PER_SECOND);
         assert_eq!(bench.read(TIMR), 0);
         assert_eq!(bench.read(CALR) & 0x3F1F_FFFF, 0x0103_2420, "1 March 2024 follows 29 February");
+    }
+
+    #[test]
+    fn an_alarm_comes_when_all_its_enabled_fields_match() {
+        let mut bench = Bench::new(Rtc::new());
+        // On the 2nd of any month, 5 s after any full minute of the hour 0.
+        bench.write(TIMALR, 0x0080_0085);
+        bench.write(CALALR, 0x8201_0000);
+        bench.write(IER, ALARM);
+        bench.run(24 * 3600 * CYCLES_PER_SECOND);
+        assert!(!bench.model.interrupt(), "the 1st is not the day");
+        bench.run(4 * CYCLES_PER_SECOND);
+        assert_eq!(bench.read(SR) & ALARM, 0);
+        bench.run(CYCLES_PER_SECOND);
+        assert!(bench.model.interrupt());
+        assert_eq!(bench.read(TIMR), 5);
+        bench.write(SCCR, ALARM);
+        bench.run(59 * CYCLES_PER_SECOND);
+        assert!(!bench.model.interrupt());
+        bench.run(CYCLES_PER_SECOND);
+        assert!(bench.model.interrupt(), "and again a minute later");
+    }
+
+    #[test]
+    fn no_alarm_comes_while_none_is_enabled() {
+        let mut bench = Bench::new(Rtc::new());
+        bench.run(3 * CYCLES_PER_SECOND);
+        assert_eq!(bench.read(SR) & ALARM, 0);
     }
 }

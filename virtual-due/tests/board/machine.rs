@@ -65,6 +65,23 @@ fn code_that_a_debugger_changes_runs_as_changed() {
 }
 
 #[test]
+fn code_that_a_program_writes_to_flash_runs_as_written() {
+    // Twice: a page of bank 1 = movs r7, #1 (#2); bx lr, by EEFC1; call it. RAM = r7 of the first call, of the second
+    let mut board = board(
+        &[
+            0x4C0D, 0xF44F, 0x2540, 0x4E0D, 0xF44F, 0x60C0, 0x6020, 0x480C, 0xF000, 0xF80A, 0x46B8, 0x480B, 0xF000,
+            0xF806, 0x480A, 0xF8A0, 0x8000, 0x8047, WFI, SPIN, 0x6028, 0x6066, 0x68A1, 0x07C9, 0xD0FC, 0xF045, 0x0101,
+            0x4708, 0x0C00, 0x400E, 0x0003, 0x5A00, 0x2701, 0x4770, 0x2702, 0x4770, 0x0000, 0x2007,
+        ],
+        0,
+    );
+    board.run_until(20 * MILLISECOND);
+    assert!(board.sleeps());
+    assert_eq!(board.peek(0x2007_0000, 4), Some(vec![1, 0, 2, 0]));
+    assert_eq!(board.reports(), Vec::<String>::new());
+}
+
+#[test]
 fn a_run_in_pieces_is_the_same_run() {
     // adds r0, r0, #1; ldr r1, [pc, #8]; ldr r1, [r1]; b back; (RTT_VR)
     let program = [0x3001, 0x4902, 0x6809, 0xE7FB, 0, 0, 0x1A38, 0x400E];

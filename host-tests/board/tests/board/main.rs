@@ -3,6 +3,7 @@
 mod boot;
 mod engine;
 mod faults;
+mod last_words;
 mod pressures;
 #[cfg(unix)]
 mod recording;

@@ -73,7 +73,8 @@ fn euler(quaternion: [i16; 4]) -> [f64; 3] {
     [if heading < 0.0 { heading + TAU } else { heading }, roll.clamp(-PI, PI), pitch]
 }
 
-fn gravity(quaternion: [i16; 4]) -> [i16; 3] {
+/// Gravity in the frame of a unit with this orientation, 0.01 m/s².
+pub fn gravity(quaternion: [i16; 4]) -> [i16; 3] {
     let [w, x, y, z] = quaternion.map(|part| f64::from(part) / UNIT);
     [2.0 * (x * z - w * y), 2.0 * (y * z + w * x), w * w - x * x - y * y + z * z]
         .map(|part| (GRAVITY * part).round() as i16)

@@ -4,7 +4,7 @@ mod fusion;
 mod registers;
 
 use crate::model::{CYCLES_PER_SECOND, Cycles};
-use fusion::Fusion;
+use fusion::{Fusion, gravity};
 use registers::Registers;
 
 /// From power to the first answer (data sheet table 0-2).
@@ -78,7 +78,7 @@ impl Bno055 {
         if read {
             let valid = FUSION.contains(&self.mode) && now >= self.mode_began + FIRST_OUTPUT;
             let output = valid.then(|| self.fusion.output(orientation));
-            self.registers.sample(self.mode, output, self.mode != CONFIG);
+            self.registers.sample(self.mode, output, gravity(orientation), self.mode != CONFIG);
         }
     }
 

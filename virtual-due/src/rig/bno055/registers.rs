@@ -28,6 +28,9 @@ const INITIALISING: u8 = 2;
 const FUSION_RUNS: u8 = 5;
 const RUNS_WITHOUT_FUSION: u8 = 6;
 
+/// The modes that are not fusion and read the accelerometer: ACCONLY, ACCMAG, ACCGYRO, AMG (data sheet table 3-3).
+const RAW_ACCELERATION: [u8; 4] = [0x01, 0x04, 0x05, 0x07];
+
 /// Both pages.
 #[derive(Debug, Clone)]
 pub struct Registers {
@@ -94,8 +97,9 @@ impl Registers {
         }
     }
 
-    /// Fills the data registers for a read: all of one output, or zeros where there is none.
-    pub fn sample(&mut self, mode: u8, output: Option<Output>, runs: bool) {
+    /// Fills the data registers for a read: all of one output, or zeros where there is none, but for the acceleration that is
+    /// read without fusion.
+    pub fn sample(&mut self, mode: u8, output: Option<Output>, acceleration: [i16; 3], runs: bool) {
         self.pages[0][usize::from(ACC_DATA)..=usize::from(CALIB_STAT)].fill(0);
         self.set(0, OPR_MODE, &[mode]);
         let status = match (output, runs) {
@@ -107,6 +111,9 @@ impl Registers {
         self.set(0, SYS_STATUS, &[status]);
         if runs {
             self.set(0, TEMP, &[25]);
+        }
+        if RAW_ACCELERATION.contains(&mode) {
+            self.set_words(ACC_DATA, &acceleration);
         }
         if let Some(output) = output {
             self.set_output(mode, output);

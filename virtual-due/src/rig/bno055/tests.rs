@@ -107,3 +107,13 @@ fn brown_out_falls_back_to_config_and_the_heading_begins_anew() {
     write(&mut unit, 0x3D, &[0x08], ms(1002));
     assert_eq!(quaternion(&mut unit, ms(1100)), [16384, 0, 0, 0]);
 }
+
+#[test]
+fn acceleration_is_read_without_fusion_too() {
+    let mut unit = Bno055::powered(0);
+    write(&mut unit, 0x3D, &[0x07], ms(500));
+    // z = 9.81 m/s² in 0.01 m/s²; no magnetic field, no rate, no angle.
+    let bytes: [u8; 40] = read(&mut unit, 0x08, ms(600));
+    assert_eq!((&bytes[..6], &bytes[6..]), (&[0, 0, 0, 0, 0xD5, 0x03][..], &[0; 34][..]));
+    assert_eq!(read(&mut unit, 0x39, ms(600)), [6]);
+}

@@ -5,11 +5,9 @@ use std::time::Instant;
 use board_tests::{Board, firmware};
 use object::{Object, ObjectSection};
 use rig_twin::Scenario;
-use telemetry::{Command, SetPressures};
-use virtual_due::rig::{Held, ImuFault, MuxFault, Rail};
 use virtual_due::{CYCLES_PER_SECOND, Rig};
 
-use crate::Figure;
+use crate::{Figure, trouble};
 
 /// In flash: what is there at a reset.
 const FLASH: [&str; 4] = [".vector_table", ".text", ".rodata", ".data"];
@@ -43,7 +41,7 @@ fn size(names: &[&str]) -> f64 {
 
 /// A rig in which all works, and all messages at 100 Hz.
 fn in_good_health() -> [Figure; 3] {
-    const SECONDS: u32 = 20;
+    const SECONDS: u32 = 60;
     let mut board = Board::new(Rig::new(Scenario::One, 1));
     board.run_ms(2_000);
     let (instructions, started) = (board.machine.instructions(), Instant::now());
@@ -59,31 +57,9 @@ fn in_good_health() -> [Figure; 3] {
     ]
 }
 
-/// The deepest stack, bytes, in a run with all requests and many faults.
+/// The deepest stack, bytes, in a run with all requests and many faults. A reset would paint it anew.
 fn stack_in_trouble() -> f64 {
-    let mut board = Board::new(Rig::new(Scenario::One, 1));
-    board.run_ms(2_000);
-    for second in 2..20 {
-        let faults = &mut board.machine.world_mut().faults;
-        match second {
-            3 => faults.imus[1] = ImuFault::Unplugged,
-            5 => faults.imus[1] = ImuFault::None,
-            7 => faults.sda = Some(Held::Clocks(5)),
-            9 => faults.sda = Some(Held::UntilMuxReset),
-            11 => faults.scl = Some(Held::Forever),
-            13 => faults.scl = None,
-            14 => faults.mux = Some(MuxFault::Silent),
-            16 => faults.bend[0] = Some(Rail::High),
-            _ => {}
-        }
-        let pressures_pa = [second * 10_000; 6];
-        let set = Command::SetPressures(SetPressures { pressures_pa, valid_ms: 500 });
-        for command in [Command::Arm, set, Command::Ping, Command::Tare] {
-            board.send(command);
-            board.run_ms(250);
-        }
-    }
-    assert_eq!(board.machine.resets(), [], "a reset paints anew");
+    let board = trouble::board(Board::run_ms);
     let [end, start] = ["_stack_end", "_stack_start"].map(|name| board.machine.symbol(name).expect("the linker says"));
     let stack = board.machine.peek(end, (start - end) as usize).expect("it is in RAM");
     let untouched = stack.iter().take_while(|byte| **byte == PAINT).count();

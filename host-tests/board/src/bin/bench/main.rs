@@ -4,6 +4,8 @@ mod budgets;
 mod firmware;
 mod jitter;
 mod step;
+mod tasks;
+mod trouble;
 
 use std::process::ExitCode;
 
@@ -17,7 +19,8 @@ pub struct Figure {
 
 fn main() -> ExitCode {
     let jitter = Figure { name: "trigger_jitter", value: jitter::cycles() };
-    let figures: Vec<Figure> = step::figures().into_iter().chain(firmware::figures()).chain([jitter]).collect();
+    let figures = step::figures().into_iter().chain(firmware::figures()).chain(tasks::figures()).chain([jitter]);
+    let figures: Vec<Figure> = figures.collect();
     match budgets::check(&figures) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {

@@ -9,11 +9,11 @@ use crate::score::Figures;
 
 /// The figures of one or more sessions, in the form of `replay --json`.
 #[derive(Debug, Serialize)]
-pub struct Report {
+pub struct AllFigures {
     /// Each session by itself.
-    pub sessions: Vec<SessionReport>,
+    pub sessions: Vec<SessionFigures>,
     /// All of them together.
-    pub all: Methods,
+    pub all: ByMethod,
     /// Length of the arm, mm.
     #[serde(skip)]
     pub length_mm: f64,
@@ -21,7 +21,7 @@ pub struct Report {
 
 /// The figures of one session.
 #[derive(Debug, Serialize)]
-pub struct SessionReport {
+pub struct SessionFigures {
     /// The file.
     pub path: String,
     /// Number of samples.
@@ -30,7 +30,7 @@ pub struct SessionReport {
     pub seconds: f64,
     /// Its figures.
     #[serde(flatten)]
-    pub figures: Methods,
+    pub figures: ByMethod,
     /// Of a board's recording, replayed in fixed point: whether the board's own estimates are those of the replay.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub recorded: Option<Comparison>,
@@ -38,7 +38,7 @@ pub struct SessionReport {
 
 /// Figures by method.
 #[derive(Debug, Serialize)]
-pub struct Methods {
+pub struct ByMethod {
     /// Those of each of [`Method::ALL`].
     #[serde(serialize_with = "by_name")]
     pub methods: [Figures; Method::ALL.len()],

@@ -1,0 +1,93 @@
+//! `[tuning]`, the record of a tuning: read and checked as strictly as all else, and no part of the parameters.
+
+use calibration_tables::{ArmFile, FileError, Stopped};
+use estimator_core::Q;
+
+use super::common::{TABLE, parse};
+
+const TUNING: &str = r#"
+[tuning]
+sessions = ["a.csv", "b.csv"]
+iterations = 12
+kept = 9
+stopped = "interrupted"
+before = { position_rmse_mm = 4.0, tip_rmse_mm = 8.0, heading_rmse_deg = 1.5 }
+after = { position_rmse_mm = 3.0, tip_rmse_mm = 6.0, heading_rmse_deg = 1.25 }
+held_back_before = { position_rmse_mm = 5.0, tip_rmse_mm = 9.0, heading_rmse_deg = 2.0 }
+held_back_after = { position_rmse_mm = 4.5, tip_rmse_mm = 7.0, heading_rmse_deg = 1.75 }
+"#;
+
+fn tuned() -> String {
+    format!("{TABLE}{TUNING}")
+}
+
+fn error(from: &str, to: &str) -> FileError {
+    assert!(TUNING.contains(from), "{from} is not there");
+    ArmFile::parse(&tuned().replacen(from, to, 1)).expect_err("it must be refused")
+}
+
+#[test]
+fn every_key_is_read() {
+    let tuning = parse(&tuned()).tuning.expect("it is in the file");
+    assert_eq!(
+        (tuning.sessions, tuning.iterations, tuning.kept),
+        (vec!["a.csv".to_owned(), "b.csv".to_owned()], 12, 9)
+    );
+    assert_eq!(tuning.stopped, Stopped::Interrupted);
+    let figures = [tuning.before, tuning.after, tuning.held_back_before, tuning.held_back_after]
+        .map(|of| [of.position_rmse_mm, of.tip_rmse_mm, of.heading_rmse_deg].map(f64::to_bits));
+    let expected = [[4.0, 8.0, 1.5], [3.0, 6.0, 1.25], [5.0, 9.0, 2.0], [4.5, 7.0, 1.75]];
+    assert_eq!(figures, expected.map(|of| of.map(f64::to_bits)));
+}
+
+#[test]
+fn it_is_written_as_it_was_read() {
+    let file = parse(&tuned());
+    let text = file.to_toml();
+    assert_eq!(parse(&text), file);
+    for start in ["[tuning]", "sessions = [\"a.csv\", \"b.csv\"]", "before = { position_rmse_mm = 4.0, "] {
+        assert!(text.lines().any(|line| line.starts_with(start)), "no line begins with {start}: {text}");
+    }
+}
+
+/// The board says which table it runs by the checksum; a record is no part of what it runs.
+#[test]
+fn it_leaves_the_checksum_alone() {
+    let checksum = |text: &str| parse(text).bake::<Q>(100.0).expect("a table").checksum();
+    assert_eq!(checksum(&tuned()), checksum(TABLE));
+}
+
+#[test]
+fn every_reason_to_stop_is_read_and_no_other() {
+    for (name, stopped) in
+        [("converged", Stopped::Converged), ("interrupted", Stopped::Interrupted), ("iterations", Stopped::Iterations)]
+    {
+        let tuning = parse(&tuned().replace("interrupted", name)).tuning.expect("it is in the file");
+        assert_eq!(tuning.stopped, stopped);
+    }
+    assert!(error("interrupted", "tired").to_string().contains("tired"));
+}
+
+#[test]
+fn a_key_that_is_missing_or_unknown_is_named() {
+    assert!(error("kept = 9\n", "").to_string().contains("`kept`"));
+    assert!(error("kept", "keept").to_string().contains("keept"));
+    assert!(error("tip_rmse_mm = 8.0", "tip_rmse = 8.0").to_string().contains("tip_rmse"));
+}
+
+#[test]
+fn values_that_no_tuning_has_are_refused_with_their_key_and_line() {
+    for (from, to, key) in [
+        ("sessions = [\"a.csv\", \"b.csv\"]", "sessions = []", "tuning.sessions"),
+        ("kept = 9", "kept = 13", "tuning.kept"),
+        ("tip_rmse_mm = 8.0", "tip_rmse_mm = -8.0", "tuning.before.tip_rmse_mm"),
+        ("position_rmse_mm = 3.0", "position_rmse_mm = nan", "tuning.after.position_rmse_mm"),
+        ("heading_rmse_deg = 2.0", "heading_rmse_deg = inf", "tuning.held_back_before.heading_rmse_deg"),
+        ("tip_rmse_mm = 7.0", "tip_rmse_mm = 1e10", "tuning.held_back_after.tip_rmse_mm"),
+    ] {
+        let text = tuned().replacen(from, to, 1);
+        let line = 1 + text.lines().position(|line| line.contains(to)).expect("the edited line");
+        let error = error(from, to).to_string();
+        assert!(error.starts_with(&format!("line {line}: {key} = ")) && error.contains("expected"), "{to}: {error}");
+    }
+}

@@ -1,0 +1,68 @@
+//! Tuning on the paper's training session, 40 000 samples at 10 Hz, six segments: `cargo bench --package proprio`.
+
+use std::cell::Cell;
+use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
+
+use calibration_tables::ArmFile;
+use divan::Bencher;
+use divan::counter::ItemsCount;
+use proprio::output::OutputFile;
+use proprio::replay::NamedTable;
+use proprio::session::{ImuColumns, SessionWriter};
+use proprio::simulate::Simulation;
+use proprio::tune::Tuner;
+use rig_twin::Scenario;
+
+const SECONDS: f64 = 4000.0;
+const RATE_HZ: f64 = 10.0;
+const ITERATIONS: u64 = 10;
+
+static FOLDER: OnceLock<tempfile::TempDir> = OnceLock::new();
+
+fn main() {
+    divan::main();
+}
+
+/// The session, simulated when it is first asked for.
+fn session() -> PathBuf {
+    let folder = FOLDER.get_or_init(|| {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let file = OutputFile::create(&folder.path().join("session.csv"), &[]).expect("a session file");
+        let mut writer = SessionWriter::new(file, ImuColumns::Deg).expect("room on the disk");
+        for sample in Simulation::new(Scenario::One, 7, SECONDS, RATE_HZ).expect("a valid run") {
+            writer.write(&sample).expect("room on the disk");
+        }
+        writer.into_inner().finish().expect("room on the disk");
+        folder
+    });
+    folder.path().join("session.csv")
+}
+
+fn table() -> NamedTable<'static> {
+    let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../calibration-tables/planar-6.toml"));
+    NamedTable { file: ArmFile::load(path).expect("the reference table"), path }
+}
+
+/// From the files to the table: reading, descent until it converges, and the errors before and after.
+#[divan::bench(sample_count = 3, sample_size = 1)]
+fn until_it_converges(bencher: Bencher) {
+    let (sessions, table) = ([session()], table());
+    bencher.bench_local(|| {
+        let tuner = Tuner::new(&sessions, &table).expect("a good session");
+        tuner.tune(|| false).expect("errors that are numbers").record.iterations
+    });
+}
+
+/// Iterations alone; items are iterations.
+#[divan::bench(sample_count = 3, sample_size = 1)]
+fn iterations(bencher: Bencher) {
+    let (sessions, table) = ([session()], table());
+    let tuner = Tuner::new(&sessions, &table).expect("a good session");
+    bencher.counter(ItemsCount::new(ITERATIONS)).bench_local(|| {
+        let calls = Cell::new(0);
+        let is_over = || calls.replace(calls.get() + 1) == ITERATIONS;
+        let record = tuner.tune(is_over).expect("errors that are numbers").record;
+        assert_eq!(record.iterations, ITERATIONS);
+    });
+}

@@ -1,0 +1,229 @@
+//! Both clocks to a fraction of a sample: windows of the recording, each with its own lag, and the line through these.
+
+use super::error::AlignmentError;
+use super::motion::{Motion, Pair, Sensors};
+use super::signal::GRID_S;
+
+/// Length of a window, s.
+const WINDOW_S: f64 = 20.0;
+/// Most rounds of windows and lines; four do.
+const ROUNDS: usize = 20;
+/// A round that moves the lag by less than this is the last, s.
+const CONVERGED_S: f64 = 1e-6;
+/// Most that a window's lag moves in one round, s: the coarse lag is no further off, and steps have turned over by then.
+const LONGEST_MOVE_S: f64 = 1.0;
+/// No sensor is better than this, as a share of its mean square: rounding would decide.
+const LEAST_NOISE: f64 = 1e-9;
+/// A line through fewer windows says nothing of its own error.
+const LEAST_WINDOWS: f64 = 2.5;
+
+/// The camera's clock as a line over the sensors': camera = lag + (1 + skew) · sensors, each since its own start.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Clocks {
+    pub lag_s: f64,
+    pub skew: f64,
+}
+
+impl Clocks {
+    pub fn camera_s(&self, sensor_s: f64) -> f64 {
+        self.lag_s + sensor_s + self.skew * sensor_s
+    }
+}
+
+/// What the comparison came to.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Fit {
+    pub clocks: Clocks,
+    /// Middle of what both saw, by the sensors' clock, where the lag is known best.
+    pub middle_s: f64,
+    /// Standard errors of the lag there and of the skew, from how the windows scatter.
+    pub lag_error_s: f64,
+    pub skew_error: f64,
+    /// Root mean square of the windows' own lags about the line.
+    pub residual_s: f64,
+    /// Median over the pairs, some of which may be wrong.
+    pub correlation: f64,
+    /// Moments at which steps were compared.
+    pub matched: usize,
+}
+
+/// Steps of all sensors that were read at one moment, and the steps' rates of change, by pair.
+struct Moment {
+    time_s: f64,
+    steps: Vec<(usize, [f64; 2])>,
+}
+
+/// Refines a lag that is right to some tenths of a second.
+pub(super) fn fit(motion: &Motion, lag_s: f64) -> Result<Fit, AlignmentError> {
+    let windows = windows(motion);
+    let mut clocks = Clocks { lag_s, skew: 0.0 };
+    let mut rounds = 0;
+    loop {
+        let gains = gains(motion, &windows, clocks);
+        let lags: Vec<WindowLag> =
+            windows.iter().filter_map(|window| window_lag(motion, window, clocks, &gains)).collect();
+        let line = Line::through(&lags).ok_or(AlignmentError::Still)?;
+        clocks = Clocks { lag_s: clocks.lag_s + line.at(0.0), skew: clocks.skew + line.slope };
+        rounds += 1;
+        if line.lag_s.abs().max(line.at(0.0).abs()) < CONVERGED_S || rounds == ROUNDS {
+            return Ok(Fit {
+                clocks,
+                middle_s: line.middle_s,
+                lag_error_s: line.lag_error_s,
+                skew_error: line.slope_error,
+                residual_s: line.residual_s,
+                correlation: median_correlation(motion.by, &gains),
+                matched: matched(motion, &windows, clocks),
+            });
+        }
+    }
+}
+
+fn median_correlation(by: Sensors, gains: &[Gain]) -> f64 {
+    let known = gains.iter().map(Gain::correlation).filter(|correlation| correlation.is_finite());
+    let mut known: Vec<f64> = match by {
+        Sensors::Imus => known.collect(),
+        Sensors::Bend => known.map(f64::abs).collect(),
+    };
+    known.sort_unstable_by(f64::total_cmp);
+    known.get(known.len() / 2).copied().unwrap_or_default()
+}
+
+/// Moments at which a step of some sensor has its like.
+fn matched(motion: &Motion, windows: &[Vec<Moment>], clocks: Clocks) -> usize {
+    let has_like = |moment: &&Moment| {
+        let camera_s = clocks.camera_s(moment.time_s);
+        moment.steps.iter().any(|(i, _)| motion.camera_step(*i, camera_s).is_some())
+    };
+    windows.iter().flatten().filter(has_like).count()
+}
+
+/// The sensors' steps in windows.
+fn windows(motion: &Motion) -> Vec<Vec<Moment>> {
+    let ends_s = motion.pairs.iter().filter_map(|pair| pair.sensor.ends_s());
+    let end_s = ends_s.map(|[_, end_s]| end_s).fold(0.0, f64::max);
+    let per_window = (WINDOW_S / GRID_S).round() as usize;
+    let moment = |k: usize| {
+        let time_s = k as f64 * GRID_S;
+        let step = |(i, pair): (usize, &Pair)| Some((i, pair.sensor.step(time_s)?));
+        Moment { time_s, steps: motion.pairs.iter().enumerate().filter_map(step).collect() }
+    };
+    let moments: Vec<usize> = (0..(end_s / GRID_S) as usize).collect();
+    moments.chunks(per_window).map(|window| window.iter().copied().map(moment).collect()).collect()
+}
+
+/// How a pair's sensor follows the camera.
+#[derive(Debug, Default, Clone, Copy)]
+struct Gain {
+    sensor_square: f64,
+    camera_square: f64,
+    product: f64,
+    count: f64,
+}
+
+impl Gain {
+    fn add(&mut self, sensor: f64, camera: f64) {
+        self.sensor_square += sensor * sensor;
+        self.camera_square += camera * camera;
+        self.product += sensor * camera;
+        self.count += 1.0;
+    }
+
+    /// The sensor's step for one of the camera's.
+    fn value(&self) -> f64 {
+        if self.camera_square > 0.0 { self.product / self.camera_square } else { 0.0 }
+    }
+
+    /// What the camera does not explain: the mean square of the rest.
+    fn noise(&self) -> f64 {
+        let rest = self.sensor_square - self.value() * self.product;
+        rest.max(LEAST_NOISE * self.sensor_square) / self.count
+    }
+
+    fn correlation(&self) -> f64 {
+        self.product / (self.sensor_square * self.camera_square).sqrt()
+    }
+}
+
+fn gains(motion: &Motion, windows: &[Vec<Moment>], clocks: Clocks) -> Vec<Gain> {
+    let mut gains = vec![Gain::default(); motion.pairs.len()];
+    for moment in windows.iter().flatten() {
+        for (i, [step, _]) in &moment.steps {
+            if let Some(camera) = motion.camera_step(*i, clocks.camera_s(moment.time_s)) {
+                gains[*i].add(*step, camera);
+            }
+        }
+    }
+    gains
+}
+
+/// By how much the camera's clock is ahead of the line in one window.
+#[derive(Debug, Clone, Copy)]
+struct WindowLag {
+    /// Middle of what was compared.
+    time_s: f64,
+    lag_s: f64,
+    /// Inverse square of the lag's error: what the motion in the window tells of it.
+    weight: f64,
+}
+
+/// One step of Gauss and Newton: the lag by which the camera's steps would have to move to be the sensors'. The slope is
+/// the sensors', which is less noisy than a single camera's.
+fn window_lag(motion: &Motion, window: &[Moment], clocks: Clocks, gains: &[Gain]) -> Option<WindowLag> {
+    let (mut pull, mut weight, mut time) = (0.0, 0.0, 0.0);
+    for moment in window {
+        for (i, [step, rate]) in &moment.steps {
+            let (gain, noise) = (gains[*i].value(), gains[*i].noise());
+            let camera = motion.camera_step(*i, clocks.camera_s(moment.time_s)).filter(|_| noise > 0.0);
+            if let Some(camera) = camera {
+                pull += rate * (step - gain * camera) / noise;
+                weight += rate * rate / noise;
+                time += rate * rate / noise * moment.time_s;
+            }
+        }
+    }
+    let lag_s = (pull / weight).clamp(-LONGEST_MOVE_S, LONGEST_MOVE_S);
+    (weight > 0.0).then(|| WindowLag { time_s: time / weight, lag_s, weight })
+}
+
+/// A line through the windows' lags.
+#[derive(Debug, Clone, Copy)]
+struct Line {
+    middle_s: f64,
+    lag_s: f64,
+    slope: f64,
+    lag_error_s: f64,
+    slope_error: f64,
+    residual_s: f64,
+}
+
+impl Line {
+    /// Weighted least squares; `None` where too few windows tell anything.
+    fn through(lags: &[WindowLag]) -> Option<Self> {
+        let sum = |of: &dyn Fn(&WindowLag) -> f64| lags.iter().map(|lag| lag.weight * of(lag)).sum::<f64>();
+        let weight = sum(&|_| 1.0);
+        let windows = weight * weight / sum(&|lag| lag.weight);
+        if lags.is_empty() || windows < LEAST_WINDOWS {
+            return None;
+        }
+        let middle_s = sum(&|lag| lag.time_s) / weight;
+        let lag_s = sum(&|lag| lag.lag_s) / weight;
+        let spread = sum(&|lag| (lag.time_s - middle_s).powi(2));
+        let slope = sum(&|lag| (lag.time_s - middle_s) * lag.lag_s) / spread;
+        let square = sum(&|lag| (lag.lag_s - lag_s - slope * (lag.time_s - middle_s)).powi(2));
+        // Two of the windows' worth went into the line.
+        let variance = square / weight * windows / (windows - 2.0);
+        Some(Self {
+            middle_s,
+            lag_s,
+            slope,
+            lag_error_s: (variance / windows).sqrt(),
+            slope_error: (variance * weight / (windows * spread)).sqrt(),
+            residual_s: variance.sqrt(),
+        })
+    }
+
+    fn at(&self, time_s: f64) -> f64 {
+        self.lag_s + self.slope * (time_s - self.middle_s)
+    }
+}

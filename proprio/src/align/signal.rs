@@ -1,0 +1,101 @@
+//! A column as a function of time, and its steps: what both clocks' recordings are compared by.
+
+/// Span of the two means that a step is between, s. What moves in seconds stays, drift and noise do not; and neither do the
+/// jerks in which an IMU's own filter errs.
+const SPAN_S: f64 = 2.0;
+/// Time from one compared step to the next, s.
+pub(super) const GRID_S: f64 = 0.1;
+/// A pause between readings of more than this hides motion, s.
+const PAUSE_S: f64 = 0.3;
+/// At low rates a pause is more than so many of the usual steps.
+const PAUSE_STEPS: f64 = 2.5;
+
+/// A time, s, and what was read then.
+pub(super) type Reading = (f64, f64);
+
+/// A column: straight lines from reading to reading.
+pub(super) struct Signal {
+    points: Vec<Point>,
+    pause_s: f64,
+}
+
+#[derive(Clone, Copy)]
+struct Point {
+    time_s: f64,
+    value: f64,
+    /// Integral of the lines since the first reading.
+    area: f64,
+    /// Time in pauses since then.
+    hidden_s: f64,
+}
+
+impl Signal {
+    /// The signal of readings in the order of time.
+    pub fn new(readings: &[Reading]) -> Self {
+        let mut steps: Vec<f64> = readings.windows(2).map(|pair| pair[1].0 - pair[0].0).collect();
+        steps.sort_unstable_by(f64::total_cmp);
+        let usual_s = steps.get(steps.len() / 2).copied().unwrap_or_default();
+        let mut signal =
+            Self { points: Vec::with_capacity(readings.len()), pause_s: PAUSE_S.max(PAUSE_STEPS * usual_s) };
+        for (time_s, value) in readings {
+            let point = match signal.points.last() {
+                None => Point { time_s: *time_s, value: *value, area: 0.0, hidden_s: 0.0 },
+                Some(last) => signal.on_line(*last, *time_s, *value, time_s - last.time_s),
+            };
+            signal.points.push(point);
+        }
+        signal
+    }
+
+    /// The point at `time_s` on a line that began at `from` and is `length_s` long.
+    fn on_line(&self, from: Point, time_s: f64, value: f64, length_s: f64) -> Point {
+        let since_s = time_s - from.time_s;
+        let hidden_s = if length_s > self.pause_s { since_s } else { 0.0 };
+        let area = from.area + since_s * f64::midpoint(from.value, value);
+        Point { time_s, value, area, hidden_s: from.hidden_s + hidden_s }
+    }
+
+    /// When the first and the last reading were taken.
+    pub fn ends_s(&self) -> Option<[f64; 2]> {
+        Some([self.points.first()?.time_s, self.points.last()?.time_s])
+    }
+
+    fn at(&self, time_s: f64) -> Option<Point> {
+        let after = self.points.partition_point(|point| point.time_s <= time_s);
+        let (from, to) = (self.points.get(after.checked_sub(1)?)?, self.points.get(after)?);
+        let length_s = to.time_s - from.time_s;
+        let value = from.value + (to.value - from.value) * (time_s - from.time_s) / length_s;
+        Some(self.on_line(*from, time_s, value, length_s))
+    }
+
+    /// The step at `time_s`, which is the mean over the span after it less the mean over the span before, and the step's
+    /// rate of change; `None` where the column was not read all the while.
+    pub fn step(&self, time_s: f64) -> Option<[f64; 2]> {
+        let [before, now, after] = [-SPAN_S, 0.0, SPAN_S].map(|offset_s| self.at(time_s + offset_s));
+        let (before, now, after) = (before?, now?, after?);
+        let seen = after.hidden_s <= before.hidden_s;
+        let second_difference = |of: fn(&Point) -> f64| (of(&after) - 2.0 * of(&now) + of(&before)) / SPAN_S;
+        seen.then(|| [second_difference(|point| point.area), second_difference(|point| point.value)])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Signal;
+
+    #[test]
+    fn a_ramp_steps_by_its_slope_times_the_span_however_it_was_sampled() {
+        let times = [0.0, 1.0, 1.1, 1.11, 3.0, 3.5, 6.0];
+        let signal = Signal::new(&times.map(|time| (time, 3.0 * time)));
+        let [step, rate] = signal.step(2.5).expect("it lies within");
+        assert!((step - 6.0).abs() < 1e-12 && rate.abs() < 1e-12, "{step}, {rate}");
+    }
+
+    #[test]
+    fn there_is_no_step_across_a_pause_or_beyond_the_ends() {
+        let times = (0..400).map(|k| f64::from(k) / 20.0).filter(|t| !(8.0..8.4).contains(t));
+        let signal = Signal::new(&times.map(|time| (time, time)).collect::<Vec<_>>());
+        let known = [1.9, 2.1, 5.9, 6.2, 8.2, 10.3, 10.5, 17.9, 18.0].map(|time| signal.step(time).is_some());
+        assert_eq!(known, [false, true, true, false, false, false, true, true, false]);
+    }
+}

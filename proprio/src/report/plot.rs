@@ -1,0 +1,178 @@
+//! What a figure shows, apart from how it is drawn: the numbers of the page, of the JSON and of the CSV alike.
+
+use estimator_core::Method;
+use serde::{Serialize, Serializer};
+
+/// A figure of one or more panels.
+#[derive(Debug, Serialize)]
+pub struct Figure {
+    /// Its name in JSON and CSV.
+    #[serde(rename = "figure")]
+    pub name: &'static str,
+    pub title: &'static str,
+    /// What is shown, and how many samples.
+    pub caption: String,
+    pub panels: Vec<Panel>,
+}
+
+/// One plot.
+#[derive(Debug, Serialize)]
+pub struct Panel {
+    /// The session; `None` where it is of all together.
+    pub session: Option<String>,
+    /// What it is of: a segment, a sensor, a moment; empty where that is the session.
+    pub name: String,
+    /// What stands above it.
+    pub title: String,
+    /// Numbers about it, by their names with units.
+    #[serde(serialize_with = "as_map")]
+    pub facts: Vec<(&'static str, f64)>,
+    #[serde(skip)]
+    pub size: Size,
+    #[serde(skip)]
+    pub x: Axis,
+    #[serde(skip)]
+    pub y: Axis,
+    pub series: Vec<Series>,
+}
+
+/// Width of a panel.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Size {
+    /// Two in a row.
+    Half,
+    /// Three in a row.
+    Third,
+    /// Four in a row, tall, with equal scales of both axes.
+    Quarter,
+}
+
+/// An axis.
+#[derive(Debug, Clone)]
+pub struct Axis {
+    /// Title with the unit.
+    pub title: &'static str,
+    pub range: [f64; 2],
+    /// Names instead of numbers, at 0, 1, ….
+    pub names: &'static [&'static str],
+}
+
+/// Marks of one colour.
+#[derive(Debug, Serialize)]
+pub struct Series {
+    /// Its name in the legend.
+    pub name: String,
+    #[serde(skip)]
+    pub colour: Colour,
+    #[serde(flatten)]
+    pub marks: Marks,
+}
+
+/// How numbers are drawn. The names of quantities are those of the CSV, with their unit.
+#[derive(Debug, Serialize)]
+#[serde(tag = "kind", rename_all = "lowercase")]
+pub enum Marks {
+    /// A line, broken where there is no value.
+    Line { x: &'static str, y: &'static str, points: Vec<(f64, Option<f64>)> },
+    /// An area between two values.
+    Band { x: &'static str, low: &'static str, high: &'static str, points: Vec<(f64, Option<[f64; 2]>)> },
+    /// Points by themselves.
+    Dots { x: &'static str, y: &'static str, points: Vec<(f64, f64)> },
+    /// A circle about a point, mm.
+    Circle { center_x_mm: f64, center_y_mm: f64, radius_mm: f64 },
+    /// A box plot at a place of the x axis, mm.
+    Box {
+        #[serde(skip)]
+        place: f64,
+        samples: u64,
+        low_mm: f64,
+        quartile1_mm: f64,
+        median_mm: f64,
+        quartile3_mm: f64,
+        high_mm: f64,
+        largest_mm: f64,
+        rmse_mm: f64,
+    },
+}
+
+/// Colours by meaning; the page's style sheet has them for light and dark.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Colour {
+    Of(Method),
+    Truth,
+    Ink,
+    Grid,
+}
+
+impl Axis {
+    /// Numbers over `range`.
+    pub fn new(title: &'static str, range: [f64; 2]) -> Self {
+        Self { title, range, names: &[] }
+    }
+}
+
+fn as_map<S: Serializer>(facts: &[(&'static str, f64)], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_map(facts.iter().copied())
+}
+
+impl Marks {
+    /// Points that an axis must have room for.
+    fn points(&self) -> Vec<(f64, f64)> {
+        match self {
+            Self::Line { points, .. } => points.iter().filter_map(|(x, y)| Some((*x, (*y)?))).collect(),
+            Self::Band { points, .. } => points
+                .iter()
+                .filter_map(|(x, range)| Some((*x, (*range)?)))
+                .flat_map(|(x, [a, b])| [(x, a), (x, b)])
+                .collect(),
+            Self::Dots { points, .. } => points.clone(),
+            Self::Circle { center_x_mm: x, center_y_mm: y, radius_mm: r } => vec![(x - r, y - r), (x + r, y + r)],
+            Self::Box { place, low_mm, high_mm, rmse_mm, .. } => {
+                vec![(*place, *low_mm), (*place, high_mm.max(*rmse_mm))]
+            }
+        }
+    }
+}
+
+/// Extent of all series in x and y.
+pub fn extent<'s>(series: impl IntoIterator<Item = &'s Series>) -> [[f64; 2]; 2] {
+    let mut extents = [Extent::new(), Extent::new()];
+    for (x, y) in series.into_iter().flat_map(|series| series.marks.points()) {
+        extents.iter_mut().zip([x, y]).for_each(|(extent, value)| extent.add(value));
+    }
+    extents.map(Extent::range)
+}
+
+/// Least and largest of some numbers.
+#[derive(Debug, Clone, Copy)]
+struct Extent(f64, f64);
+
+impl Extent {
+    fn new() -> Self {
+        Self(f64::INFINITY, f64::NEG_INFINITY)
+    }
+
+    fn add(&mut self, value: f64) {
+        (self.0, self.1) = (self.0.min(value), self.1.max(value));
+    }
+
+    /// Never empty, so that an axis can be drawn.
+    fn range(self) -> [f64; 2] {
+        match self {
+            Self(least, largest) if least < largest => [least, largest],
+            Self(least, _) if least.is_finite() => [least - 1.0, least + 1.0],
+            _ => [0.0, 1.0],
+        }
+    }
+}
+
+/// A range with a little room at both ends.
+pub fn padded([from, to]: [f64; 2]) -> [f64; 2] {
+    let room = 0.04 * (to - from);
+    [from - room, to + room]
+}
+
+/// Three decimals: of a millimetre, a degree, a second more than anyone sees, and a third of the digits.
+pub fn rounded(value: f64) -> f64 {
+    (value * 1e3).round() / 1e3
+}

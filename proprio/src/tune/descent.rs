@@ -1,0 +1,81 @@
+//! Gradient descent, p ← p − α ∂RMSE/∂p. L-BFGS makes α of the gradients before, one for each direction, and a search
+//! along it shortens the step until the RMSE falls.
+
+use calibration_tables::Stopped;
+use lbfgs::Lbfgs;
+
+use super::error::TuningError;
+use super::objective::Evaluation;
+
+/// Gradients that α is made of.
+const MEMORY: usize = 10;
+/// Descent is given up after so many iterations.
+pub(super) const MAX_ITERATIONS: u64 = 300;
+/// It has converged where the RMSE falls by less than this share in [`PATIENCE`] iterations.
+const CONVERGED: f64 = 1e-4;
+const PATIENCE: usize = 5;
+/// No coordinate goes further in one iteration.
+const LONGEST: f64 = 1.0;
+/// Share of what the slope promises that a step must keep.
+const KEPT: f64 = 1e-4;
+/// Times that a step is halved before there is none.
+const HALVINGS: u32 = 12;
+
+/// Where descent is.
+#[derive(Debug, Clone)]
+pub(super) struct Iterate {
+    /// 0 at the start.
+    pub number: u64,
+    pub place: Vec<f64>,
+    pub found: Evaluation,
+}
+
+/// Descends from `start`, and says why it stopped; `visit` sees every iterate and tells whether to go on.
+pub(super) fn descend(
+    at: impl Fn(&[f64]) -> Evaluation,
+    start: Vec<f64>,
+    mut visit: impl FnMut(&Iterate) -> bool,
+) -> Result<Stopped, TuningError> {
+    let mut memory = Lbfgs::new(start.len(), MEMORY);
+    let found = at(&start);
+    let mut here = Iterate { number: 0, place: start, found };
+    let mut losses = Vec::new();
+    loop {
+        let loss = here.found.loss;
+        if !loss.is_finite() || !here.found.gradient.iter().all(|derivative| derivative.is_finite()) {
+            return Err(TuningError::NotFinite);
+        }
+        if !visit(&here) {
+            return Ok(Stopped::Interrupted);
+        }
+        if losses.len() >= PATIENCE && losses[losses.len() - PATIENCE] - loss < CONVERGED {
+            return Ok(Stopped::Converged);
+        }
+        if here.number == MAX_ITERATIONS {
+            return Ok(Stopped::Iterations);
+        }
+        losses.push(loss);
+        memory.update_hessian(&here.found.gradient, &here.place);
+        let Some(next) = step(&at, &here, &mut memory) else { return Ok(Stopped::Converged) };
+        here = next;
+    }
+}
+
+/// The next iterate; `None` where no step lowers the loss.
+fn step(at: impl Fn(&[f64]) -> Evaluation, here: &Iterate, memory: &mut Lbfgs) -> Option<Iterate> {
+    let gradient = &here.found.gradient;
+    let mut direction = gradient.clone();
+    memory.apply_hessian(&mut direction);
+    let slope: f64 = gradient.iter().zip(&direction).map(|(derivative, d)| derivative * d).sum();
+    let longest = direction.iter().fold(0.0, |longest: f64, d| longest.max(d.abs()));
+    let mut length = f64::min(1.0, LONGEST / longest);
+    for _ in 0..HALVINGS {
+        let place: Vec<f64> = here.place.iter().zip(&direction).map(|(x, d)| x - length * d).collect();
+        let found = at(&place);
+        if found.loss <= here.found.loss - KEPT * length * slope {
+            return Some(Iterate { number: here.number + 1, place, found });
+        }
+        length /= 2.0;
+    }
+    None
+}

@@ -1,0 +1,59 @@
+//! Why filters cannot be tuned.
+
+/// Why the filters of a table cannot be tuned on a session.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum TuningError {
+    /// Without a bend sensor there is no fusion.
+    #[error("no segment has a bend sensor, expected at least one: without any there is no fusion to tune")]
+    NoBendSensors,
+    /// The truth does not move.
+    #[error(
+        "the arm never moves: no true heading changes by more than {range_deg:.1}°, expected at least {least_deg}°"
+    )]
+    Still {
+        /// Largest range of a segment's heading.
+        range_deg: f64,
+        /// Range needed.
+        least_deg: f64,
+    },
+    /// Too little truth to tune on, or to check the tuning.
+    #[error(
+        "{} has {found} samples with a fused and a true tip, expected at least {least}",
+        if *.is_held_back { "the last fifth, which is held back," } else { "the part before the last fifth" }
+    )]
+    TooFewSamples {
+        /// Which part.
+        is_held_back: bool,
+        /// Samples found.
+        found: u64,
+        /// Samples needed.
+        least: u64,
+    },
+    /// The truth does not hang together.
+    #[error("the truth's points are {percent:.0} % of the arm's length away from where its headings put them")]
+    TruthMisfit {
+        /// Root mean square distance of the tip from the chain of the true bend angles, % of the arm's length.
+        percent: f64,
+    },
+    /// The errors are no numbers.
+    #[error("the errors of the filters are not finite, expected some mm and degrees")]
+    NotFinite,
+}
+
+impl TuningError {
+    /// What to do about it.
+    #[must_use]
+    pub const fn remedy(&self) -> &'static str {
+        match self {
+            Self::NoBendSensors => "use the table as it is: imu_o needs no tuning",
+            Self::Still { .. } => {
+                "take a session in which the arm moves as in use, and check that the camera follows it"
+            }
+            Self::TooFewSamples { .. } => "record a longer session, with the camera seeing the tip to the end",
+            Self::TruthMisfit { .. } => {
+                "x is to the right, y along the base, headings clockwise from y: check the axes and the arm's lengths"
+            }
+            Self::NotFinite => "make the table again with `proprio calibrate`",
+        }
+    }
+}

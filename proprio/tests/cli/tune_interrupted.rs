@@ -1,0 +1,50 @@
+//! Ctrl-C while filters are tuned: the best so far is kept.
+#![cfg(unix)]
+
+use std::process::{Command, Stdio};
+use std::thread::sleep;
+use std::time::Duration;
+
+use calibration_tables::{ArmFile, Stopped};
+
+use super::common::{Folder, Run, simulate};
+use super::tune::{TUNE, spoiled};
+
+/// A tuning that is interrupted after `pause`.
+fn interrupted(folder: &Folder, pause: Duration) -> Run {
+    let mut command = folder.command(&TUNE);
+    let child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("the tool starts");
+    sleep(pause);
+    let interrupt = Command::new("kill").args(["-INT", &child.id().to_string()]).status();
+    assert!(interrupt.expect("unix has kill").success());
+    child.wait_with_output().expect("the tool ends").into()
+}
+
+/// An interrupt that comes before the descent ends the run without a table; the descent takes many times as long, so that
+/// one that comes later and later meets it.
+#[test]
+fn an_interrupted_tuning_leaves_the_best_table_so_far_and_says_so() {
+    let folder = Folder::with("session.csv", simulate("--scenario 1 --seconds 600 --seed 54").to_string());
+    folder.write("table.toml", spoiled());
+    let mut pause = Duration::from_millis(50);
+    let run = loop {
+        let run = interrupted(&folder, pause);
+        if run.code != Some(130) {
+            break run;
+        }
+        assert!(!folder.path("tuned.toml").exists(), "an interrupt before the descent leaves no table");
+        pause *= 2;
+    };
+    assert_eq!(run.code, Some(0), "{}", run.stderr);
+    assert!(run.stderr.starts_with("warning: interrupted after "), "{}", run.stderr);
+    assert!(run.stdout.contains("interrupted after "), "{}", run.stdout);
+
+    let table = ArmFile::load(&folder.path("tuned.toml")).expect("a valid table");
+    let record = table.tuning.expect("a tuned table has a record");
+    assert_eq!(record.stopped, Stopped::Interrupted);
+    assert_eq!(record.kept, record.iterations);
+    assert!(record.after.position_rmse_mm <= record.before.position_rmse_mm, "{record:?}");
+    assert!(folder.run(&["replay", "session.csv", "--table", "tuned.toml"]).code == Some(0));
+    let entries = std::fs::read_dir(folder.path("")).expect("the folder is there").count();
+    assert_eq!(entries, 3, "nothing is left behind");
+}
