@@ -8,7 +8,7 @@ use telemetry::{Health, Hello, Message, TICK_HZ};
 use crate::link::{Link, LinkError, Mismatch, Subscription, What};
 
 /// How long a board may be silent, s.
-const PATIENCE_S: u64 = 5;
+const PATIENCE_S: u64 = 10;
 /// Rates are those of at least so long, s.
 const RATES_S: f64 = 1.0;
 /// A board that has just started is looked at until its first tare, or so long: its IMUs come up slowly.
@@ -109,7 +109,8 @@ impl Status {
             if start.elapsed().as_secs() >= PATIENCE_S && seen.health.is_none() {
                 return Err(silent(link));
             }
-            if start.elapsed() > Duration::from_secs(2 * PATIENCE_S) {
+            // An emulated board may be slow, and takes its time to settle.
+            if start.elapsed().as_secs() >= 3 * PATIENCE_S {
                 return Err(silent(link));
             }
         }

@@ -34,6 +34,9 @@ pub enum ReadError {
     /// It is compressed.
     #[error("the recording is compressed with {0}, which proprio does not read")]
     Compressed(String),
+    /// It is of a firmware whose messages this program does not know.
+    #[error("the messages of its firmware, version {0}, have another form than this proprio reads")]
+    OtherForm(String),
     /// It is damaged, or no recording of ours.
     #[error("the recording is damaged: {0}")]
     Damaged(String),

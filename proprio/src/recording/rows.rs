@@ -91,11 +91,7 @@ impl<I: Iterator<Item = Result<Item, ReadError>>> RecordedRows<I> {
     fn take(&mut self, at: HostNs, message: Message) -> Result<(), ReadError> {
         match message {
             Message::Hello(hello) if hello.schema != SCHEMA => {
-                let text = format!(
-                    "the messages of its firmware, version {}, have another form than this proprio reads",
-                    hello.firmware
-                );
-                return Err(ReadError::Damaged(text));
+                return Err(ReadError::OtherForm(hello.firmware.as_str().to_owned()));
             }
             Message::Hello(hello) => {
                 self.restarted |= self.runs.hello(hello.boot);

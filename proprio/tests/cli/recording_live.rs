@@ -117,5 +117,5 @@ fn a_board_that_says_nothing_has_no_status() {
     let name = port.name().expect("it has a name");
     drop(port);
     let error = folder.refused(&["status", "--port", &name]);
-    assert!(error.contains("no Hello and Health within 5 s"), "{error}");
+    assert!(error.contains("no Hello and Health within 10 s"), "{error}");
 }
