@@ -17,6 +17,7 @@ mod guide;
 mod missing_readings;
 mod output_files;
 mod ports;
+mod recorded_sessions;
 mod recording_files;
 #[cfg(unix)]
 mod recording_live;
