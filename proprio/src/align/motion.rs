@@ -11,7 +11,7 @@ use super::frames::{Frames, near};
 use super::signal::{Reading, Signal};
 use crate::error::Error;
 use crate::progress::Progress;
-use crate::session::{Needs, Problem, Row, SessionError, SessionReader};
+use crate::session::{Kind, Needs, Problem, Row, SessionError, SessionReader};
 
 /// A sensor and what the camera saw of its motion.
 pub(super) struct Pair {
@@ -68,6 +68,9 @@ impl Readings {
         let refuse = |line, problem| SessionError { path: session.to_owned(), line, column: None, problem };
         if !reader.is_regular_file() {
             return Err(refuse(None, Problem::NotAFile).into());
+        }
+        if reader.kind() != Kind::Csv {
+            return Err(refuse(None, Problem::NotCsv).into());
         }
         if let Some(column) = reader.truth_column() {
             return Err(refuse(Some(1), Problem::HasTruth(column.to_owned())).into());
