@@ -28,7 +28,9 @@ fn calibrate_makes_the_same_table() {
 #[test]
 fn tune_makes_the_same_table() {
     let folders = both(&simulate("--scenario 1 --seconds 60 --seed 52 --imu quaternion"));
-    folders.iter().for_each(|folder| folder.write("table.toml", spoiled()));
+    for folder in &folders {
+        folder.write("table.toml", spoiled());
+    }
     assert_same(&folders, &["tune", "session", "--table", "table.toml", "-o", "tuned.toml"], "tuned.toml");
 }
 
