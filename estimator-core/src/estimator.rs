@@ -3,10 +3,11 @@
 use heapless::Vec;
 use nalgebra::SVector;
 
-use crate::anchor::{Anchor, Pace, Slot};
+use crate::anchor::{Anchor, Pace};
 use crate::angle::{Angle, Turns};
+use crate::bend::BendMap;
 use crate::filter::{Block, Gains};
-use crate::imu::Heading;
+use crate::imu::{Heading, Tangent};
 use crate::pcc::{Link, Pcc, SegmentShape, chain};
 use crate::sample::{ImuReading, SENSORS_PER_SEGMENT, Sample};
 use crate::scalar::Scalar;
@@ -95,33 +96,27 @@ pub struct Estimator<'t, S, const N: usize, const W: usize> {
     fused: Shape<S, N>,
 }
 
-/// What is remembered of one segment.
+/// What is remembered of one segment, in this order: behind the anchor's long window a load would need its address first.
 #[derive(Debug, Clone)]
+#[repr(C)]
 struct State<S, const W: usize> {
     heading: Heading<S>,
-    anchor: Anchor<W>,
+    maps: [Option<BendMap<S>>; SENSORS_PER_SEGMENT],
     pcc: Pcc<S>,
-    orient: Block<S, 1>,
     coord: Block<S, 2>,
-    orient_gains: Gains<S>,
     coord_gains: Gains<S>,
+    orient: Block<S, 1>,
+    orient_gains: Gains<S>,
+    anchor: Anchor<W>,
 }
 
-/// One tick: what there is to take a sample with.
-struct Tick<'a, S, const W: usize> {
-    table: &'a Table<'a, S>,
-    has_bend_sensors: bool,
-    slot: Slot,
-    states: &'a mut [State<S, W>],
-}
-
-/// One IMU in one tick.
-#[derive(Clone, Copy)]
-struct Tangent {
-    /// Unwrapped heading, counted from anywhere.
-    heading: Option<Turns>,
-    /// What to subtract from it.
-    zero: Option<Turns>,
+/// The bend angles that one sample says of one segment.
+struct Thetas<S> {
+    bend: Option<S>,
+    imu_o: Option<Angle<S>>,
+    imu_c: Option<Angle<S>>,
+    bend_sensors_read: u8,
+    imu_read: bool,
 }
 
 impl<'t, S: Scalar, const N: usize, const W: usize> Estimator<'t, S, N, W> {
@@ -161,28 +156,61 @@ impl<'t, S: Scalar, const N: usize, const W: usize> Estimator<'t, S, N, W> {
         }
         self.has_bend_sensors = table.segments.iter().any(|segment| segment.bend.iter().any(Option::is_some));
         for segment in table.segments {
-            let _ = self.states.push(State::new(segment, table.tare_samples)); // There is room: it was checked.
+            // There is room: it was checked.
+            let _ = self.states.push(State::new(segment, table.tare_samples));
+            let _ = self.fused.push(SegmentShape { theta: None, end: None });
         }
         Ok(())
     }
 
     /// Takes one sample. The cost is linear in the number of segments and allocates nothing.
     pub fn step(&mut self, sample: &Sample<N>) -> Estimate<S, N> {
-        Estimate { time_us: sample.time_us, segments: all(self.parts().1.estimates(sample)) }
+        let mut segments = Vec::new();
+        self.take(sample, |state, thetas| {
+            let _ = segments.push(state.estimate(&thetas)); // There is room: `start` has checked.
+        });
+        Estimate { time_us: sample.time_us, segments }
     }
 
     /// Takes one sample as [`Estimator::step`] does and gives the fused shape alone, which costs the board less than both.
     ///
     /// The numbers are those of [`Estimator::shape`] by [`Method::Fusion`], to the bit.
+    #[inline(never)]
     pub fn fuse(&mut self, sample: &Sample<N>) -> &Shape<S, N> {
-        self.parts().1.estimates(sample).for_each(drop);
+        self.take(sample, |_, _| ());
         // Over the states again, which leaves more of the registers to each of the two.
         let Self { states, fused, .. } = self;
-        fused.clear();
-        for segment in chain(states.iter().map(|state| state.fused().map(|fused| fused.link))) {
-            let _ = fused.push(segment); // There is room for all segments: `new` has checked.
+        let links = states.iter().map(|state| state.fused().map(|fused| fused.link));
+        for (segment, shape) in fused.iter_mut().zip(chain(links)) {
+            *segment = shape;
         }
         fused
+    }
+
+    /// Takes one sample, segment by segment from the base to the tip, and tells `then` of each.
+    #[inline]
+    fn take(&mut self, sample: &Sample<N>, mut then: impl FnMut(&State<S, W>, Thetas<S>)) {
+        let Self { table: Table { anchor: rule, .. }, has_bend_sensors, pace, states, .. } = self;
+        let has_bend_sensors = *has_bend_sensors;
+        let slot = pace.tick(rule);
+        let mut before = &Tangent::BASE;
+        let readings = sample.bend.iter().zip(&sample.imu);
+        for (state, (counts, imu)) in states.iter_mut().zip(readings) {
+            let imu_read = state.heading.read(imu.as_ref().and_then(ImuReading::heading)).is_some();
+            let (bend, bend_sensors_read) = bend_angle(&state.maps, *counts);
+            let [difference, zero] = state.heading.tangent().minus(before);
+            state.anchor.push(slot, difference.zip(bend).map(|(imu, bend)| imu - bend.to_turns()));
+            let imu_o = difference.zip(zero).map(|(imu, zero)| Angle::from(imu - zero));
+            // θ_imu,i = difference − zero, and offset_i = `offset` − zero: the tare is still in the anchor's values.
+            let imu_c = difference.zip(zero).filter(|_| has_bend_sensors).map(|(imu, zero)| {
+                let exceeds = |offset: &Turns| (*offset - zero).exceeds(rule.threshold);
+                Angle::<S>::from(imu - state.anchor.offset().filter(exceeds).unwrap_or(zero))
+            });
+            state.fuse(imu_c.map(|theta| theta.rest), bend);
+            let state = &*state;
+            before = state.heading.tangent();
+            then(state, Thetas { bend, imu_o, imu_c, bend_sensors_read, imu_read });
+        }
     }
 
     /// The arm's shape by `method` at one of this estimator's estimates: bend angles, and the chain of the segments.
@@ -196,50 +224,6 @@ impl<'t, S: Scalar, const N: usize, const W: usize> Estimator<'t, S, N, W> {
         });
         all(chain(links))
     }
-
-    /// The room for the fused shape, and what else a tick needs.
-    #[inline]
-    fn parts(&mut self) -> (&mut Shape<S, N>, Tick<'_, S, W>) {
-        let Self { table, has_bend_sensors, pace, states, fused } = self;
-        (fused, Tick { table, has_bend_sensors: *has_bend_sensors, slot: pace.tick(&table.anchor), states })
-    }
-}
-
-impl<'a, S: Scalar, const W: usize> Tick<'a, S, W> {
-    /// Takes one sample, segment by segment from the base to the tip.
-    #[inline]
-    fn estimates<const N: usize>(self, sample: &'a Sample<N>) -> impl Iterator<Item = SegmentEstimate<S>> + 'a {
-        let Self { table: Table { segments, anchor: rule, .. }, has_bend_sensors, slot, states } = self;
-        let mut before = Tangent { heading: Some(Turns::ZERO), zero: Some(Turns::ZERO) };
-        let readings = sample.bend.iter().zip(&sample.imu);
-        let segments = segments.iter().zip(states).zip(readings);
-        segments.map(move |((segment, state), (counts, imu))| {
-            let heading = state.heading.read(imu.and_then(ImuReading::heading));
-            let here = Tangent { heading, zero: state.heading.zero() };
-            let (theta_bend, bend_sensors_read) = bend_angle(segment, *counts);
-            let difference = here.minus(before);
-            before = here;
-
-            let raw = difference.heading;
-            state.anchor.push(slot, raw.zip(theta_bend).map(|(raw, bend)| raw - bend.to_turns()));
-            let theta_imu = raw.zip(difference.zero).map(|(raw, zero)| raw - zero);
-            let theta_corrected = theta_imu.filter(|_| has_bend_sensors).map(|theta| {
-                let offset = state.anchor.offset().zip(difference.zero).map(|(offset, zero)| offset - zero);
-                offset.filter(|offset| offset.exceeds(rule.threshold)).map_or(theta, |o| theta - o)
-            });
-
-            let thetas = [theta_bend.map(Angle::from), theta_corrected.map(Angle::from)];
-            let [bend, imu_c] = thetas.map(|theta| theta.map(|theta| state.pcc.link(theta)));
-            SegmentEstimate {
-                bend,
-                imu_o: theta_imu.map(Angle::from),
-                imu_c,
-                fusion: state.fuse(imu_c, bend),
-                bend_sensors_read,
-                imu_read: heading.is_some(),
-            }
-        })
-    }
 }
 
 /// One item a segment, for which there is room: [`Estimator::new`] has checked.
@@ -252,33 +236,37 @@ fn all<T, const N: usize>(segments: impl Iterator<Item = T>) -> Vec<T, N> {
     all
 }
 
-impl Tangent {
-    /// Heading and zero of here less those of the segment before; unknown where either is.
-    fn minus(self, before: Self) -> Self {
-        let minus = |here: Option<Turns>, before: Option<Turns>| here.zip(before).map(|(here, before)| here - before);
-        Self { heading: minus(self.heading, before.heading), zero: minus(self.zero, before.zero) }
+/// θ_bend,i, the mean of the segment's sensors that were read, and their number.
+#[expect(clippy::inline_always, reason = "measured")]
+#[inline(always)]
+fn bend_angle<S: Scalar>(
+    maps: &[Option<BendMap<S>>; SENSORS_PER_SEGMENT],
+    counts: [Option<u16>; SENSORS_PER_SEGMENT],
+) -> (Option<S>, u8) {
+    let ([map_a, map_b], [counts_a, counts_b]) = (maps, counts);
+    // Branch by branch, so that no flags are kept where both are read.
+    let Some(a) = read(map_a.as_ref(), counts_a) else {
+        let b = read(map_b.as_ref(), counts_b);
+        return (b, u8::from(b.is_some()));
+    };
+    match read(map_b.as_ref(), counts_b) {
+        Some(b) => (Some((a + b).half()), 2),
+        None => (Some(a), 1),
     }
 }
 
-/// θ_bend,i, the mean of the segment's sensors that were read, and their number.
-#[inline]
-fn bend_angle<S: Scalar>(segment: &Segment<S>, counts: [Option<u16>; SENSORS_PER_SEGMENT]) -> (Option<S>, u8) {
-    let mut counts = counts.into_iter();
-    let angles = segment.bend.each_ref().map(|map| {
-        let counts = counts.next().flatten();
-        map.as_ref()?.angle(counts?)
-    });
-    match angles.into() {
-        (Some(a), Some(b)) => (Some((a + b).half()), 2),
-        (Some(one), None) | (None, Some(one)) => (Some(one), 1),
-        (None, None) => (None, 0),
-    }
+/// What one sensor says, where the segment has it and it was read.
+#[expect(clippy::inline_always, reason = "measured")]
+#[inline(always)]
+fn read<S: Scalar>(map: Option<&BendMap<S>>, counts: Option<u16>) -> Option<S> {
+    map?.angle(counts?)
 }
 
 impl<S: Scalar, const W: usize> State<S, W> {
     fn new(segment: &Segment<S>, tare_samples: u32) -> Self {
         Self {
             heading: Heading::new(tare_samples, segment.reference),
+            maps: segment.bend,
             anchor: Anchor::new(),
             pcc: Pcc::new(segment),
             orient: Block::new(),
@@ -288,18 +276,43 @@ impl<S: Scalar, const W: usize> State<S, W> {
         }
     }
 
-    /// KF_orient and KF_coord of one segment, with the measurements that there are.
-    #[inline]
-    fn fuse(&mut self, imu_c: Option<Link<S>>, bend: Option<Link<S>>) -> Option<Fused<S>> {
-        // A segment without bend sensors drifts on; whole turns say nothing of its bend, and fixed point ends at 32 rad.
-        let imu_c = imu_c.map(|link| match link.theta {
-            Angle { turns: 0, .. } => link,
-            Angle { rest, .. } => self.pcc.link(Angle::from(rest)),
-        });
-        let theta = |link: Link<S>| SVector::from([link.theta.rest]);
-        self.orient.step(&self.orient_gains, imu_c.map(theta), bend.map(theta));
-        self.coord.step(&self.coord_gains, imu_c.map(|link| link.end), bend.map(|link| link.end));
-        self.fused()
+    /// KF_orient and KF_coord, with the angles that there are; of θ_c without its whole turns, which say nothing of the bend
+    /// of a segment that nothing anchors, and fixed point ends at 32 rad. Out of line, with all registers for itself.
+    #[inline(never)]
+    fn fuse(&mut self, theta_c: Option<S>, theta_bend: Option<S>) {
+        // Mostly both are there, and there the compiler leaves out all choice between them.
+        if theta_c.is_some() && theta_bend.is_some() {
+            self.filter(theta_c, theta_bend);
+        } else {
+            self.filter_without(theta_c, theta_bend);
+        }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn filter_without(&mut self, theta_c: Option<S>, theta_bend: Option<S>) {
+        self.filter(theta_c, theta_bend);
+    }
+
+    #[expect(clippy::inline_always, reason = "measured")]
+    #[inline(always)]
+    fn filter(&mut self, theta_c: Option<S>, theta_bend: Option<S>) {
+        let end = |theta: S| self.pcc.link(Angle::from(theta)).end;
+        self.coord.step(&self.coord_gains, theta_c.map(end), theta_bend.map(end));
+        let vector = |theta: S| SVector::from([theta]);
+        self.orient.step(&self.orient_gains, theta_c.map(vector), theta_bend.map(vector));
+    }
+
+    /// What there is to say of one segment, its filters after this sample.
+    fn estimate(&self, thetas: &Thetas<S>) -> SegmentEstimate<S> {
+        SegmentEstimate {
+            bend: thetas.bend.map(|theta| self.pcc.link(Angle::from(theta))),
+            imu_o: thetas.imu_o,
+            imu_c: thetas.imu_c.map(|theta| self.pcc.link(theta)),
+            fusion: self.fused(),
+            bend_sensors_read: thetas.bend_sensors_read,
+            imu_read: thetas.imu_read,
+        }
     }
 
     /// What the filters say now.
