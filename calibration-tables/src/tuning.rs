@@ -50,8 +50,6 @@ pub enum Stopped {
     Converged,
     /// Somebody ended it.
     Interrupted,
-    /// It had as many iterations as it may have.
-    Iterations,
 }
 
 impl TuningKeys {

@@ -40,7 +40,7 @@ fn steps<S: Scalar>(bencher: Bencher, count: usize) {
         sample_rate_millihertz: 100_000,
         threshold: Turns::from_bits(5_965_232),
     };
-    let table = Table { segments: &segments, tare_samples: 100, anchor, observer: None };
+    let table = Table { tare_samples: 100, anchor, ..Table::bare(&segments) };
     let samples = samples(count);
     let mut estimator = Estimator::<S, 16, 100>::new(&table).expect("a valid table");
     // All samples at once, as one is shorter than the clock's own noise; the counter divides by them.

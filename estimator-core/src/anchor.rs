@@ -38,10 +38,12 @@ pub struct AnchorRule {
 /// ```
 #[derive(Debug, Clone, Copy)]
 pub struct Anchor<const W: usize> {
-    window: [Turns; W],
+    offset: Option<Turns>,
     mean: Mean,
     group: Mean,
-    offset: Option<Turns>,
+    /// The values; a missing one is zero, and its count is none.
+    window: [Turns; W],
+    counts: [u8; W],
 }
 
 /// When a value of the window is complete and which it replaces; the same for the anchors of all segments.
@@ -56,7 +58,15 @@ pub struct Pace {
 #[derive(Debug, Clone, Copy)]
 pub struct Slot {
     oldest: u16,
-    pub(crate) complete: bool,
+    /// All ones where a value is complete, else zero.
+    complete: i32,
+}
+
+impl Slot {
+    #[inline]
+    pub(crate) const fn is_complete(self) -> bool {
+        self.complete != 0
+    }
 }
 
 impl Pace {
@@ -69,8 +79,9 @@ impl Pace {
     /// Takes one sample's time.
     pub fn tick(&mut self, rule: &AnchorRule) -> Slot {
         self.phase = self.phase.saturating_add(rule.rate_millihertz);
-        let slot = Slot { oldest: self.oldest, complete: self.phase >= rule.sample_rate_millihertz };
-        if slot.complete {
+        let complete = self.phase >= rule.sample_rate_millihertz;
+        let slot = Slot { oldest: self.oldest, complete: -i32::from(complete) };
+        if complete {
             self.phase = (self.phase - rule.sample_rate_millihertz).min(rule.sample_rate_millihertz);
             self.oldest = if self.oldest + 1 < rule.window { self.oldest + 1 } else { 0 };
         }
@@ -78,39 +89,24 @@ impl Pace {
     }
 }
 
-/// Stands in the window for a value that was missing, at half the memory of an `Option`: no arm turns so far.
-const MISSING: Turns = Turns::from_bits(i64::MIN);
-
-/// By the upper word alone, which is as far.
-fn is_missing(value: Turns) -> bool {
-    (value.bits() >> 32) as i32 == i32::MIN
-}
-
+/// A mean of up to 65 535 values.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Mean {
     sum: Turns,
-    count: u16,
+    count: i32,
 }
 
 impl Mean {
     pub(crate) const EMPTY: Self = Self { sum: Turns::ZERO, count: 0 };
 
+    #[inline]
     pub(crate) fn add(&mut self, value: Turns) {
-        if !is_missing(value) {
-            self.sum = self.sum + value;
-            self.count += 1;
-        }
+        *self = Self { sum: self.sum + value, count: self.count + 1 };
     }
 
-    fn remove(&mut self, value: Turns) {
-        if !is_missing(value) {
-            self.sum = self.sum - value;
-            self.count -= 1;
-        }
-    }
-
+    #[inline]
     pub(crate) fn value(self) -> Option<Turns> {
-        (self.count > 0).then(|| self.sum.mean_of(self.count))
+        (self.count != 0).then(|| self.sum.mean_of(self.count as u16))
     }
 }
 
@@ -118,30 +114,38 @@ impl<const W: usize> Anchor<W> {
     /// An anchor that has seen nothing.
     #[must_use]
     pub const fn new() -> Self {
-        Self { window: [MISSING; W], mean: Mean::EMPTY, group: Mean::EMPTY, offset: None }
+        Self { offset: None, mean: Mean::EMPTY, group: Mean::EMPTY, window: [Turns::ZERO; W], counts: [0; W] }
     }
 
     /// Takes this sample's difference θ_imu,i − θ_bend,i, or `None` where one of the two is unknown.
     ///
     /// Every sample costs the same, whether it completes a value of the window or not.
     #[inline]
-    pub fn push(&mut self, Slot { oldest, complete }: Slot, difference: Option<Turns>) {
-        if let Some(difference) = difference {
-            self.group.add(difference);
-        }
-        let newest = self.group.value().unwrap_or(MISSING);
-        self.group = if complete { Mean::EMPTY } else { self.group };
-        let Some(place) = self.window.get_mut(usize::from(oldest)) else { return };
-        let value = if complete { newest } else { *place };
-        self.mean.remove(*place);
-        self.mean.add(value);
-        *place = value;
-        if let Some(mean) = self.mean.value() {
-            self.offset = Some(mean);
+    pub fn push(&mut self, slot: Slot, difference: Option<Turns>) {
+        self.take(difference.unwrap_or_default(), i32::from(difference.is_some()), slot);
+    }
+
+    /// Out of line, with all registers for itself.
+    #[inline(never)]
+    fn take(&mut self, sum: Turns, count: i32, Slot { oldest, complete }: Slot) {
+        let Self { offset, mean, group, window, counts } = self;
+        let k = usize::from(oldest);
+        let (Some(place), Some(counts)) = (window.get_mut(k), counts.get_mut(k)) else { return };
+        let whole = Mean { sum: group.sum + sum, count: group.count + count };
+        let newest = whole.value();
+        // What is not complete adds nothing: by masks, which cost the same.
+        let more = (newest.unwrap_or_default() - *place).masked(complete);
+        let more_counts = (i32::from(newest.is_some()) - i32::from(*counts)) & complete;
+        *group = Mean { sum: whole.sum.masked(!complete), count: whole.count & !complete };
+        (*place, *counts) = (*place + more, (i32::from(*counts) + more_counts) as u8);
+        *mean = Mean { sum: mean.sum + more, count: mean.count + more_counts };
+        if let Some(mean) = mean.value() {
+            *offset = Some(mean);
         }
     }
 
     /// The newest offset; `None` before the first.
+    #[inline]
     #[must_use]
     pub const fn offset(&self) -> Option<Turns> {
         self.offset

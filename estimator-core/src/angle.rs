@@ -183,23 +183,30 @@ impl Turns {
         self.0.unsigned_abs() > limit.0 as u64
     }
 
-    /// `self / count`, rounded towards zero, for `count` of 1 to 65 535; zero for a `count` of 0.
+    /// The angle under a mask of all ones, none under one of zeros.
+    #[inline]
+    pub(crate) fn masked(self, mask: i32) -> Self {
+        Self(self.0 & i64::from(mask))
+    }
+
+    /// `self / count`, rounded down, for `count` of 1 to 65 535; zero for a `count` of 0.
     ///
     /// Schoolbook division by 16-bit digits: the Cortex-M3 divides 32 bits in hardware, 64 bits it does not.
+    #[inline]
     #[must_use]
     pub fn mean_of(self, count: u16) -> Self {
         if count == 0 {
             return Self::ZERO;
         }
-        let divisor = u32::from(count);
-        let magnitude = self.0.unsigned_abs();
-        let (upper, lower) = ((magnitude >> 32) as u32, magnitude as u32);
-        let part = ((upper % divisor) << 16) | (lower >> 16);
+        let (divisor, upper, lower) = (i32::from(count), (self.0 >> 32) as i32, self.0 as u32);
+        // The only digit with a sign, rounded down.
+        let (first, rest) = (upper / divisor, upper % divisor);
+        let (first, rest) = (first + (rest >> 31), (rest + (divisor & (rest >> 31))) as u32);
+        let divisor = divisor as u32;
+        let part = (rest << 16) | (lower >> 16);
         let last = ((part % divisor) << 16) | (lower & 0xFFFF);
-        let quotient = (u64::from(upper / divisor) << 32) | u64::from(((part / divisor) << 16) | (last / divisor));
-        // The sign again, word by word.
-        let sign = self.0 >> 63;
-        Self((quotient as i64 ^ sign).wrapping_sub(sign))
+        let quotient = ((part / divisor) << 16) | (last / divisor);
+        Self((i64::from(first) << 32) | i64::from(quotient))
     }
 }
 

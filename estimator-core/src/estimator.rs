@@ -1,18 +1,20 @@
 //! The pipeline: one [`Sample`] in, one [`Estimate`] out, by all four methods.
 
 use heapless::Vec;
-use nalgebra::SVector;
+use nalgebra::{SVector, Vector2};
 
-use crate::anchor::{Pace, Slot};
+use crate::anchor::{Anchor, Pace, Slot};
 use crate::angle::{Angle, Turns};
-use crate::drift::{Drift, Reading};
+use crate::bend::BendMap;
+use crate::beyond::{Beyond, Seen};
+use crate::contact::{Contact, ContactRule};
 use crate::filter::{Block, Gains};
-use crate::hysteresis::Memory;
-use crate::imu::Heading;
+use crate::imu::{Heading, Tangent};
 use crate::pcc::{Link, Pcc, SegmentShape, chain};
 use crate::sample::{ImuReading, SENSORS_PER_SEGMENT, Sample};
 use crate::scalar::Scalar;
 use crate::table::{Segment, Table, TableError};
+use crate::uncertainty::{Sources, Spread, Uncertainties, Uncertainty};
 
 /// By what the shape is known.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -92,39 +94,34 @@ pub type Shape<S, const N: usize> = Vec<SegmentShape<S>, N>;
 pub struct Estimator<'t, S, const N: usize, const W: usize> {
     table: &'t Table<'t, S>,
     has_bend_sensors: bool,
+    is_beyond_the_paper: bool,
     pace: Pace,
-    states: Vec<State<'t, S, W>, N>,
+    states: Vec<State<S, W>, N>,
     fused: Shape<S, N>,
 }
 
-/// What is remembered of one segment.
+/// What is remembered of one segment, in this order: behind the anchor's long window a load would need its address first.
 #[derive(Debug, Clone)]
-struct State<'t, S, const W: usize> {
+#[repr(C)]
+struct State<S, const W: usize> {
     heading: Heading<S>,
-    memory: Memory<S>,
-    drift: Drift<'t, W>,
+    maps: [Option<BendMap<S>>; SENSORS_PER_SEGMENT],
     pcc: Pcc<S>,
-    orient: Block<S, 1>,
     coord: Block<S, 2>,
-    orient_gains: Gains<S>,
     coord_gains: Gains<S>,
+    orient: Block<S, 1>,
+    orient_gains: Gains<S>,
+    anchor: Anchor<W>,
+    beyond: Beyond<S>,
 }
 
-/// One tick: what there is to take a sample with.
-struct Tick<'a, 't, S, const W: usize> {
-    table: &'a Table<'a, S>,
-    has_bend_sensors: bool,
-    slot: Slot,
-    states: &'a mut [State<'t, S, W>],
-}
-
-/// One IMU in one tick.
-#[derive(Clone, Copy)]
-struct Tangent {
-    /// Unwrapped heading, counted from anywhere.
-    heading: Option<Turns>,
-    /// What to subtract from it.
-    zero: Option<Turns>,
+/// The bend angles that one sample says of one segment.
+struct Thetas<S> {
+    bend: Option<S>,
+    imu_o: Option<Angle<S>>,
+    imu_c: Option<Angle<S>>,
+    bend_sensors_read: u8,
+    imu_read: bool,
 }
 
 impl<'t, S: Scalar, const N: usize, const W: usize> Estimator<'t, S, N, W> {
@@ -142,7 +139,7 @@ impl<'t, S: Scalar, const N: usize, const W: usize> Estimator<'t, S, N, W> {
     /// kilobytes are better made in place than moved over a small stack.
     #[must_use]
     pub const fn unstarted(table: &'t Table<'t, S>) -> Self {
-        Self { table, has_bend_sensors: false, pace: Pace::new(), states: Vec::new(), fused: Vec::new() }
+        Self { table, has_bend_sensors: false, is_beyond_the_paper: false, pace: Pace::new(), states: Vec::new(), fused: Vec::new() }
     }
 
     /// Begins a session, whatever was before.
@@ -163,29 +160,112 @@ impl<'t, S: Scalar, const N: usize, const W: usize> Estimator<'t, S, N, W> {
             return Err(TableError::Segments { found, room: N });
         }
         self.has_bend_sensors = table.segments.iter().any(|segment| segment.bend.iter().any(Option::is_some));
+        self.is_beyond_the_paper = table.is_beyond_the_paper();
         for segment in table.segments {
-            let _ = self.states.push(State::new(segment, table)); // There is room: it was checked.
+            // There is room: it was checked.
+            let _ = self.states.push(State::new(segment, table));
+            let _ = self.fused.push(SegmentShape { theta: None, end: None });
         }
         Ok(())
     }
 
     /// Takes one sample. The cost is linear in the number of segments and allocates nothing.
     pub fn step(&mut self, sample: &Sample<N>) -> Estimate<S, N> {
-        Estimate { time_us: sample.time_us, segments: all(self.parts().1.estimates(sample)) }
+        let mut segments = Vec::new();
+        self.take(sample, |state, thetas| {
+            let _ = segments.push(state.estimate(&thetas)); // There is room: `start` has checked.
+        });
+        Estimate { time_us: sample.time_us, segments }
     }
 
     /// Takes one sample as [`Estimator::step`] does and gives the fused shape alone, which costs the board less than both.
     ///
     /// The numbers are those of [`Estimator::shape`] by [`Method::Fusion`], to the bit.
+    #[inline(never)]
     pub fn fuse(&mut self, sample: &Sample<N>) -> &Shape<S, N> {
-        self.parts().1.estimates(sample).for_each(drop);
+        self.take(sample, |_, _| ());
         // Over the states again, which leaves more of the registers to each of the two.
         let Self { states, fused, .. } = self;
-        fused.clear();
-        for segment in chain(states.iter().map(|state| state.fused().map(|fused| fused.link))) {
-            let _ = fused.push(segment); // There is room for all segments: `new` has checked.
+        let links = states.iter().map(|state| state.fused().map(|fused| fused.link));
+        for (segment, shape) in fused.iter_mut().zip(chain(links)) {
+            *segment = shape;
         }
         fused
+    }
+
+    #[inline]
+    fn take(&mut self, sample: &Sample<N>, then: impl FnMut(&State<S, W>, Thetas<S>)) {
+        // Two copies of one function, so that the paper's method does not pay for what goes beyond it.
+        if self.is_beyond_the_paper {
+            self.take_by::<true>(sample, then);
+        } else {
+            self.take_by::<false>(sample, then);
+        }
+    }
+
+    /// Takes one sample, segment by segment from the base to the tip, and tells `then` of each.
+    #[inline]
+    fn take_by<const BEYOND: bool>(&mut self, sample: &Sample<N>, mut then: impl FnMut(&State<S, W>, Thetas<S>)) {
+        let Self { table, has_bend_sensors, pace, states, .. } = self;
+        let Table { anchor: rule, .. } = table;
+        let has_bend_sensors = *has_bend_sensors;
+        let slot = pace.tick(rule);
+        let mut before = &Tangent::BASE;
+        let readings = sample.bend.iter().zip(&sample.imu);
+        for (state, (counts, imu)) in states.iter_mut().zip(readings) {
+            let imu_read = state.heading.read(imu.as_ref().and_then(ImuReading::heading)).is_some();
+            let (bend, bend_sensors_read) = bend_angle(&state.maps, *counts);
+            let bend = if BEYOND { bend.map(|theta| state.beyond.memory.correct(theta)) } else { bend };
+            let [difference, zero] = state.heading.tangent().minus(before);
+            let imu_o = difference.zip(zero).map(|(imu, zero)| Angle::from(imu - zero));
+            let imu_c = if BEYOND {
+                let theta_c = state.corrected(table, slot, [difference, zero], bend.map(S::to_turns));
+                theta_c.filter(|_| has_bend_sensors).map(Angle::<S>::from)
+            } else {
+                state.anchor.push(slot, difference.zip(bend).map(|(imu, bend)| imu - bend.to_turns()));
+                // θ_imu,i = difference − zero, and offset_i = `offset` − zero: the tare is still in the anchor's values.
+                difference.zip(zero).filter(|_| has_bend_sensors).map(|(imu, zero)| {
+                    let exceeds = |offset: &Turns| (*offset - zero).exceeds(rule.threshold);
+                    Angle::<S>::from(imu - state.anchor.offset().filter(exceeds).unwrap_or(zero))
+                })
+            };
+            state.fuse(imu_c.map(|theta| theta.rest), bend);
+            if BEYOND {
+                state.beyond.seen = Seen { imu: imu_c.is_some(), bend: bend.is_some() };
+            }
+            let state = &*state;
+            before = state.heading.tangent();
+            then(state, Thetas { bend, imu_o, imu_c, bend_sensors_read, imu_read });
+        }
+        if BEYOND
+            && slot.is_complete()
+            && let Some(rule) = &table.contact
+        {
+            compare(rule, table.segments, states);
+        }
+    }
+
+    /// Whether something touches the segments, from the base to the tip; nothing where the table does not say how to tell.
+    pub fn contacts(&self) -> impl Iterator<Item = Contact> {
+        self.states.iter().map(|state| state.beyond.touch.contact)
+    }
+
+    /// How far the fused shape of the newest sample may be off; empty where the table does not say what errors come from.
+    #[must_use]
+    pub fn uncertainties(&self) -> Uncertainties<S, N> {
+        let Some(rule) = &self.table.uncertainty else { return Vec::new() };
+        let links = self.states.iter().map(|state| state.fused().map(|fused| fused.link));
+        let mut spread = Some((Spread::base(), Vector2::zeros()));
+        all(self.states.iter().zip(chain(links)).map(|(state, shape)| {
+            let Beyond { observer, touch, seen, lever, .. } = &state.beyond;
+            let sources = Sources { seen: *seen, drift: observer.variance(), is_touched: touch.contact.is_touched };
+            let theta = rule.theta(&sources).filter(|_| shape.end.is_some());
+            spread = spread.zip(theta.zip(shape.end)).map(|((mut spread, before), (theta, end))| {
+                spread.step(end - before, *lever, theta, rule.end);
+                (spread, end)
+            });
+            Uncertainty { theta, end: spread.map(|(spread, _)| spread.end()) }
+        }))
     }
 
     /// The arm's shape by `method` at one of this estimator's estimates: bend angles, and the chain of the segments.
@@ -199,52 +279,6 @@ impl<'t, S: Scalar, const N: usize, const W: usize> Estimator<'t, S, N, W> {
         });
         all(chain(links))
     }
-
-    /// The room for the fused shape, and what else a tick needs.
-    #[inline]
-    fn parts(&mut self) -> (&mut Shape<S, N>, Tick<'_, 't, S, W>) {
-        let Self { table, has_bend_sensors, pace, states, fused } = self;
-        (fused, Tick { table, has_bend_sensors: *has_bend_sensors, slot: pace.tick(&table.anchor), states })
-    }
-}
-
-impl<'a, S: Scalar, const W: usize> Tick<'a, '_, S, W> {
-    /// Takes one sample, segment by segment from the base to the tip.
-    #[inline]
-    fn estimates<const N: usize>(self, sample: &'a Sample<N>) -> impl Iterator<Item = SegmentEstimate<S>> + 'a {
-        let Self { table: Table { segments, .. }, has_bend_sensors, slot, states } = self;
-        let mut before = Tangent { heading: Some(Turns::ZERO), zero: Some(Turns::ZERO) };
-        let readings = sample.bend.iter().zip(&sample.imu);
-        let segments = segments.iter().zip(states).zip(readings);
-        segments.map(move |((segment, state), (counts, imu))| {
-            let heading = state.heading.read(imu.and_then(ImuReading::heading));
-            let here = Tangent { heading, zero: state.heading.zero() };
-            let (theta_bend, bend_sensors_read) = bend_angle(segment, *counts);
-            let theta_bend = match &segment.hysteresis {
-                Some(hysteresis) => theta_bend.map(|theta| state.memory.correct(hysteresis, theta)),
-                None => theta_bend,
-            };
-            let difference = here.minus(before);
-            before = here;
-
-            let Tangent { heading: raw, zero } = difference;
-            let theta_imu = raw.zip(zero).map(|(raw, zero)| raw - zero);
-            let offset = state.drift.offset(slot, Reading { imu: raw, zero, bend: theta_bend.map(S::to_turns) });
-            let theta_corrected =
-                theta_imu.filter(|_| has_bend_sensors).map(|theta| offset.map_or(theta, |o| theta - o));
-
-            let thetas = [theta_bend.map(Angle::from), theta_corrected.map(Angle::from)];
-            let [bend, imu_c] = thetas.map(|theta| theta.map(|theta| state.pcc.link(theta)));
-            SegmentEstimate {
-                bend,
-                imu_o: theta_imu.map(Angle::from),
-                imu_c,
-                fusion: state.fuse(imu_c, bend),
-                bend_sensors_read,
-                imu_read: heading.is_some(),
-            }
-        })
-    }
 }
 
 /// One item a segment, for which there is room: [`Estimator::new`] has checked.
@@ -257,51 +291,131 @@ fn all<T, const N: usize>(segments: impl Iterator<Item = T>) -> Vec<T, N> {
     all
 }
 
-impl Tangent {
-    /// Heading and zero of here less those of the segment before; unknown where either is.
-    fn minus(self, before: Self) -> Self {
-        let minus = |here: Option<Turns>, before: Option<Turns>| here.zip(before).map(|(here, before)| here - before);
-        Self { heading: minus(self.heading, before.heading), zero: minus(self.zero, before.zero) }
+/// Tells contact by the segments that bend alike, at the end of a value.
+#[inline(never)]
+fn compare<S: Scalar, const W: usize>(rule: &ContactRule, segments: &[Segment<S>], states: &mut [State<S, W>]) {
+    for (i, segment) in segments.iter().enumerate() {
+        let Some(alike) = segment.alike else { continue };
+        let other = usize::from(alike.segment);
+        let [here, there] = [i, other].map(|i| states.get(i).and_then(|state| state.beyond.touch.theta));
+        let difference = here.zip(there).map(|(here, there)| alike.difference(here, there));
+        let Some(state) = states.get_mut(i) else { continue };
+        let contact = state.beyond.touch.compare(rule, difference);
+        state.beyond.touch.join(contact);
+        if let Some(state) = states.get_mut(other) {
+            state.beyond.touch.join(contact);
+        }
     }
 }
 
 /// θ_bend,i, the mean of the segment's sensors that were read, and their number.
-#[inline]
-fn bend_angle<S: Scalar>(segment: &Segment<S>, counts: [Option<u16>; SENSORS_PER_SEGMENT]) -> (Option<S>, u8) {
-    let mut counts = counts.into_iter();
-    let angles = segment.bend.each_ref().map(|map| {
-        let counts = counts.next().flatten();
-        map.as_ref()?.angle(counts?)
-    });
-    match angles.into() {
-        (Some(a), Some(b)) => (Some((a + b).half()), 2),
-        (Some(one), None) | (None, Some(one)) => (Some(one), 1),
-        (None, None) => (None, 0),
+#[expect(clippy::inline_always, reason = "measured")]
+#[inline(always)]
+fn bend_angle<S: Scalar>(
+    maps: &[Option<BendMap<S>>; SENSORS_PER_SEGMENT],
+    counts: [Option<u16>; SENSORS_PER_SEGMENT],
+) -> (Option<S>, u8) {
+    let ([map_a, map_b], [counts_a, counts_b]) = (maps, counts);
+    // Branch by branch, so that no flags are kept where both are read.
+    let Some(a) = read(map_a.as_ref(), counts_a) else {
+        let b = read(map_b.as_ref(), counts_b);
+        return (b, u8::from(b.is_some()));
+    };
+    match read(map_b.as_ref(), counts_b) {
+        Some(b) => (Some((a + b).half()), 2),
+        None => (Some(a), 1),
     }
 }
 
-impl<'t, S: Scalar, const W: usize> State<'t, S, W> {
-    fn new(segment: &Segment<S>, table: &'t Table<S>) -> Self {
+/// What one sensor says, where the segment has it and it was read.
+#[expect(clippy::inline_always, reason = "measured")]
+#[inline(always)]
+fn read<S: Scalar>(map: Option<&BendMap<S>>, counts: Option<u16>) -> Option<S> {
+    map?.angle(counts?)
+}
+
+impl<S: Scalar, const W: usize> State<S, W> {
+    fn new(segment: &Segment<S>, table: &Table<S>) -> Self {
         Self {
             heading: Heading::new(table.tare_samples, segment.reference),
-            memory: Memory::new(),
-            drift: Drift::new(&table.anchor, table.observer.as_ref()),
+            maps: segment.bend,
+            anchor: Anchor::new(),
             pcc: Pcc::new(segment),
             orient: Block::new(),
             coord: Block::new(),
             orient_gains: Gains::new(&segment.orient),
             coord_gains: Gains::new(&segment.coord),
+            beyond: Beyond::new(segment, table.observer.as_ref()),
         }
     }
 
-    /// KF_orient and KF_coord of one segment, with the measurements that there are.
-    #[inline]
-    fn fuse(&mut self, imu_c: Option<Link<S>>, bend: Option<Link<S>>) -> Option<Fused<S>> {
-        let imu_c = imu_c.map(|link| self.pcc.within_a_turn(link));
-        let theta = |link: Link<S>| SVector::from([link.theta.rest]);
-        self.orient.step(&self.orient_gains, imu_c.map(theta), bend.map(theta));
-        self.coord.step(&self.coord_gains, imu_c.map(|link| link.end), bend.map(|link| link.end));
-        self.fused()
+    /// θ_c by whatever the table asks for: θ_imu is the first of the two less the second, which is its zero.
+    #[inline(never)]
+    fn corrected(
+        &mut self,
+        table: &Table<S>,
+        slot: Slot,
+        [difference, zero]: [Option<Turns>; 2],
+        bend: Option<Turns>,
+    ) -> Option<Turns> {
+        let Self { anchor, beyond, .. } = self;
+        let theta_imu = difference.zip(zero).map(|(imu, zero)| imu - zero);
+        let value = beyond.value(slot, theta_imu.zip(bend));
+        let offset = if let Some(rule) = &table.observer {
+            if slot.is_complete() {
+                beyond.observer.step(rule, value);
+            }
+            beyond.observer.bias()
+        } else {
+            anchor.push(slot, difference.zip(bend).map(|(imu, bend)| imu - bend));
+            let offset = anchor.offset().zip(zero).map(|(offset, zero)| offset - zero);
+            offset.filter(|offset| offset.exceeds(table.anchor.threshold)).unwrap_or_default()
+        };
+        if slot.is_complete()
+            && let Some(rule) = &table.contact
+        {
+            beyond.touch.feel(rule, value.map(|value| (value.imu - offset, value.bend)));
+        }
+        theta_imu.map(|theta| theta - offset)
+    }
+
+    /// KF_orient and KF_coord, with the angles that there are; of θ_c without its whole turns, which say nothing of the bend
+    /// of a segment that nothing anchors, and fixed point ends at 32 rad. Out of line, with all registers for itself.
+    #[inline(never)]
+    fn fuse(&mut self, theta_c: Option<S>, theta_bend: Option<S>) {
+        // Mostly both are there, and there the compiler leaves out all choice between them.
+        if theta_c.is_some() && theta_bend.is_some() {
+            self.filter(theta_c, theta_bend);
+        } else {
+            self.filter_without(theta_c, theta_bend);
+        }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn filter_without(&mut self, theta_c: Option<S>, theta_bend: Option<S>) {
+        self.filter(theta_c, theta_bend);
+    }
+
+    #[expect(clippy::inline_always, reason = "measured")]
+    #[inline(always)]
+    fn filter(&mut self, theta_c: Option<S>, theta_bend: Option<S>) {
+        let end = |theta: S| self.pcc.link(Angle::from(theta)).end;
+        self.coord.step(&self.coord_gains, theta_c.map(end), theta_bend.map(end));
+        let vector = |theta: S| SVector::from([theta]);
+        self.orient.step(&self.orient_gains, theta_c.map(vector), theta_bend.map(vector));
+    }
+
+    /// What there is to say of one segment, its filters after this sample.
+    fn estimate(&self, thetas: &Thetas<S>) -> SegmentEstimate<S> {
+        SegmentEstimate {
+            bend: thetas.bend.map(|theta| self.pcc.link(Angle::from(theta))),
+            imu_o: thetas.imu_o,
+            imu_c: thetas.imu_c.map(|theta| self.pcc.link(theta)),
+            fusion: self.fused(),
+            bend_sensors_read: thetas.bend_sensors_read,
+            imu_read: thetas.imu_read,
+        }
     }
 
     /// What the filters say now.

@@ -88,6 +88,27 @@ impl<S: Scalar> Gains<S> {
             bend: Weights { r: r_bend, h_squared: h_bend * h_bend, of: [zero, h_bend, -(h_bend * h_bend)] },
         }
     }
+
+    /// P⁻ = P + Q.
+    #[inline]
+    fn predicted(&self, p: S) -> S {
+        if p < self.room { p + self.q } else { S::constant(LIMIT) }
+    }
+
+    /// u and P after one sample's measurements. Out of line, with all registers for itself.
+    #[inline(never)]
+    fn measured(&self, p: S, weights: &Weights<S>) -> (S, S) {
+        let ratio = self.predicted(p).quotient(weights.r, weights.h_squared);
+        (ratio, ratio.bounded_product(weights.r))
+    }
+
+    /// Those after the first measurements, before which nothing is known: P⁻ is beyond all bounds.
+    #[cold]
+    #[inline(never)]
+    fn begun(weights: &Weights<S>) -> (S, S) {
+        let ratio = S::one() / weights.h_squared;
+        (ratio, ratio.bounded_product(weights.r))
+    }
 }
 
 /// State x (`D` coordinates) and their common covariance P, once there was a measurement.
@@ -126,25 +147,25 @@ impl<S: Scalar, const D: usize> Block<S, D> {
 
     /// Predicts, x⁻ = x, P⁻ = P + Q (eq. 8, 9), and takes the measurements z = H x + noise that there are (eq. 10 to 12).
     /// The first of them start the filter.
-    #[inline]
+    #[expect(clippy::inline_always, reason = "measured")]
+    #[inline(always)]
     pub fn step(&mut self, gains: &Gains<S>, imu: Option<SVector<S, D>>, bend: Option<SVector<S, D>>) {
-        if let Some((_, p)) = &mut self.state {
-            *p = if *p < gains.room { *p + gains.q } else { S::constant(LIMIT) };
-        }
         let zeros = SVector::zeros();
         let (weights, imu, bend) = match (imu, bend) {
             (Some(imu), Some(bend)) => (&gains.both, imu, bend),
             (Some(imu), None) => (&gains.imu, imu, zeros),
             (None, Some(bend)) => (&gains.bend, zeros, bend),
-            (None, None) => return,
+            (None, None) => {
+                self.state = self.state.map(|(x, p)| (x, gains.predicted(p)));
+                return;
+            }
         };
-        let (x, ratio) = match self.state {
-            Some((x, p)) => (x, p.quotient(weights.r, weights.h_squared)),
-            None => (zeros, S::one() / weights.h_squared),
+        let (x, (ratio, p)) = match self.state {
+            Some((x, p)) => (x, gains.measured(p, weights)),
+            None => (zeros, Gains::begun(weights)),
         };
-        let ([imu], [bend], [state]) = (imu.data.0, bend.data.0, x.data.0);
-        let [p] = S::bounded_dots([([ratio], [weights.r])]);
-        self.state = Some((SVector::from(S::corrected(state, ratio, &weights.of, [imu, bend])), p));
+        let ([imu], [bend], [x]) = (imu.data.0, bend.data.0, x.data.0);
+        self.state = Some((SVector::from(S::corrected(x, ratio, &weights.of, [imu, bend])), p));
     }
 }
 

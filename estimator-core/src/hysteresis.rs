@@ -21,19 +21,22 @@ pub struct Play<S> {
 /// A correction of one segment's bend angle: θ + Σ w (θ − play(θ)).
 pub type Hysteresis<S> = [Play<S>; PLAYS];
 
-/// Where the plays are; nowhere before the first reading, which sets them all.
+/// A correction and where its plays are: nowhere before the first reading, which sets them all.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Memory<S> {
+    hysteresis: Option<Hysteresis<S>>,
     places: Option<[S; PLAYS]>,
 }
 
 impl<S: Scalar> Memory<S> {
-    pub const fn new() -> Self {
-        Self { places: None }
+    pub const fn new(hysteresis: Option<Hysteresis<S>>) -> Self {
+        Self { hysteresis, places: None }
     }
 
     /// The corrected angle.
-    pub fn correct(&mut self, hysteresis: &Hysteresis<S>, theta: S) -> S {
+    #[inline(never)]
+    pub fn correct(&mut self, theta: S) -> S {
+        let Some(hysteresis) = &self.hysteresis else { return theta };
         let places = self.places.get_or_insert([theta; PLAYS]);
         hysteresis.iter().zip(places).fold(theta, |corrected, (play, place)| {
             let (low, high) = (theta - play.half_width, theta + play.half_width);
@@ -60,8 +63,8 @@ mod tests {
     ];
 
     fn corrected(thetas: &[f64]) -> Vec<f64> {
-        let mut memory = Memory::new();
-        thetas.iter().map(|theta| memory.correct(&ONE, *theta)).collect()
+        let mut memory = Memory::new(Some(ONE));
+        thetas.iter().map(|theta| memory.correct(*theta)).collect()
     }
 
     extern crate std;

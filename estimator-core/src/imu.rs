@@ -1,7 +1,7 @@
 //! One IMU's heading: unwrapped from reading to reading, and tared while the arm rests in its reference pose.
 
 use crate::angle::{Angle, Phase, Turns};
-use crate::pcc::Arc;
+use crate::pcc::sin_cos;
 use crate::scalar::Scalar;
 
 /// Unwraps the heading of one IMU and finds its tare.
@@ -20,10 +20,35 @@ use crate::scalar::Scalar;
 /// ```
 #[derive(Debug, Clone, Copy)]
 pub struct Heading<S> {
-    newest: Option<Turns>,
-    zero: Option<Turns>,
+    tangent: Tangent,
     reference: Turns,
     tare: Tare<S>,
+}
+
+/// Where one IMU points.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Tangent {
+    /// Unwrapped, counted from anywhere; the newest that was read.
+    heading: Turns,
+    /// What to subtract from it.
+    zero: Turns,
+    /// In this tick.
+    is_read: bool,
+    is_tared: bool,
+}
+
+impl Tangent {
+    /// The arm's base, from which headings count.
+    pub(crate) const BASE: Self = Self { heading: Turns::ZERO, zero: Turns::ZERO, is_read: true, is_tared: true };
+
+    /// Heading and zero less those of the segment before; unknown where either is.
+    #[inline]
+    pub(crate) fn minus(&self, before: &Self) -> [Option<Turns>; 2] {
+        [
+            (self.is_read & before.is_read).then_some(self.heading - before.heading),
+            (self.is_tared & before.is_tared).then_some(self.zero - before.zero),
+        ]
+    }
 }
 
 /// The sums behind a circular mean, relative to the first reading, so that the mean is found without wrapping it.
@@ -40,7 +65,6 @@ impl<S: Scalar> Heading<S> {
     /// An IMU that was not read yet, whose heading in the reference pose is `reference`.
     #[must_use]
     pub fn new(tare_samples: u32, reference: Turns) -> Self {
-        let zero = (tare_samples == 0).then_some(Turns::ZERO);
         let tare = Tare {
             ticks_left: tare_samples,
             first: None,
@@ -48,45 +72,58 @@ impl<S: Scalar> Heading<S> {
             sin: Turns::ZERO,
             scalar: core::marker::PhantomData,
         };
-        Self { newest: None, zero, reference, tare }
+        // From a heading of zero on, the first reading is unwrapped to within ±180°.
+        let tangent = Tangent { is_read: false, is_tared: tare_samples == 0, ..Tangent::BASE };
+        Self { tangent, reference, tare }
     }
 
     /// Takes this tick's reading; gives the heading unwrapped, counted from anywhere, or `None` where it was not read.
+    #[inline]
     pub fn read(&mut self, reading: Option<Phase>) -> Option<Turns> {
-        let heading = reading.map(|phase| match self.newest {
-            None => Turns::from(phase),
-            Some(newest) => newest + Turns::from(phase - newest.phase()),
-        });
-        self.newest = heading.or(self.newest);
+        let tangent = &mut self.tangent;
+        tangent.is_read = reading.is_some();
+        let heading = reading.map(|phase| tangent.heading + Turns::from(phase - tangent.heading.phase()));
+        tangent.heading = heading.unwrap_or(tangent.heading);
         if self.tare.ticks_left > 0 {
-            self.tare.add(heading);
-            if self.tare.ticks_left == 0 {
-                self.zero = self.tare.mean().map(|mean| mean - self.reference);
-            }
+            self.tare(heading);
         }
         heading
+    }
+
+    #[cold]
+    fn tare(&mut self, heading: Option<Turns>) {
+        self.tare.add(heading);
+        if self.tare.ticks_left == 0
+            && let Some(mean) = self.tare.mean()
+        {
+            (self.tangent.zero, self.tangent.is_tared) = (mean - self.reference, true);
+        }
     }
 
     /// What to subtract from [`Heading::read`] to get the heading in {W}; `None` until the tare is complete.
     #[must_use]
     pub fn zero(&self) -> Option<Turns> {
-        self.zero
+        self.tangent.is_tared.then_some(self.tangent.zero)
+    }
+
+    /// Of this tick.
+    #[inline]
+    pub(crate) fn tangent(&self) -> &Tangent {
+        &self.tangent
     }
 }
 
 impl<S: Scalar> Tare<S> {
-    #[cold]
     fn add(&mut self, heading: Option<Turns>) {
         self.ticks_left -= 1;
         let Some(heading) = heading else { return };
         let first = *self.first.get_or_insert(heading);
-        let deviation = Arc::<S>::new(Angle::from(heading - first));
+        let (sin, cos) = sin_cos(Angle::<S>::from(heading - first));
         // Read as angles, sine and cosine become whole numbers, whose sums are exact.
-        self.cos = self.cos + deviation.cos.to_turns();
-        self.sin = self.sin + deviation.sin.to_turns();
+        self.cos = self.cos + cos.to_turns();
+        self.sin = self.sin + sin.to_turns();
     }
 
-    #[cold]
     fn mean(&self) -> Option<Turns> {
         let deviation = Phase::atan2(self.sin.bits(), self.cos.bits())?;
         Some(self.first? + Turns::from(deviation))

@@ -38,7 +38,8 @@
 mod anchor;
 mod angle;
 mod bend;
-mod drift;
+mod beyond;
+mod contact;
 mod estimator;
 mod filter;
 mod fixed;
@@ -51,10 +52,12 @@ mod q;
 mod sample;
 mod scalar;
 mod table;
+mod uncertainty;
 
 pub use anchor::{Anchor, AnchorRule, Pace, Slot};
 pub use angle::{Angle, Phase, Turns};
 pub use bend::{BendMap, VOLTS_PER_COUNT};
+pub use contact::{Alike, Contact, ContactRule};
 pub use estimator::{Estimate, Estimator, Fused, Method, SegmentEstimate, Shape};
 pub use filter::{Block, COVARIANCE_LIMIT, Gains, H_LIMIT, Noise};
 pub use hysteresis::{Hysteresis, PLAYS, Play};
@@ -66,3 +69,4 @@ pub use q::Q;
 pub use sample::{ImuReading, SENSORS_PER_SEGMENT, Sample};
 pub use scalar::{Constant, Scalar};
 pub use table::{OffsetAt, Segment, Table, TableError};
+pub use uncertainty::{Covariance, SCALE, Spread, Uncertainties, Uncertainty, UncertaintyRule};

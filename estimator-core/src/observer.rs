@@ -42,7 +42,7 @@ pub struct ObserverRule {
     pub jump: Turns,
     /// What is no motion yet.
     pub still: Turns,
-    /// Variance of the bias below which an arm at rest or in contact teaches nothing, in units of 2⁻³⁰: that of the bend
+    /// Variance of the bias below which an arm at rest teaches nothing, in units of 2⁻³⁰: that of the bend
     /// sensors' own error.
     pub doubt: i32,
 }
@@ -72,7 +72,7 @@ impl ObserverRule {
 /// for k in 0..6000 {
 ///     // Ten minutes of an IMU that drifts by 0.05° a second while the segment swings.
 ///     let (bend, drift) = (degrees(40.0 * f64::from(k % 100 - 50) / 50.0), degrees(0.005 * f64::from(k)));
-///     observer.step(&rule, Some(Disagreement { imu: bend + drift, bend }), false);
+///     observer.step(&rule, Some(Disagreement { imu: bend + drift, bend }));
 /// }
 /// assert!((observer.bias().rad().to_degrees() - 30.0).abs() < 0.1);
 /// ```
@@ -136,15 +136,13 @@ impl Observer {
     /// An observer at the end of the tare, when the IMUs do not drift yet as far as anybody knows.
     #[must_use]
     pub const fn new(rule: &ObserverRule) -> Self {
-        Self {
-            bias: 0,
-            rate: 0,
-            slope: 0,
-            covariance: Covariance::new(rule.prior),
-            before: None,
-            taught: Disagreement { imu: Turns::ZERO, bend: Turns::ZERO },
-            gated: 0,
-        }
+        Self { covariance: Covariance::new(rule.prior), ..Self::idle() }
+    }
+
+    /// One that is never asked: the anchor corrects the drift.
+    pub(crate) const fn idle() -> Self {
+        let none = Disagreement { imu: Turns::ZERO, bend: Turns::ZERO };
+        Self { bias: 0, rate: 0, slope: 0, covariance: Covariance::new([0; 3]), before: None, taught: none, gated: 0 }
     }
 
     /// The bias: what to subtract from θ_imu.
@@ -159,9 +157,9 @@ impl Observer {
         self.covariance.bias
     }
 
-    /// Takes one value, the mean since the one before, or `None` where one of both sensors was not read; `in_contact` where
-    /// something touches the segment.
-    pub fn step(&mut self, rule: &ObserverRule, value: Option<Disagreement>, in_contact: bool) {
+    /// Takes one value, the mean since the one before, or `None` where one of both sensors was not read.
+    #[inline(never)]
+    pub fn step(&mut self, rule: &ObserverRule, value: Option<Disagreement>) {
         self.bias = self.bias.wrapping_add((i64::from(self.rate) * i64::from(rule.step)) >> (32 - FINE));
         self.covariance.predict(rule);
         let Some(value) = value else {
@@ -172,7 +170,11 @@ impl Observer {
         let bend = quarter_turns(value.bend);
         let innovation = value.imu - value.bend - self.bias() - Turns::from_bits(scaled(self.slope, bend).into());
         let news = self.news(rule, value);
-        let teaches = news == News::Motion && !in_contact || news != News::Stuck && self.covariance.bias >= rule.doubt;
+        let teaches = match news {
+            News::Motion => true,
+            News::Rest => self.covariance.bias >= rule.doubt,
+            News::Stuck => false,
+        };
         if !self.lets_pass(rule, innovation) || !teaches {
             return;
         }

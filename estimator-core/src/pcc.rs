@@ -35,10 +35,10 @@ pub struct Arc<S> {
 const LIMIT: Constant = Constant::new(2.0 - 1.0 / 67_108_864.0);
 
 /// Terms of a polynomial in θ²/8, eightfold as [`Scalar::polynomials`] takes them.
-type Terms<T> = [T; 7];
+pub(crate) type Terms<T> = [T; 7];
 
 /// sin θ / θ.
-const AXIAL: Terms<Constant> = eightfold([
+pub(crate) const AXIAL: Terms<Constant> = eightfold([
     0.999_999_999_998_558,
     -0.666_666_666_525_055_1,
     0.133_333_331_062_445_16,
@@ -60,7 +60,7 @@ const VERSINE: Terms<Constant> = eightfold([
 ]);
 
 /// cos θ = 1 − θ² (1 − cos θ) / θ².
-const COSINE: Terms<Constant> = {
+pub(crate) const COSINE: Terms<Constant> = {
     let mut terms = [Constant::new(8.0); 7];
     let mut k = 1;
     while k < terms.len() {
@@ -120,9 +120,9 @@ impl<S: Scalar> Arc<S> {
     }
 
     fn within_2_rad(theta: S) -> Self {
-        let [axial_terms, versine, cos] = [AXIAL, VERSINE, COSINE].map(|terms| terms.map(S::constant));
-        let (lateral, axial) = theta.polynomials(&versine, &axial_terms);
-        let (sin, cos) = theta.polynomials(&axial_terms, &cos);
+        let [versine, axial] = [VERSINE, AXIAL].map(|terms| terms.map(S::constant));
+        let (lateral, axial) = theta.polynomials(&versine, &axial);
+        let (sin, cos) = theta.sin_cos();
         Self { lateral, axial, cos, sin }
     }
 }
@@ -189,36 +189,22 @@ impl<S: Scalar> Pcc<S> {
     #[inline]
     #[must_use]
     pub fn link(&self, theta: Angle<S>) -> Link<S> {
-        if theta.turns == 0 && theta.rest.is_within(self.limit) {
-            let (x, y) = theta.rest.polynomials(&self.lateral, &self.axial);
-            Link { theta, end: Vector2::new(x, y) }
+        let (x, y) = if theta.turns == 0 && theta.rest.is_within(self.limit) {
+            theta.rest.polynomials(&self.lateral, &self.axial)
         } else {
             self.by_arc(theta)
-        }
-    }
-
-    /// The link as the filters take it, without whole turns: a segment without bend sensors drifts on, turns say nothing of
-    /// its bend, and fixed point ends at 32 rad.
-    #[inline]
-    #[must_use]
-    pub fn within_a_turn(&self, link: Link<S>) -> Link<S> {
-        match link.theta {
-            Angle { turns: 0, .. } => link,
-            Angle { rest, .. } => self.link(Angle::from(rest)),
-        }
+        };
+        Link { theta, end: Vector2::new(x, y) }
     }
 
     #[cold]
-    fn by_arc(&self, theta: Angle<S>) -> Link<S> {
+    fn by_arc(&self, theta: Angle<S>) -> (S, S) {
         let arc = Arc::new(theta);
         let (sin, cos) = match self.offset_at {
             OffsetAt::End => (arc.sin, arc.cos),
             OffsetAt::Start => (S::zero(), S::one()),
         };
-        Link {
-            theta,
-            end: Vector2::new(S::dot(self.lengths, [arc.lateral, sin]), S::dot(self.lengths, [arc.axial, cos])),
-        }
+        (S::dot(self.lengths, [arc.lateral, sin]), S::dot(self.lengths, [arc.axial, cos]))
     }
 }
 
@@ -245,39 +231,24 @@ pub struct SegmentShape<S> {
 #[inline]
 pub fn chain<S: Scalar>(links: impl Iterator<Item = Option<Link<S>>>) -> impl Iterator<Item = SegmentShape<S>> {
     // Products of cosines and sines instead of the sum of the angles: no trigonometry, and nothing to wrap.
-    let mut before = Some((Vector2::zeros(), [S::one(), S::zero()]));
-    let direction = Direction::new();
+    let mut before = Some((Vector2::zeros(), (S::zero(), S::one())));
     links.map(move |link| {
-        before = before.zip(link).map(|((point, [cos, sin]), link)| {
-            let (next_sin, next_cos) = direction.of(link.theta);
-            let (minus_sin, end) = (-sin, link.end);
-            let [x, y] = S::dots([([end.x, end.y], [cos, sin]), ([end.x, end.y], [minus_sin, cos])]);
-            let [cos, sin] =
-                S::bounded_dots([([cos, minus_sin], [next_cos, next_sin]), ([cos, sin], [next_sin, next_cos])]);
-            (point + Vector2::new(x, y), [cos, sin])
+        before = before.zip(link).map(|((point, (sin, cos)), link)| {
+            let (x, y) = S::turned(link.end.x, link.end.y, sin, cos);
+            let (turn_sin, turn_cos) = sin_cos(link.theta);
+            (point + Vector2::new(x, y), S::turned(sin, cos, turn_sin, turn_cos))
         });
         SegmentShape { theta: link.map(|link| link.theta), end: before.map(|(point, _)| point) }
     })
 }
 
 /// sin θ and cos θ.
-struct Direction<S> {
-    sin: Terms<S>,
-    cos: Terms<S>,
-}
-
-impl<S: Scalar> Direction<S> {
-    fn new() -> Self {
-        Self { sin: AXIAL.map(S::constant), cos: COSINE.map(S::constant) }
-    }
-
-    #[inline]
-    fn of(&self, theta: Angle<S>) -> (S, S) {
-        if theta.turns == 0 && theta.rest.is_within(S::constant(LIMIT)) {
-            theta.rest.polynomials(&self.sin, &self.cos)
-        } else {
-            let arc = Arc::new(theta);
-            (arc.sin, arc.cos)
-        }
+#[inline]
+pub(crate) fn sin_cos<S: Scalar>(theta: Angle<S>) -> (S, S) {
+    if theta.turns == 0 && theta.rest.is_within(S::constant(LIMIT)) {
+        theta.rest.sin_cos()
+    } else {
+        let arc = Arc::new(theta);
+        (arc.sin, arc.cos)
     }
 }

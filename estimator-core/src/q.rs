@@ -7,6 +7,7 @@ use num_traits::{One, Zero};
 use crate::angle::{Phase, Turns};
 use crate::fixed::{divide, nearly_divide};
 use crate::overflow;
+use crate::pcc::{AXIAL, COSINE, Terms};
 use crate::scalar::{Constant, Scalar, TWO_PI};
 
 /// Fixed point with 26 fractional bits: ±32 in steps of 1.5·10⁻⁸.
@@ -97,32 +98,40 @@ impl Q {
         Self((sum >> Self::FRACTION_BITS) as i32)
     }
 
-    /// [`Scalar::dots`] where a sum may be out of range. Out of line and by value, so that nothing is kept for it before.
-    #[cold]
-    #[inline(never)]
-    fn saturated_dots<const M: usize, const K: usize>(pairs: [([Self; K], [Self; K]); M]) -> [Self; M] {
-        const { assert!(K <= 3) };
-        pairs.map(|pair| {
-            let sum = Self::sum(Self::HALF, &pair);
-            if Self::excess(sum) < Self::ROOM {
-                return Self::narrow(sum);
-            }
-            let (a, b) = pair;
-            let quarters = a.iter().zip(b).map(|(a, b)| (i64::from(a.0) * i64::from(b.0)) >> 2);
-            Self::overflowed(quarters.sum::<i64>() < 0)
-        })
+    /// Whether all sums fit: one check, so that they are worked out in one go.
+    #[inline]
+    fn all_fit(sums: &[i64]) -> bool {
+        sums.iter().fold(0, |all, sum| all | Self::excess(*sum)) < Self::ROOM
     }
 
-    /// [`Scalar::corrected`] as [`Self::saturated_dots`].
+    /// [`Scalar::dot`] of what is beyond the range. Out of line and by value, so that nothing is kept for it before.
     #[cold]
     #[inline(never)]
-    fn saturated_corrected<const D: usize>(
-        x: [Self; D],
-        ratio: Self,
-        weights: &[Self; 3],
-        [a, b]: [[Self; D]; 2],
-    ) -> [Self; D] {
-        core::array::from_fn(|k| x[k] + ratio * Self::dot(*weights, [a[k], b[k], x[k]]))
+    fn saturated_dot<const K: usize>(a: [Self; K], b: [Self; K]) -> Self {
+        const { assert!(K <= 3) };
+        let quarters = a.iter().zip(b).map(|(a, b)| (i64::from(a.0) * i64::from(b.0)) >> 2);
+        Self::overflowed(quarters.sum::<i64>() < 0)
+    }
+
+    /// [`Scalar::turned`] where one of the two may be beyond the range.
+    #[cold]
+    #[inline(never)]
+    fn saturated_turned(x: Self, y: Self, sin: Self, cos: Self) -> (Self, Self) {
+        (Self::dot([x, y], [cos, sin]), Self::dot([y, x], [cos, -sin]))
+    }
+
+    /// [`Scalar::corrected`] where a sum may be beyond the range.
+    #[cold]
+    #[inline(never)]
+    fn saturated_corrected(self, ratio: Self, weights: &[Self; 3], a: Self, b: Self) -> Self {
+        self + ratio * Self::dot(*weights, [a, b, self])
+    }
+
+    /// Out of line, for what hardly happens.
+    #[cold]
+    #[inline(never)]
+    fn divided(self, other: Self) -> Self {
+        self / other
     }
 
     #[cold]
@@ -146,6 +155,17 @@ impl Q {
         });
         (sum >> 32) as i32
     }
+}
+
+/// A polynomial's terms as fixed point, in the flash of a board.
+const fn fixed(terms: Terms<Constant>) -> Terms<Q> {
+    let mut fixed = [Q(0); 7];
+    let mut k = 0;
+    while k < terms.len() {
+        fixed[k] = terms[k].q;
+        k += 1;
+    }
+    fixed
 }
 
 impl Add for Q {
@@ -290,18 +310,33 @@ impl Scalar for Q {
     }
 
     #[inline]
-    fn dots<const M: usize, const K: usize>(pairs: [([Self; K], [Self; K]); M]) -> [Self; M] {
-        let sums = pairs.each_ref().map(|pair| Self::sum(Self::HALF, pair));
-        // All in one check, so that they are worked out in one go.
-        if sums.iter().fold(0, |all, sum| all | Self::excess(*sum)) >= Self::ROOM {
-            return Self::saturated_dots(pairs);
+    fn sin_cos(self) -> (Self, Self) {
+        const SIN: Terms<Q> = fixed(AXIAL);
+        const COS: Terms<Q> = fixed(COSINE);
+        self.polynomials(&SIN, &COS)
+    }
+
+    #[expect(clippy::inline_always, reason = "measured")]
+    #[inline(always)]
+    fn turned(x: Self, y: Self, sin: Self, cos: Self) -> (Self, Self) {
+        let minus_sin = Self(sin.0.wrapping_neg());
+        let (across, along) = (Self::sum(0, &([x, y], [cos, sin])), Self::sum(0, &([y, x], [cos, minus_sin])));
+        if Self::all_fit(&[across, along]) {
+            (Self::narrow(across), Self::narrow(along))
+        } else {
+            Self::saturated_turned(x, y, sin, cos)
         }
-        sums.map(Self::narrow)
     }
 
     #[inline]
-    fn bounded_dots<const M: usize, const K: usize>(pairs: [([Self; K], [Self; K]); M]) -> [Self; M] {
-        pairs.each_ref().map(|pair| Self::narrow(Self::sum(0, pair)))
+    fn dot<const K: usize>(a: [Self; K], b: [Self; K]) -> Self {
+        let sum = Self::sum(Self::HALF, &(a, b));
+        if Self::all_fit(&[sum]) { Self::narrow(sum) } else { Self::saturated_dot(a, b) }
+    }
+
+    #[inline]
+    fn bounded_product(self, other: Self) -> Self {
+        Self::narrow(Self::sum(0, &([self], [other])))
     }
 
     #[inline]
@@ -310,11 +345,13 @@ impl Scalar for Q {
     }
 
     #[inline]
-    fn quadratic(value: i32, shift: u32, [c0, c1, c2]: &[Self; 3]) -> Self {
+    fn quadratic(value: i32, shift: u32, [c0, c1, c2]: &[Self; 3], limit: Constant) -> Option<Self> {
         let u = Self(value.wrapping_shl(Self::FRACTION_BITS.wrapping_sub(shift)));
         let slope = c1.0.wrapping_add(Self::narrow(i64::from(c2.0) * i64::from(u.0)).0);
         let sum = Self::sum(c0.wide() + Self::HALF, &([u], [Self(slope)]));
-        if Self::excess(sum) < Self::ROOM { Self::narrow(sum) } else { Self::overflowed(sum < 0) }
+        // By the upper word, which is enough.
+        let (upper, limit) = ((sum >> 32) as i32, limit.q.0 >> (32 - Self::FRACTION_BITS));
+        (upper ^ (upper >> 31) < limit).then_some(Self::narrow(sum))
     }
 
     // It is called twice a segment; out of line, saving registers is a fifth of it.
@@ -323,18 +360,23 @@ impl Scalar for Q {
     fn quotient(self, r: Self, h: Self) -> Self {
         let den = Self::narrow(r.wide() + i64::from(self.0) * i64::from(h.0));
         nearly_divide::<{ Self::FRACTION_BITS }>(self.0 as u32, den.0 as u32)
-            .map_or_else(|| self / den, |bits| Self(bits as i32))
+            .map_or_else(|| self.divided(den), |bits| Self(bits as i32))
     }
 
-    #[inline]
+    #[expect(clippy::inline_always, reason = "measured")]
+    #[inline(always)]
     fn corrected<const D: usize>(x: [Self; D], ratio: Self, weights: &[Self; 3], [a, b]: [[Self; D]; 2]) -> [Self; D] {
-        let innovations: [i64; D] = core::array::from_fn(|k| Self::sum(0, &(*weights, [a[k], b[k], x[k]])));
-        let sums: [i64; D] =
-            core::array::from_fn(|k| Self::sum(x[k].wide() + Self::HALF, &([ratio], [Self::narrow(innovations[k])])));
-        if innovations.iter().chain(&sums).fold(0, |all, sum| all | Self::excess(*sum)) >= Self::ROOM {
-            return Self::saturated_corrected(x, ratio, weights, [a, b]);
+        let (mut innovations, mut sums) = ([0; D], [0; D]);
+        for k in 0..D {
+            innovations[k] = Self::sum(0, &(*weights, [a[k], b[k], x[k]]));
+            sums[k] = Self::sum(x[k].wide() + Self::HALF, &([ratio], [Self::narrow(innovations[k])]));
         }
-        sums.map(Self::narrow)
+        let fit = Self::all_fit(&innovations) & Self::all_fit(&sums);
+        let mut values = [Self(0); D];
+        for k in 0..D {
+            values[k] = if fit { Self::narrow(sums[k]) } else { x[k].saturated_corrected(ratio, weights, a[k], b[k]) };
+        }
+        values
     }
 
     #[inline]

@@ -54,16 +54,16 @@ impl ImuReading {
     /// assert_eq!(ImuReading::from_bno055([0, 0, 0, 0]).heading(), None);
     /// ```
     #[must_use]
-    pub fn heading(self) -> Option<Phase> {
+    pub fn heading(&self) -> Option<Phase> {
         match self {
-            Self::Heading(heading) => Some(heading),
+            Self::Heading(heading) => Some(*heading),
             Self::Quaternion(quaternion) => quaternion_heading(quaternion),
         }
     }
 }
 
-#[inline]
-fn quaternion_heading(quaternion: [i32; 4]) -> Option<Phase> {
+#[inline(never)]
+fn quaternion_heading(quaternion: &[i32; 4]) -> Option<Phase> {
     /// The square of the norm in units of 2⁻²⁸.
     const ONE_SQUARED: u32 = 1 << 28;
     const TOLERANCE: u32 = ONE_SQUARED / 50;
@@ -75,5 +75,5 @@ fn quaternion_heading(quaternion: [i32; 4]) -> Option<Phase> {
         return None;
     }
     // Half of the formula's numerator and denominator, in units of 2⁻⁶⁰.
-    Phase::atan2(-(w * z + x * y), (1 << 59) - y2_z2 as i64)
+    Phase::atan2(w * z + x * y, (1 << 59) - y2_z2 as i64).map(|counter_clockwise| Phase::default() - counter_clockwise)
 }

@@ -10,6 +10,7 @@ use nalgebra::{ClosedAddAssign, ClosedMulAssign, ClosedSubAssign};
 use num_traits::{One, Zero};
 
 use crate::angle::{Phase, Turns};
+use crate::pcc::{AXIAL, COSINE};
 use crate::q::Q;
 
 /// A constant of the pipeline, held in both representations so that fixed-point code never touches a float.
@@ -105,23 +106,28 @@ pub trait Scalar:
         (self * sum(odd), sum(even))
     }
 
-    /// Σ aₖ bₖ of each pair (a, b), of up to three products, each sum rounded once.
+    /// sin θ and cos θ of this angle θ, |θ| < 2 rad.
     #[must_use]
-    fn dots<const M: usize, const K: usize>(pairs: [([Self; K], [Self; K]); M]) -> [Self; M] {
-        pairs.map(|(a, b)| a.into_iter().zip(b).fold(Self::zero(), |sum, (a, b)| sum + a * b))
+    fn sin_cos(self) -> (Self, Self) {
+        self.polynomials(&AXIAL.map(Self::constant), &COSINE.map(Self::constant))
     }
 
-    /// Σ `a`ₖ `b`ₖ, as [`Scalar::dots`].
+    /// (x, y) turned clockwise by the angle of this sine and cosine: (x cos + y sin, y cos − x sin). It may be rounded down.
+    #[must_use]
+    fn turned(x: Self, y: Self, sin: Self, cos: Self) -> (Self, Self) {
+        (Self::dot([x, y], [cos, sin]), Self::dot([y, x], [cos, -sin]))
+    }
+
+    /// Σ `a`ₖ `b`ₖ of up to three products, rounded once.
     #[must_use]
     fn dot<const K: usize>(a: [Self; K], b: [Self; K]) -> Self {
-        let [dot] = Self::dots([(a, b)]);
-        dot
+        a.into_iter().zip(b).fold(Self::zero(), |sum, (a, b)| sum + a * b)
     }
 
-    /// Σ aₖ bₖ of each pair (a, b) as [`Scalar::dots`], where each sum is known to be within ±16; it may be rounded down.
+    /// The product where it is known to be within ±16; it may be rounded down.
     #[must_use]
-    fn bounded_dots<const M: usize, const K: usize>(pairs: [([Self; K], [Self; K]); M]) -> [Self; M] {
-        Self::dots(pairs)
+    fn bounded_product(self, other: Self) -> Self {
+        self * other
     }
 
     /// Half of the value.
@@ -130,11 +136,13 @@ pub trait Scalar:
         self * Self::constant(Constant::new(0.5))
     }
 
-    /// c0 + c1 u + c2 u² at the fraction u = `value` / 2^`shift`, where u and c1 + c2 u are within ±32.
+    /// c0 + c1 u + c2 u² at the fraction u = `value` / 2^`shift`, where u and c1 + c2 u are within ±32; `None` where it is beyond
+    /// ±`limit`.
     #[must_use]
-    fn quadratic(value: i32, shift: u32, [c0, c1, c2]: &[Self; 3]) -> Self {
+    fn quadratic(value: i32, shift: u32, [c0, c1, c2]: &[Self; 3], limit: Constant) -> Option<Self> {
         let u = Self::from_fraction(value, shift);
-        *c0 + u * (*c1 + u * *c2)
+        let value = *c0 + u * (*c1 + u * *c2);
+        value.is_within(Self::constant(limit)).then_some(value)
     }
 
     /// `self / (r + self · h)`, where none is negative and the divisor is within ±32, to a step of the representation.

@@ -3,11 +3,13 @@
 use crate::anchor::AnchorRule;
 use crate::angle::Turns;
 use crate::bend::BendMap;
+use crate::contact::{Alike, ContactRule};
 use crate::filter::Noise;
 use crate::hysteresis::Hysteresis;
 use crate::observer::ObserverRule;
 use crate::sample::SENSORS_PER_SEGMENT;
 use crate::scalar::Scalar;
+use crate::uncertainty::UncertaintyRule;
 
 /// Where a segment's rigid connector sits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -31,6 +33,8 @@ pub struct Segment<S> {
     pub bend: [Option<BendMap<S>>; SENSORS_PER_SEGMENT],
     /// What corrects their angle for the way that they came, where anything does.
     pub hysteresis: Option<Hysteresis<S>>,
+    /// The earlier segment that bends alike, where there is one.
+    pub alike: Option<Alike>,
     /// Heading of the segment's end in the reference pose.
     pub reference: Turns,
     /// KF_orient's parameters.
@@ -50,6 +54,7 @@ impl<S: Scalar> Segment<S> {
             offset_at: OffsetAt::End,
             bend: [None; SENSORS_PER_SEGMENT],
             hysteresis: None,
+            alike: None,
             reference: Turns::ZERO,
             orient: noise,
             coord: noise,
@@ -68,6 +73,19 @@ pub struct Table<'t, S> {
     pub anchor: AnchorRule,
     /// How drift is observed; `None`: the paper's anchor corrects it.
     pub observer: Option<ObserverRule>,
+    /// What contact is told by; `None`: nobody looks.
+    pub contact: Option<ContactRule>,
+    /// What the estimates' variances are made of; `None`: there are none.
+    pub uncertainty: Option<UncertaintyRule<S>>,
+}
+
+impl<S> Table<'_, S> {
+    /// Whether it asks for more than the paper's method.
+    pub(crate) fn is_beyond_the_paper(&self) -> bool {
+        let Self { segments, observer, contact, uncertainty, .. } = self;
+        let corrects_hysteresis = segments.iter().any(|segment| segment.hysteresis.is_some());
+        observer.is_some() || contact.is_some() || uncertainty.is_some() || corrects_hysteresis
+    }
 }
 
 impl<'t, S> Table<'t, S> {
@@ -81,7 +99,7 @@ impl<'t, S> Table<'t, S> {
             sample_rate_millihertz: 10_000,
             threshold: Turns::from_bits(5_965_232),
         };
-        Self { segments, tare_samples: 0, anchor, observer: None }
+        Self { segments, tare_samples: 0, anchor, observer: None, contact: None, uncertainty: None }
     }
 }
 

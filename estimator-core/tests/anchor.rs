@@ -8,10 +8,10 @@ fn rule(window: u16, decimation: u16) -> AnchorRule {
     AnchorRule { window, rate_millihertz: 10_000, sample_rate_millihertz, threshold: Turns::ZERO }
 }
 
-/// The mean of what is there, towards zero as [`Turns::mean_of`] is.
+/// The mean of what is there, rounded down as [`Turns::mean_of`] is.
 fn mean(values: &[Option<i64>]) -> Option<i64> {
     let there: Vec<_> = values.iter().flatten().map(|value| i128::from(*value)).collect();
-    (!there.is_empty()).then(|| (there.iter().sum::<i128>() / there.len() as i128) as i64)
+    (!there.is_empty()).then(|| there.iter().sum::<i128>().div_euclid(there.len() as i128) as i64)
 }
 
 fn pushed<const W: usize>(rule: &AnchorRule, values: &[Option<i64>]) -> Vec<Option<i64>> {

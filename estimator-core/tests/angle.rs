@@ -44,9 +44,9 @@ proptest! {
     }
 
     #[test]
-    fn the_mean_of_turns_is_the_exact_quotient_towards_zero(bits: i64, shift in 0..64, count in 1_u16..) {
+    fn the_mean_of_turns_is_the_exact_quotient_rounded_down(bits: i64, shift in 0..64, count in 1_u16..) {
         let sum = Turns::from_bits(bits >> shift);
-        prop_assert_eq!(i128::from(sum.mean_of(count).bits()), i128::from(sum.bits()) / i128::from(count));
+        prop_assert_eq!(i128::from(sum.mean_of(count).bits()), i128::from(sum.bits()).div_euclid(i128::from(count)));
     }
 
     #[test]
@@ -136,7 +136,7 @@ fn a_mean_of_nothing_is_zero() {
 fn the_mean_of_the_longest_sums_is_exact() {
     for bits in [i64::MAX, i64::MIN + 1, i64::MIN] {
         for count in [1, 2, 3, 100, u16::MAX] {
-            let exact = (i128::from(bits) / i128::from(count)) as i64;
+            let exact = i128::from(bits).div_euclid(i128::from(count)) as i64;
             assert_eq!(Turns::from_bits(bits).mean_of(count).bits(), exact, "{bits} / {count}");
         }
     }

@@ -35,7 +35,7 @@ fn rule(window: u16) -> AnchorRule {
 }
 
 fn table<S>(segments: &[Segment<S>]) -> Table<'_, S> {
-    Table { segments, tare_samples: 0, anchor: rule(10), observer: None }
+    Table { anchor: rule(10), ..Table::bare(segments) }
 }
 
 fn heading(rad: f64) -> ImuReading {

@@ -63,7 +63,7 @@ fn hour(observer: &mut Observer, mut beyond: impl FnMut(u32, f64) -> f64) {
     for k in 0..36_000 {
         let (bend, lag) = swing(k);
         let imu = bend + lag + beyond(k, bend);
-        observer.step(&rule(), Some(Disagreement { imu: degrees(imu), bend: degrees(bend) }), false);
+        observer.step(&rule(), Some(Disagreement { imu: degrees(imu), bend: degrees(bend) }));
     }
 }
 
@@ -78,7 +78,7 @@ fn it_is_the_filter_of_the_books() {
     for k in 0..36_000 {
         let bend = zigzag(k);
         let imu = 1.05 * bend + 0.005 * f64::from(k) + f64::from(k % 7) - 3.0;
-        observer.step(&rule(), Some(Disagreement { imu: degrees(imu), bend: degrees(bend) }), false);
+        observer.step(&rule(), Some(Disagreement { imu: degrees(imu), bend: degrees(bend) }));
         book.step(imu, bend);
         let (bias, variance) = (observer.bias().rad().to_degrees(), f64::from(observer.variance()) / UNIT * R);
         assert!((bias - book.x.x).abs() < 0.02, "value {k}: {bias} instead of {}", book.x.x);
@@ -107,7 +107,7 @@ fn a_wrong_sensitivity_does_not_pull_the_bias_of_an_arm_that_leans() {
         let (swing, lag) = swing(k);
         let bend = 20.0 + swing;
         let imu = 1.1 * bend + lag;
-        observer.step(&rule(), Some(Disagreement { imu: degrees(imu), bend: degrees(bend) }), false);
+        observer.step(&rule(), Some(Disagreement { imu: degrees(imu), bend: degrees(bend) }));
     }
     assert!(observer.bias().rad().to_degrees().abs() < 0.3, "{}", observer.bias().rad().to_degrees());
 }
@@ -139,7 +139,7 @@ fn a_bend_sensor_that_sticks_does_not_drag_the_bias() {
     for k in 0..36_000 {
         let (bend, _) = swing(k);
         let stuck = if k < 18_000 { bend } else { 35.0 };
-        observer.step(&rule(), Some(Disagreement { imu: degrees(bend), bend: degrees(stuck) }), false);
+        observer.step(&rule(), Some(Disagreement { imu: degrees(bend), bend: degrees(stuck) }));
     }
     assert!(observer.bias().rad().to_degrees().abs() < 3.0, "{}", observer.bias().rad().to_degrees());
 }
@@ -150,7 +150,7 @@ fn off_after_rest(values: u32) -> f64 {
     hour(&mut observer, |k, _| 0.001 * f64::from(k));
     let imu = |k: u32| 30.0 + 36.0 + 0.001 * f64::from(k);
     for k in 0..values {
-        observer.step(&rule(), Some(Disagreement { imu: degrees(imu(k)), bend: degrees(35.0) }), false);
+        observer.step(&rule(), Some(Disagreement { imu: degrees(imu(k)), bend: degrees(35.0) }));
     }
     observer.bias().rad().to_degrees() - (36.0 + 0.001 * f64::from(values))
 }
@@ -170,7 +170,7 @@ fn missing_values_cost_no_drift_that_was_known() {
     let mut observer = Observer::new(&rule());
     hour(&mut observer, |k, _| 0.005 * f64::from(k));
     for _ in 0..3_000 {
-        observer.step(&rule(), None, false);
+        observer.step(&rule(), None);
     }
     assert!((observer.bias().rad().to_degrees() - 0.005 * 39_000.0).abs() < 0.5);
 }
@@ -183,7 +183,7 @@ fn a_day_of_any_bend_leaves_its_variances_positive() {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         let bend = Turns::from_bits(i64::from((state >> 32) as i32));
         let noise = Turns::from_bits(((state >> 40) as i64 & 0xFF_FFFF) - 0x80_0000);
-        observer.step(&rule(), (state & 7 != 0).then_some(Disagreement { imu: bend + noise, bend }), false);
+        observer.step(&rule(), (state & 7 != 0).then_some(Disagreement { imu: bend + noise, bend }));
         assert!(observer.variance() > 0);
     }
     assert!(observer.bias().rad().abs() < 1e-3);

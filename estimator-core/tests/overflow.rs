@@ -64,7 +64,7 @@ fn run(counts: u16, steps: u32) {
         sample_rate_millihertz: 10_000,
         threshold: Turns::from_rad(0.01),
     };
-    let table = Table { segments: &segments, tare_samples: 10, anchor, observer: None };
+    let table = Table { tare_samples: 10, anchor, ..Table::bare(&segments) };
     let mut estimator = Estimator::<Q, 3, 10>::new(&table).expect("a valid table");
     for step in 0..steps {
         let mut sample = Sample::missing(0);

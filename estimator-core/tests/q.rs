@@ -1,6 +1,6 @@
 //! The board's number against exact integer arithmetic.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 use estimator_core::{Phase, Q, Scalar};
 use num_traits::{One, Zero};
@@ -53,9 +53,18 @@ proptest! {
     #[test]
     fn sums_of_products_are_rounded_once_and_saturate(a in [q(), q(), q()], b in [q(), q(), q()]) {
         let sum = a.iter().zip(b).map(|(a, b)| wide(*a) * wide(b)).sum::<i128>();
-        let expected = saturated((2 * sum + ONE).div_euclid(2 * ONE));
-        prop_assert_eq!(Q::dot(a, b), expected);
-        prop_assert_eq!(Q::dots([(a, b), ([Q::one(), Q::zero(), Q::zero()], a)]), [expected, a[0]]);
+        prop_assert_eq!(Q::dot(a, b), saturated((2 * sum + ONE).div_euclid(2 * ONE)));
+    }
+
+    /// Sums of products are cut off, but where one saturates; sine and cosine are within ±1.
+    #[test]
+    fn turns_vectors_clockwise_and_saturates(x in q(), y in q(), angle in -PI..PI) {
+        let (sin, cos) = (Q::from_f64(angle.sin()), Q::from_f64(angle.cos()));
+        let sums = [wide(x) * wide(cos) + wide(y) * wide(sin), wide(y) * wide(cos) - wide(x) * wide(sin)];
+        let (across, along) = Q::turned(x, y, sin, cos);
+        for (turned, sum) in [across, along].into_iter().zip(sums) {
+            prop_assert!((wide(turned) - wide(saturated(sum.div_euclid(ONE)))).abs() <= 1);
+        }
     }
 
     #[test]

@@ -16,7 +16,7 @@ const BRINK: f64 = 1e-6;
 fn estimated<S: Scalar>(arm: &literal::Arm, samples: &[estimator_core::Sample<16>]) -> Vec<[Shape; 4]> {
     let segments = synthetic::segments::<S>(arm);
     let (anchor, tare_samples) = synthetic::rule(arm);
-    let table = Table { segments: &segments, tare_samples, anchor, observer: None };
+    let table = Table { tare_samples, anchor, ..Table::bare(&segments) };
     let mut estimator = Estimator::<S, 16, 100>::new(&table).expect("a table within capacity");
     let shape = |shape: estimator_core::Shape<S, 16>| Shape {
         theta: shape.iter().map(|segment| segment.theta.map(estimator_core::Angle::rad)).collect(),

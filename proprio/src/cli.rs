@@ -1,11 +1,13 @@
 //! What can be typed.
 
+mod link;
+
 use std::path::PathBuf;
 
 use clap::builder::Styles;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
-use proprio::calibrate::Correct;
+pub use link::{Convert, LinkArgs, Ports, Record, Recover, Status};
 use proprio::session::ImuColumns;
 
 /// Colours of help and errors; off where stderr is no terminal or NO_COLOR is set.
@@ -36,6 +38,16 @@ pub enum Command {
     Report(Report),
     /// Record a session of the simulated arm
     Simulate(Simulate),
+    /// List the serial ports, and which of them a Due is on
+    Ports(Ports),
+    /// Say how a board is: versions, sensors, rates, losses
+    Status(Status),
+    /// Record what a board says
+    Record(Record),
+    /// Turn a session into CSV, a recording or raw bytes
+    Convert(Convert),
+    /// Save what is whole of a recording that was cut
+    Recover(Recover),
     /// Print a completion script for a shell
     Completions(Completions),
 }
@@ -65,15 +77,12 @@ pub struct Calibrate {
     /// Table to write
     #[arg(short, long, value_name = "TABLE.toml")]
     pub output: PathBuf,
-    /// Segments whose bend sensors are corrected for hysteresis
-    #[arg(long, value_enum, default_value_t = Correct::Auto)]
-    pub hysteresis: Correct,
 }
 
 #[derive(Debug, Args)]
 pub struct Tune {
     /// Training sessions with truth, all of the same arm
-    #[arg(required = true, value_name = "SESSION.csv")]
+    #[arg(required = true, value_name = "SESSION")]
     pub sessions: Vec<PathBuf>,
     /// Table of the arm
     #[arg(long, value_name = "TABLE.toml")]
@@ -86,7 +95,7 @@ pub struct Tune {
 #[derive(Debug, Args)]
 pub struct Replay {
     /// Sessions to replay, one after the other
-    #[arg(required = true, value_name = "SESSION.csv")]
+    #[arg(required = true, value_name = "SESSION")]
     pub sessions: Vec<PathBuf>,
     /// Table of the arm
     #[arg(long, value_name = "TABLE.toml")]
@@ -105,7 +114,7 @@ pub struct Replay {
 #[derive(Debug, Args)]
 pub struct Report {
     /// Sessions to show, with or without truth
-    #[arg(required = true, value_name = "SESSION.csv")]
+    #[arg(required = true, value_name = "SESSION")]
     pub sessions: Vec<PathBuf>,
     /// Table of the arm
     #[arg(long, value_name = "TABLE.toml")]

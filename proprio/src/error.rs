@@ -7,6 +7,7 @@ use calibration_tables::FileError;
 
 use crate::align::AlignmentError;
 use crate::calibrate::CalibrationError;
+use crate::link::LinkError;
 use crate::session::SessionError;
 use crate::tune::TuningError;
 
@@ -32,6 +33,9 @@ pub enum Error {
         /// What is wrong with it.
         source: CalibrationError,
     },
+    /// A board cannot be reached.
+    #[error(transparent)]
+    Link(#[from] LinkError),
     /// Filters cannot be tuned on a session, or in a table.
     #[error("{}: {source}", path.display())]
     Tuning {
@@ -62,6 +66,15 @@ pub enum Error {
     /// Two outputs of one name.
     #[error("{}: cannot hold two outputs of this command", .0.display())]
     OutputTwice(PathBuf),
+    /// An output that would replace a file which cannot be made again.
+    #[error("{}: is there already, and a recording cannot be had again", .0.display())]
+    Exists(PathBuf),
+    /// A name that tells no kind of file.
+    #[error("{}: ends with none of .csv, .mcap and .bin, which tell what to write", .0.display())]
+    OutputKind(PathBuf),
+    /// A conversion to what the input is.
+    #[error("{}: is of this kind already", .0.display())]
+    SameKind(PathBuf),
     /// Standard output cannot be written.
     #[error("standard output cannot be written: {0}")]
     Stdout(io::Error),
@@ -84,10 +97,13 @@ impl Error {
             Self::Session(error) => error.problem.remedy().to_owned(),
             Self::Table { source, .. } => source.remedy().to_owned(),
             Self::Calibration { source, .. } => source.remedy(),
+            Self::Link(error) => error.remedy().to_owned(),
             Self::Tuning { source, .. } => source.remedy().to_owned(),
             Self::Alignment { source, .. } => source.remedy().to_owned(),
             Self::Output { .. } => "choose a folder that exists, can be written to and has room".to_owned(),
-            Self::Overwrite(_) | Self::OutputTwice(_) => "give the output another name".to_owned(),
+            Self::Overwrite(_) | Self::OutputTwice(_) | Self::Exists(_) => "give the output another name".to_owned(),
+            Self::OutputKind(_) => "give the output one of these endings".to_owned(),
+            Self::SameKind(_) => "copy the file, or give the output another ending".to_owned(),
             Self::Stdout(_) => "write to a place that has room, or use --out".to_owned(),
             Self::OneSession(_) => "replay the sessions one by one".to_owned(),
             Self::Rate(_) | Self::Seconds(_) => "give a value in this range".to_owned(),

@@ -4,6 +4,7 @@ use estimator_core::Method;
 use serde::Serialize;
 use serde::ser::{SerializeMap, Serializer};
 
+use crate::recording::Comparison;
 use crate::score::Figures;
 
 /// The figures of one or more sessions, in the form of `replay --json`.
@@ -30,6 +31,9 @@ pub struct SessionFigures {
     /// Its figures.
     #[serde(flatten)]
     pub figures: ByMethod,
+    /// Of a board's recording, replayed in fixed point: whether the board's own estimates are those of the replay.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub recorded: Option<Comparison>,
 }
 
 /// Figures by method.

@@ -1,4 +1,4 @@
-//! The host side of `proprio`: sessions, calibration, replay, reports and simulation.
+//! The host side of `proprio`: sessions, calibration, replay, reports, simulation, and the link to a board.
 //!
 //! The command-line tool is a thin layer over these modules; the tests and benchmarks of the workspace use them as well.
 //!
@@ -21,16 +21,20 @@
 
 pub mod align;
 pub mod calibrate;
+pub mod convert;
 pub mod distances;
 pub mod error;
 pub mod estimates;
 pub mod figures;
 pub mod interrupt;
+pub mod link;
 pub mod output;
 pub mod progress;
+pub mod recording;
 pub mod replay;
 pub mod report;
 pub mod score;
 pub mod session;
 pub mod simulate;
+pub mod status;
 pub mod tune;

@@ -8,21 +8,10 @@ use std::panic::catch_unwind;
 use std::process::ExitCode;
 
 use clap::Parser;
-use proprio::interrupt;
-use proprio::output::discard_unfinished;
-
-/// Exit status after Ctrl-C or a termination, as shells have it.
-const INTERRUPTED: i32 = 130;
 
 fn main() -> ExitCode {
     let command = cli::Cli::parse().command;
-    // Without a handler an interrupt leaves an unfinished file behind, and nothing worse.
-    let _ = ctrlc::set_handler(|| {
-        if !interrupt::is_heeded() {
-            discard_unfinished();
-            std::process::exit(INTERRUPTED);
-        }
-    });
+    proprio::interrupt::install();
     match catch_unwind(|| command.run()) {
         Ok(Ok(())) => ExitCode::SUCCESS,
         Ok(Err(error)) => {

@@ -3,11 +3,12 @@
 use std::path::Path;
 
 use calibration_tables::{ArmFile, Baked, FileError, MAX_SEGMENTS, MAX_WINDOW};
-use estimator_core::{Estimate, Estimator, Method, Scalar, Shape};
+use estimator_core::{Estimate, Estimator, Method, Q, Scalar, Shape};
+use telemetry::{Hello, TICK_HZ};
 
 use crate::error::Error;
 use crate::progress::Progress;
-use crate::session::{Needs, Row, SessionReader};
+use crate::session::{Kind, Needs, Row, SessionReader};
 
 /// The estimator with room for every arm.
 pub type HostEstimator<'t, S> = Estimator<'t, S, MAX_SEGMENTS, { MAX_WINDOW as usize }>;
@@ -70,6 +71,23 @@ pub struct Extent {
     pub seconds: f64,
     /// Whether the file's last line is ended; if not, its last number may have been cut.
     pub ends_with_line: bool,
+    /// Of a board's recording.
+    pub recording: Option<Recording>,
+}
+
+/// What is known of a recording, when it is replayed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Recording {
+    /// Whether the board's table was the one of the replay; `None` where its `Hello` is not in the recording.
+    pub table_matches: Option<bool>,
+}
+
+impl Recording {
+    fn new(hello: Option<&Hello>, table: &NamedTable) -> Result<Self, Error> {
+        let Some(hello) = hello else { return Ok(Self { table_matches: None }) };
+        let checksum = table.bake::<Q>(TICK_HZ)?.checksum();
+        Ok(Self { table_matches: Some(hello.table == checksum) })
+    }
 }
 
 /// Replays a session and shows every row and its outcome to `visit`.
@@ -92,6 +110,9 @@ pub fn replay<S: Scalar>(
     let mut progress = Progress::new(format!("replaying {}", session.display()), reader.progress().1);
     let (mut samples, mut first_us, mut last_us) = (0, None, 0);
     while let Some(row) = reader.next_row()? {
+        if row.starts {
+            estimator.start().expect("the file was checked");
+        }
         let estimate = estimator.step(&row.sample);
         let shapes = Method::ALL.map(|method| estimator.shape(&estimate, method));
         visit(&row, &Outcome { estimate, shapes })?;
@@ -100,6 +121,7 @@ pub fn replay<S: Scalar>(
         samples += 1;
         progress.set(reader.progress().0);
     }
+    let recording = if reader.kind() == Kind::Csv { None } else { Some(Recording::new(reader.hello(), table)?) };
     let seconds = (last_us - first_us.unwrap_or(last_us)) as f64 / 1e6;
-    Ok(Extent { samples, seconds, ends_with_line: reader.ends_with_line() })
+    Ok(Extent { samples, seconds, ends_with_line: reader.ends_with_line(), recording })
 }

@@ -8,6 +8,7 @@ use comfy_table::{CellAlignment, Table};
 use estimator_core::Method;
 use proprio::calibrate::SensorReport;
 use proprio::figures::{AllFigures, ByMethod};
+use proprio::link::Port;
 use proprio::score::Figures;
 
 /// One line a bend sensor.
@@ -41,7 +42,6 @@ pub fn tuning(record: &TuningKeys, time: Duration) -> String {
     let stopped = match record.stopped {
         Stopped::Converged => "converged",
         Stopped::Interrupted => "interrupted",
-        Stopped::Iterations => "not converged",
     };
     let each_s = time.as_secs_f64() / record.iterations.max(1) as f64;
     let (iterations, kept) = (record.iterations, record.kept);
@@ -81,6 +81,24 @@ fn figures(all: &AllFigures, figure: Pick) -> String {
     let seconds = all.sessions.iter().map(|session| session.seconds).sum();
     add("all".to_owned(), samples, seconds, &all.all);
     text(&mut table)
+}
+
+/// One line a port.
+pub fn ports(ports: &[Port]) -> String {
+    if ports.is_empty() {
+        return "no serial port\n".to_owned();
+    }
+    let mut table = table(&["port", "what", "USB", "serial number", "product"]);
+    for Port { name, kind, usb, serial_number, product } in ports {
+        let [usb, serial_number, product] = [usb, serial_number, product].map(|text| text.as_deref().unwrap_or("–"));
+        table.add_row([name, kind.name(), usb, serial_number, product]);
+    }
+    table.trim_fmt() + "\n"
+}
+
+/// Names to the left of what they mean.
+pub fn pairs(lines: &[(&str, String)]) -> String {
+    lines.iter().map(|(name, value)| format!("{name:<13} {value}\n")).collect::<Vec<_>>().concat()
 }
 
 fn table(heads: &[&str]) -> Table {

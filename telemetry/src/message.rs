@@ -7,6 +7,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::wire::{EstimateWire, SampleWire};
 
+/// Ticks a second: the rate of samples and estimates, where nothing else was asked for.
+pub const TICK_HZ: f64 = 100.0;
+
 /// Segments of the arm.
 pub const SEGMENTS: usize = 6;
 

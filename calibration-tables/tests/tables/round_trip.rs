@@ -98,7 +98,7 @@ fn rmse() -> impl Strategy<Value = RmseKeys> {
 
 fn tuning() -> impl Strategy<Value = TuningKeys> {
     let sessions = prop::collection::vec(any::<String>(), 1..4);
-    let stopped = prop_oneof![Just(Stopped::Converged), Just(Stopped::Interrupted), Just(Stopped::Iterations)];
+    let stopped = prop_oneof![Just(Stopped::Converged), Just(Stopped::Interrupted)];
     let iterations = (0..=300_u64, 0..=300_u64);
     (sessions, iterations, stopped, [rmse(), rmse(), rmse(), rmse()]).prop_map(
         |(sessions, (iterations, kept), stopped, [before, after, held_back_before, held_back_after])| TuningKeys {

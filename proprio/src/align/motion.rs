@@ -11,7 +11,7 @@ use super::frames::{Frames, near};
 use super::signal::{Reading, Signal};
 use crate::error::Error;
 use crate::progress::Progress;
-use crate::session::{Needs, Problem, Row, SessionError, SessionReader};
+use crate::session::{Kind, Needs, Problem, Row, SessionError, SessionReader};
 
 /// A sensor and what the camera saw of its motion.
 pub(super) struct Pair {
@@ -69,6 +69,9 @@ impl Readings {
         if !reader.is_regular_file() {
             return Err(refuse(None, Problem::NotAFile).into());
         }
+        if reader.kind() != Kind::Csv {
+            return Err(refuse(None, Problem::NotCsv).into());
+        }
         if let Some(column) = reader.truth_column() {
             return Err(refuse(Some(1), Problem::HasTruth(column.to_owned())).into());
         }
@@ -94,7 +97,7 @@ impl Readings {
         for ((imu, bend), (imu_read, bend_read)) in
             self.imu.iter_mut().zip(&mut self.bend).zip(sample.imu.iter().zip(&sample.bend))
         {
-            if let Some(heading) = imu_read.and_then(ImuReading::heading) {
+            if let Some(heading) = imu_read.as_ref().and_then(ImuReading::heading) {
                 imu.push((time_s, heading.rad()));
             }
             for (sensor, counts) in bend.iter_mut().zip(bend_read) {

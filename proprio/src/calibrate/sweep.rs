@@ -81,7 +81,7 @@ impl Sweep {
             self.theta[i].push(row.true_theta(i));
             let truth = row.truth[i].and_then(|pose| pose.heading_rad).map(Phase::from_rad);
             self.heading[i].push(unwrap.truth[i].read(truth).map(Turns::rad));
-            let imu = row.sample.imu[i].and_then(ImuReading::heading);
+            let imu = row.sample.imu[i].as_ref().and_then(ImuReading::heading);
             self.imu[i].push(unwrap.imu[i].read(imu).map(Turns::rad));
         }
         for sensor in &mut self.sensors {

@@ -3,9 +3,15 @@
 mod align;
 mod calibrate;
 mod completions;
+mod convert;
+mod link;
+mod ports;
+mod record;
+mod recover;
 mod replay;
 mod report;
 mod simulate;
+mod status;
 mod tune;
 
 use std::io::{self, Write};
@@ -23,6 +29,11 @@ impl Command {
             Self::Replay(args) => replay::run(&args),
             Self::Report(args) => report::run(&args),
             Self::Simulate(args) => simulate::run(&args),
+            Self::Ports(args) => ports::run(&args),
+            Self::Status(args) => status::run(&args),
+            Self::Record(args) => record::run(&args),
+            Self::Convert(args) => convert::run(&args),
+            Self::Recover(args) => recover::run(&args),
             Self::Completions(args) => completions::run(&args),
         }
     }
@@ -35,6 +46,11 @@ fn print(text: &str) -> Result<(), Error> {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(Error::Stdout(error)),
         _ => Ok(()),
     }
+}
+
+/// A report as JSON, on one line.
+fn json(report: &impl serde::Serialize) -> String {
+    serde_json::to_string(report).expect("numbers and names have a form in JSON") + "\n"
 }
 
 /// Writes a line to standard error, if that can be written at all.

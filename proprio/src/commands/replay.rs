@@ -7,9 +7,10 @@ use proprio::error::Error;
 use proprio::estimates::EstimateWriter;
 use proprio::figures::{AllFigures, ByMethod, SessionFigures};
 use proprio::output::OutputFile;
-use proprio::replay::{Extent, NamedTable, replay};
+use proprio::recording::Comparison;
+use proprio::replay::{Extent, NamedTable, Outcome, replay};
 use proprio::score::Score;
-use proprio::session::LAST_LINE;
+use proprio::session::{LAST_LINE, Row};
 
 use crate::cli::Replay;
 use crate::tables;
@@ -23,9 +24,10 @@ pub fn run(args: &Replay) -> Result<(), Error> {
     let out = args.out.as_deref().map(|out| OutputFile::create(out, &inputs)).transpose()?;
     let mut out = out.map(|file| EstimateWriter::new(file, &table.file)).transpose()?;
     let figures = if args.float {
-        replay_all::<f64>(&args.sessions, &table, out.as_mut())?
+        // The board's fixed point says nothing of floats.
+        replay_all::<f64>(&args.sessions, &table, out.as_mut(), None)?
     } else {
-        replay_all::<Q>(&args.sessions, &table, out.as_mut())?
+        replay_all::<Q>(&args.sessions, &table, out.as_mut(), Some(Comparison::add))?
     };
     match saturations() {
         0 => {}
@@ -33,36 +35,53 @@ pub fn run(args: &Replay) -> Result<(), Error> {
             "fixed point saturated {times} times: a reading or the table is out of range; compare with --float"
         )),
     }
-    let text = if args.json {
-        serde_json::to_string(&figures).expect("numbers and names have a form in JSON") + "\n"
-    } else {
-        tables::replay(&figures)
-    };
+    let text = if args.json { super::json(&figures) } else { tables::replay(&figures) };
     // The file gets its name last, so that a command that fails leaves none.
     super::print(&text)?;
     out.map_or(Ok(()), EstimateWriter::finish)
 }
 
+/// Whether the replay is what the board has estimated.
+fn tell(path: &Path, recorded: &Comparison) {
+    let line = format!("{}: {recorded}", path.display());
+    if recorded.is_exact() { super::say(&line) } else { super::warn(&line) }
+}
+
+/// Compares what the board has estimated of a row.
+type Compare<S> = fn(&mut Comparison, &Row, &Outcome<S>);
+
 fn replay_all<S: Scalar>(
     sessions: &[PathBuf],
     table: &NamedTable,
     mut out: Option<&mut EstimateWriter>,
+    compare: Option<Compare<S>>,
 ) -> Result<AllFigures, Error> {
     let length_mm = table.file.length_mm();
     let mut all = Score::new(length_mm);
     let mut each = Vec::new();
     for path in sessions {
         let mut score = Score::new(length_mm);
-        let Extent { samples, seconds, ends_with_line } = replay::<S>(path, table, |row, outcome| {
+        let mut comparison = Comparison::default();
+        let Extent { samples, seconds, ends_with_line, recording } = replay::<S>(path, table, |row, outcome| {
             score.add(row, outcome);
+            if let Some(compare) = compare {
+                compare(&mut comparison, row, outcome);
+            }
             out.as_mut().map_or(Ok(()), |out| out.write(outcome))
         })?;
         if !ends_with_line {
             super::warn(&format_args!("{}: {LAST_LINE}", path.display()));
         }
+        let recorded = recording.filter(|_| compare.is_some()).map(|recording| {
+            comparison.table_matches = recording.table_matches;
+            comparison
+        });
+        if let Some(recorded) = &recorded {
+            tell(path, recorded);
+        }
         all.append(&score);
         let figures = ByMethod { methods: score.figures() };
-        each.push(SessionFigures { path: path.display().to_string(), samples, seconds, figures });
+        each.push(SessionFigures { path: path.display().to_string(), samples, seconds, figures, recorded });
     }
     Ok(AllFigures { sessions: each, all: ByMethod { methods: all.figures() }, length_mm })
 }

@@ -40,9 +40,6 @@ fn warnings(record: &TuningKeys) -> impl Iterator<Item = String> {
     let early = match stopped {
         Stopped::Converged => None,
         Stopped::Interrupted => Some(format!("interrupted after {iterations} iterations, before the RMSE converged")),
-        Stopped::Iterations => {
-            Some(format!("the RMSE still falls after {iterations} iterations; tune the table again"))
-        }
     };
     let noise = match kept {
         _ if kept == iterations => None,

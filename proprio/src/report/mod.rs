@@ -120,6 +120,7 @@ impl<'t> Gathering<'t> {
             samples: session.extent.samples,
             seconds: session.extent.seconds,
             figures: ByMethod { methods: session.score.figures() },
+            recorded: None,
         };
         let crc32 = self.table.bake::<Q>(file.rate_hz)?.checksum();
         Ok(Report {

@@ -6,6 +6,7 @@ use calibration_tables::MAX_SEGMENTS;
 
 use super::columns::CameraColumns;
 use super::csv_file::CsvFile;
+use super::source::Source;
 use super::{Pose, Problem, SessionError, cell};
 
 /// One frame. Poses are in the camera's frame; `None` where a marker was not seen.
@@ -32,7 +33,7 @@ impl CameraReader {
     /// # Errors
     /// Any [`SessionError`] of the header.
     pub fn open(path: &Path, segments: usize) -> Result<Self, SessionError> {
-        let file = CsvFile::open(path)?;
+        let file = CsvFile::new(Source::open(path)?)?;
         let columns = CameraColumns::find(file.names(), segments).map_err(|problem| file.header_error(problem))?;
         Ok(Self { file, columns, last_time_s: f64::NEG_INFINITY })
     }

@@ -51,6 +51,13 @@ pub(super) fn time_us(cell: &str) -> Result<u64, Problem> {
     }
 }
 
+/// The tare's number.
+pub(super) fn tare(cell: &str) -> Result<Option<u64>, Problem> {
+    let cell = cell.trim();
+    let number = |_| Problem::Tare(shown(cell));
+    if cell.is_empty() { Ok(None) } else { cell.parse().map(Some).map_err(number) }
+}
+
 /// A time by a clock that may start anywhere, s.
 pub(super) fn clock_s(cell: &str) -> Result<f64, Problem> {
     let seconds = number(cell)?.ok_or(Problem::NoTime)?;

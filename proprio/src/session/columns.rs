@@ -49,6 +49,8 @@ impl From<[Column; 3]> for TruthColumns {
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Columns {
     pub time: usize,
+    /// Number that changes where the estimator starts anew.
+    pub tare: Option<usize>,
     pub segments: Vec<SegmentColumns>,
 }
 
@@ -68,14 +70,17 @@ pub(crate) const SENSOR_NAMES: [char; SENSORS_PER_SEGMENT] = ['a', 'b'];
 /// Columns of a pose, in both units.
 const POSE_PARTS: [&str; 6] = ["x_mm", "x_m", "y_mm", "y_m", "heading_deg", "heading_rad"];
 
-struct Header<'h> {
+/// The column of the tare's number.
+pub(crate) const TARE: &str = "tare";
+
+struct Places<'h> {
     places: HashMap<&'h str, usize>,
 }
 
 impl Columns {
     /// Finds the columns that are needed. Unknown ones are ignored; those of a segment beyond the last are refused.
     pub fn find(names: &[String], needs: &Needs) -> Result<Self, Problem> {
-        let header = Header::of(names, needs.bend.len())?;
+        let header = Places::of(names, needs.bend.len())?;
         let time = header.required("time_s")?;
         let has_headings = needs.truth || (1..=needs.bend.len()).any(|i| header.truth_heading(i).is_ok());
         let segment = |(i, sensors): (usize, &Option<usize>)| {
@@ -85,14 +90,15 @@ impl Columns {
                 truth: if has_headings { Some(header.truth(i + 1)?.into()) } else { header.place(i + 1)? },
             })
         };
-        Ok(Self { time, segments: needs.bend.iter().enumerate().map(segment).collect::<Result<_, _>>()? })
+        let tare = header.optional(TARE);
+        Ok(Self { time, tare, segments: needs.bend.iter().enumerate().map(segment).collect::<Result<_, _>>()? })
     }
 }
 
 impl CameraColumns {
     /// Finds the columns of an arm of `segments` segments, all of which are needed, and of the base where it has any.
     pub fn find(names: &[String], segments: usize) -> Result<Self, Problem> {
-        let header = Header::of(names, segments)?;
+        let header = Places::of(names, segments)?;
         Ok(Self {
             time: header.required("time_s")?,
             ends: (1..=segments).map(|i| header.truth(i)).collect::<Result<_, _>>()?,
@@ -101,7 +107,7 @@ impl CameraColumns {
     }
 }
 
-impl<'h> Header<'h> {
+impl<'h> Places<'h> {
     /// Refuses columns that are there twice and those of a segment beyond the last.
     fn of(names: &'h [String], segments: usize) -> Result<Self, Problem> {
         let mut places = HashMap::new();
@@ -187,9 +193,9 @@ impl<'h> Header<'h> {
     }
 }
 
-/// The segment that a known column belongs to; 0 for the time, `None` for a column that is none of ours.
-fn segment_of(name: &str) -> Option<usize> {
-    if name == "time_s" {
+/// The segment that a known column belongs to; 0 for those of the whole arm, `None` for a column that is none of ours.
+pub(super) fn segment_of(name: &str) -> Option<usize> {
+    if name == "time_s" || name == TARE {
         return Some(0);
     }
     let (stem, rest) = name.split_once('_')?;

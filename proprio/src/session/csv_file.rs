@@ -1,12 +1,13 @@
 //! A CSV file: its header and its rows, and errors that name the file, the line and the column.
 
 use std::fs::File;
-use std::io::{self, BufReader, Read, Seek, SeekFrom};
+use std::io::{self, BufReader, Read};
 use std::path::{Path, PathBuf};
 
 use csv::StringRecord;
 
 use super::columns::{Column, TruthColumns};
+use super::source::Source;
 use super::{Pose, Problem, SessionError, Truth, cell};
 
 /// A CSV file that is being read, at one of its rows.
@@ -14,48 +15,26 @@ pub(super) struct CsvFile {
     path: PathBuf,
     size_bytes: u64,
     names: Vec<String>,
-    csv: csv::Reader<File>,
+    csv: csv::Reader<Box<dyn Read>>,
     record: StringRecord,
     ends_with_line: bool,
-    is_regular_file: bool,
 }
 
 impl CsvFile {
-    /// Opens a file and reads its header.
-    pub fn open(path: &Path) -> Result<Self, SessionError> {
-        let fail = |problem| SessionError { path: path.to_owned(), line: None, column: None, problem };
-        let mut file = File::open(path).map_err(|error| fail(Problem::Read(error)))?;
-        let metadata = file.metadata().map_err(|error| fail(Problem::Read(error)))?;
-        if metadata.is_dir() {
-            return Err(fail(Problem::Directory));
-        }
-        let is_regular_file = metadata.is_file();
-        let ends_with_line =
-            !is_regular_file || ends_with_line(&mut file).map_err(|error| fail(Problem::Read(error)))?;
-        let mut csv = csv::ReaderBuilder::new().buffer_capacity(1 << 16).from_reader(file);
-        let header = csv.headers().map_err(|error| csv_error(path, error))?;
-        if header.iter().all(str::is_empty) {
-            return Err(fail(Problem::NoHeader));
-        }
-        let names = header.iter().map(|name| name.trim().to_owned()).collect();
-        Ok(Self {
-            path: path.to_owned(),
-            size_bytes: metadata.len(),
-            names,
-            csv,
-            record: StringRecord::new(),
-            ends_with_line,
-            is_regular_file,
-        })
+    /// Reads the header.
+    pub fn new(mut source: Source) -> Result<Self, SessionError> {
+        let (path, size_bytes, ends_with_line) = (source.path.clone(), source.size_bytes, source.ends_with_line()?);
+        let mut csv = csv::ReaderBuilder::new().buffer_capacity(1 << 16).from_reader(source.into_bytes()?);
+        let header = csv.headers().map_err(|error| csv_error(&path, error))?;
+        let names: Vec<String> = header.iter().map(|name| name.trim().to_owned()).collect();
+        let has_header = !header.iter().all(str::is_empty);
+        let file = Self { path, size_bytes, names, csv, record: StringRecord::new(), ends_with_line };
+        if has_header { Ok(file) } else { Err(file.error(Problem::NoHeader)) }
     }
 
     /// Names of the columns.
     pub fn names(&self) -> &[String] {
         &self.names
-    }
-
-    pub fn is_regular_file(&self) -> bool {
-        self.is_regular_file
     }
 
     pub fn ends_with_line(&self) -> bool {
@@ -120,16 +99,6 @@ impl CsvFile {
 /// The part to name: the first that is empty, else the first.
 pub(super) fn first_empty(parts: &[Option<f64>]) -> usize {
     parts.iter().position(Option::is_none).unwrap_or(0)
-}
-
-/// Looks at the last byte, and goes back to the first.
-fn ends_with_line(file: &mut File) -> io::Result<bool> {
-    let mut last = [b'\n'];
-    if file.seek(SeekFrom::End(-1)).is_ok() {
-        file.read_exact(&mut last)?;
-        file.rewind()?;
-    }
-    Ok(last == [b'\n'])
 }
 
 /// Line of a row, from 1. The parser counts a line end only when it reads on, which the `\r\n` and the empty lines

@@ -3,6 +3,10 @@
 use std::fmt;
 use std::path::PathBuf;
 
+use telemetry::SEGMENTS;
+
+use crate::recording::ReadError;
+
 /// A problem and where it is.
 #[derive(Debug)]
 pub struct SessionError {
@@ -53,6 +57,9 @@ pub enum Problem {
     /// A session that is to get truth has some.
     #[error("column {0} is there already, expected a session without truth")]
     HasTruth(String),
+    /// A session that is to get columns has none.
+    #[error("is a board's recording, expected a CSV, which gets columns of truth")]
+    NotCsv,
     /// A row has too few or too many cells.
     #[error("the row has {found} cells, the header {expected}")]
     RowLength {
@@ -73,6 +80,9 @@ pub enum Problem {
     /// ADC counts that a 12-bit converter cannot give.
     #[error("{0} counts, expected a whole number from 0 to 4095")]
     Counts(String),
+    /// A tare's number that is none.
+    #[error("tare {0}, expected a whole number that changes where the arm was tared")]
+    Tare(String),
     /// A heading out of range.
     #[error("heading {0}, expected at least 0 and less than a turn")]
     Heading(String),
@@ -96,6 +106,21 @@ pub enum Problem {
         /// Time of this row.
         to_s: f64,
     },
+    /// A recording that cannot be read.
+    #[error(transparent)]
+    Recording(ReadError),
+    /// A recording of which nothing can be saved.
+    #[error("nothing in it is whole: it was cut within its first second")]
+    NothingWhole,
+    /// A recording is of another arm.
+    #[error("is a recording of a board with {SEGMENTS} segments at most, the arm has {0}")]
+    RecordedSegments(usize),
+    /// More segments than a board has.
+    #[error("has {0} segments, a board and its recordings have {SEGMENTS} at most")]
+    TooManySegments(usize),
+    /// A recording without the truth that is needed.
+    #[error("has no truth in its first samples")]
+    NoTruth,
     /// A quaternion of which only some parts are there.
     #[error("the quaternion has an empty part, expected all four or none")]
     PartialQuaternion,
@@ -112,18 +137,21 @@ impl Problem {
     #[must_use]
     pub const fn remedy(&self) -> &'static str {
         match self {
-            Self::Read(_) => "check the name and that you may read it",
+            Self::Read(_) | Self::Recording(ReadError::Read(_)) => "check the name and that you may read it",
             Self::Directory => "name the .csv file in it",
-            Self::NoHeader | Self::NoSamples => "record the session again, or take another",
+            Self::NoHeader | Self::NoSamples | Self::NothingWhole => "record the session again, or take another",
             Self::NotText => "save it as CSV in UTF-8",
             Self::MissingColumn(_) => {
                 "take the arm or table of this session, or add the column; names are as in docs/FORMATS.md, between commas"
             }
             Self::DuplicateColumn(_) => "remove or rename one of them",
-            Self::OtherArm { .. } => "take the arm description or table of the arm that was recorded",
+            Self::OtherArm { .. } | Self::RecordedSegments(_) => {
+                "take the arm description or table of the arm that was recorded"
+            }
             Self::RowLength { .. } => {
                 "the file was cut or edited, or has decimal commas: remove the row, copy the file again, or use points"
             }
+            Self::NotCsv => "make a CSV of it with `proprio convert`",
             Self::HasTruth(_) => "take the session as it was recorded, or use it as it is: it is aligned",
             Self::NoTime | Self::Time(_) | Self::Clock(_) => "give every row its time in seconds",
             Self::NotANumber(_) => "write numbers with a decimal point, and leave the cell of a missing reading empty",
@@ -131,6 +159,15 @@ impl Problem {
             Self::Counts(_) => "write raw ADC counts, and leave the cell of a missing reading empty",
             Self::Truth(_) => "correct the value, or leave all cells of this truth empty",
             Self::NotAFile => "save it as a file first",
+            Self::Tare(_) => "write the number, or remove the column",
+            Self::Recording(ReadError::Cut) => "save what is whole of it with `proprio recover`",
+            Self::Recording(ReadError::OtherForm(_)) => "read it with the proprio of that version",
+            Self::Recording(ReadError::Compressed(_)) => "decompress it (`mcap decompress`)",
+            Self::Recording(ReadError::Damaged(_)) => {
+                "save what is whole of it with `proprio recover`, or take another"
+            }
+            Self::TooManySegments(_) => "keep it as CSV",
+            Self::NoTruth => "give a session with the camera's truth, as docs/FORMATS.md has it",
             Self::Heading(_) => "write headings from 0 up to a full turn: 360 in _deg, 2π in _rad",
             Self::Backwards { .. } => "sort the rows by time; two sessions in one file must be split",
             Self::PartialQuaternion | Self::NotUnit(_) => {

@@ -1,20 +1,26 @@
-//! Recorded sessions: CSV, a row a sample, units in the column names, an empty cell for a missing reading.
+//! Recorded sessions: CSV, a row a sample, units in the column names, an empty cell for a missing reading; or a board's
+//! recording.
 
 mod camera;
 mod cell;
 mod columns;
 mod csv_file;
+mod csv_rows;
 mod error;
+mod header;
 mod reader;
+mod source;
 mod writer;
 
 use calibration_tables::{ArmFile, FileError, MAX_SEGMENTS};
 use estimator_core::Sample;
 
 pub use camera::{CameraReader, Frame};
-pub(crate) use columns::SENSOR_NAMES;
+pub(crate) use columns::{SENSOR_NAMES, TARE};
 pub use error::{Problem, SessionError};
+pub use header::Header;
 pub use reader::SessionReader;
+pub use source::Kind;
 pub use writer::{CameraWriter, ImuColumns, SessionWriter};
 
 /// What to say of a file that does not end with a line end.
@@ -49,6 +55,21 @@ pub struct Row {
     pub sample: Sample<MAX_SEGMENTS>,
     /// Where each segment's end was; `None` where the camera did not see it.
     pub truth: [Option<Truth>; MAX_SEGMENTS],
+    /// Whether the estimator starts anew before it.
+    pub starts: bool,
+    /// Where it is from a board's recording: what the board said of it.
+    pub board: Option<OnBoard>,
+}
+
+/// What a board said of one sample.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct OnBoard {
+    /// Number of the tick.
+    pub tick: u32,
+    /// Whether every sample since the estimator's start is in the recording, so that a replay must give the same.
+    pub complete: bool,
+    /// The board's estimate, where it was received.
+    pub estimate: Option<telemetry::Estimate>,
 }
 
 impl Row {

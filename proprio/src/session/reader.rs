@@ -1,25 +1,51 @@
 //! Reads a session row by row, in memory that does not grow with its length.
 
 use std::collections::VecDeque;
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 
-use calibration_tables::MAX_SEGMENTS;
-use estimator_core::{ImuReading, Sample};
+use telemetry::{Hello, SEGMENTS};
 
-use super::columns::{Column, Columns, ImuColumn, is_truth};
-use super::csv_file::{CsvFile, first_empty};
-use super::{Needs, Problem, Row, SessionError, cell};
+use super::csv_file::CsvFile;
+use super::csv_rows::CsvRows;
+use super::source::{Kind, Source};
+use super::{Needs, Problem, Row, SessionError};
+use crate::recording::{Item, RawReader, ReadError, Reader, RecordedRows};
 
 /// Rows at the start whose time stamps tell the sample rate.
 const RATE_ROWS: usize = 1001;
 
-/// A session that is being read.
+/// A session that is being read, of any [`Kind`].
 pub struct SessionReader {
-    file: CsvFile,
-    columns: Columns,
-    last_time_us: u64,
+    path: PathBuf,
+    size_bytes: u64,
+    rows: Rows,
     ahead: VecDeque<Row>,
     rate_hz: Option<f64>,
+    is_regular_file: bool,
+    bend_sensors: Vec<[bool; 2]>,
+    kind: Kind,
+}
+
+type Items = Box<dyn Iterator<Item = Result<Item, ReadError>>>;
+
+enum Rows {
+    Csv(Box<CsvRows>),
+    Recorded(Box<RecordedRows<Items>>, Arc<AtomicU64>),
+}
+
+impl Rows {
+    fn new(source: Source, needs: &Needs) -> Result<Self, SessionError> {
+        let kind = source.kind;
+        if kind == Kind::Csv {
+            return Ok(Self::Csv(Box::new(CsvRows::new(CsvFile::new(source)?, needs)?)));
+        }
+        let (bytes, position) = source.into_counted()?;
+        let items: Items =
+            if kind == Kind::Raw { Box::new(RawReader::new(bytes)) } else { Box::new(Reader::new(bytes)) };
+        Ok(Self::Recorded(Box::new(RecordedRows::new(items)), position))
+    }
 }
 
 impl SessionReader {
@@ -28,24 +54,90 @@ impl SessionReader {
     /// # Errors
     /// Any [`SessionError`] of the header and the first rows.
     pub fn open(path: &Path, needs: &Needs) -> Result<Self, SessionError> {
-        let file = CsvFile::open(path)?;
-        let columns = Columns::find(file.names(), needs).map_err(|problem| file.header_error(problem))?;
-        let mut reader = Self { file, columns, last_time_us: 0, ahead: VecDeque::new(), rate_hz: None };
-        reader.look_ahead()?;
+        let source = Source::open(path)?;
+        let (kind, size_bytes, is_regular_file) = (source.kind, source.size_bytes, source.is_regular_file);
+        let segments = needs.bend.len();
+        if kind != Kind::Csv && segments > SEGMENTS {
+            return Err(source.error(Problem::RecordedSegments(segments)));
+        }
+        let rows = Rows::new(source, needs)?;
+        let bend_sensors = match &rows {
+            Rows::Csv(csv) => csv.bend_sensors(),
+            Rows::Recorded(..) => vec![[false; 2]; segments],
+        };
+        let mut reader = Self {
+            path: path.to_owned(),
+            size_bytes,
+            rows,
+            ahead: VecDeque::new(),
+            rate_hz: None,
+            is_regular_file,
+            bend_sensors,
+            kind,
+        };
+        reader.look_ahead(needs)?;
         Ok(reader)
     }
 
-    fn look_ahead(&mut self) -> Result<(), SessionError> {
+    fn look_ahead(&mut self, needs: &Needs) -> Result<(), SessionError> {
         while self.ahead.len() < RATE_ROWS {
             let Some(row) = self.read_row()? else { break };
             self.ahead.push_back(row);
         }
         if self.ahead.is_empty() {
-            return Err(self.file.error(Problem::NoSamples));
+            return Err(self.error(Problem::NoSamples));
         }
         let times = self.ahead.iter().map(|row| row.sample.time_us);
         self.rate_hz = rate_hz(times.clone().zip(times.skip(1)).map(|(from, to)| to - from).collect());
+        if matches!(self.rows, Rows::Recorded(..)) {
+            // A board has no columns: the sensors are those that it has read at all.
+            for (i, present) in self.bend_sensors.iter_mut().enumerate() {
+                let reads = |place: usize| self.ahead.iter().any(|row| row.sample.bend[i][place].is_some());
+                *present = [reads(0), reads(1)];
+            }
+            if needs.truth && !self.has_true_headings() {
+                return Err(self.error(Problem::NoTruth));
+            }
+        }
         Ok(())
+    }
+
+    /// What the file is.
+    #[must_use]
+    pub fn kind(&self) -> Kind {
+        self.kind
+    }
+
+    /// Whether there is truth in the first rows.
+    #[must_use]
+    pub fn has_truth(&self) -> bool {
+        self.ahead.iter().any(|row| row.truth.iter().any(Option::is_some))
+    }
+
+    /// Whether that truth has headings.
+    #[must_use]
+    pub fn has_true_headings(&self) -> bool {
+        self.ahead.iter().any(|row| row.truth.iter().flatten().any(|end| end.heading_rad.is_some()))
+    }
+
+    /// The first column of truth in a CSV, if there is any.
+    #[must_use]
+    pub fn truth_column(&self) -> Option<&str> {
+        match &self.rows {
+            Rows::Csv(csv) => csv.truth_column(),
+            Rows::Recorded(..) => None,
+        }
+    }
+
+    /// Segments from the base to the last one of which a sensor was read, or the truth seen, in the first rows.
+    #[must_use]
+    pub fn segments_read(&self) -> usize {
+        let is_read = |i: &usize| {
+            self.ahead.iter().any(|Row { sample, truth, .. }| {
+                sample.bend[*i].iter().any(Option::is_some) || sample.imu[*i].is_some() || truth[*i].is_some()
+            })
+        };
+        (0..self.bend_sensors.len()).rev().find(is_read).map_or(0, |last| last + 1)
     }
 
     /// Sample rate: that of the mean step of the first rows without gaps, for jitter and rounded time stamps; where an
@@ -63,30 +155,40 @@ impl SessionReader {
     /// Whether the session can be read twice, which a pipe cannot.
     #[must_use]
     pub fn is_regular_file(&self) -> bool {
-        self.file.is_regular_file()
+        self.is_regular_file
     }
 
     /// Which bend sensors of each segment the session has.
     pub fn bend_sensors(&self) -> impl Iterator<Item = [bool; 2]> {
-        self.columns.segments.iter().map(|segment| segment.bend.map(|column| column.is_some()))
-    }
-
-    /// The first column of truth, if there is any.
-    #[must_use]
-    pub fn truth_column(&self) -> Option<&str> {
-        self.file.names().iter().map(String::as_str).find(|name| is_truth(name))
+        self.bend_sensors.iter().copied()
     }
 
     /// Whether the last line is ended; if not, its last number may have been cut.
     #[must_use]
     pub fn ends_with_line(&self) -> bool {
-        self.file.ends_with_line()
+        match &self.rows {
+            Rows::Csv(csv) => csv.ends_with_line(),
+            Rows::Recorded(..) => true,
+        }
     }
 
     /// How far the file was read, and its size, in bytes.
     #[must_use]
     pub fn progress(&self) -> (u64, u64) {
-        self.file.progress()
+        let position = match &self.rows {
+            Rows::Csv(csv) => csv.position(),
+            Rows::Recorded(_, position) => position.load(Ordering::Relaxed),
+        };
+        (position, self.size_bytes)
+    }
+
+    /// Where it is from a board: its last `Hello` so far, if there was one.
+    #[must_use]
+    pub fn hello(&self) -> Option<&Hello> {
+        match &self.rows {
+            Rows::Csv(_) => None,
+            Rows::Recorded(rows, _) => rows.hello(),
+        }
     }
 
     /// The next row, or `None` at the end.
@@ -101,36 +203,15 @@ impl SessionReader {
     }
 
     fn read_row(&mut self) -> Result<Option<Row>, SessionError> {
-        if !self.file.advance()? {
-            return Ok(None);
-        }
-        let time_us = self.file.cell(self.columns.time, cell::time_us)?;
-        if time_us < self.last_time_us {
-            let (from_s, to_s) = (self.last_time_us as f64 / 1e6, time_us as f64 / 1e6);
-            return Err(self.file.cell_error(self.columns.time, Problem::Backwards { from_s, to_s }));
-        }
-        self.last_time_us = time_us;
-        let mut row = Row { sample: Sample::missing(time_us), truth: [None; MAX_SEGMENTS] };
-        let sample = row.sample.bend.iter_mut().zip(&mut row.sample.imu).zip(&mut row.truth);
-        for (segment, ((bend, imu), truth)) in self.columns.segments.iter().zip(sample) {
-            for (counts, column) in bend.iter_mut().zip(segment.bend) {
-                *counts = column.map_or(Ok(None), |column| self.file.cell(column, cell::counts))?;
-            }
-            *imu = self.imu(segment.imu)?;
-            *truth = segment.truth.map_or(Ok(None), |columns| self.file.truth(columns))?;
-        }
-        Ok(Some(row))
+        let row = match &mut self.rows {
+            Rows::Csv(csv) => return csv.next_row(),
+            Rows::Recorded(rows, _) => rows.next_row(),
+        };
+        row.map_err(|error| self.error(Problem::Recording(error)))
     }
 
-    fn imu(&self, column: ImuColumn) -> Result<Option<ImuReading>, SessionError> {
-        match column {
-            ImuColumn::Heading(Column { index, factor }) => self.file.cell(index, |text| cell::heading(text, factor)),
-            ImuColumn::Quaternion(columns) => {
-                let [w, x, y, z] = columns.map(|index| self.file.cell(index, cell::number));
-                let parts = [w?, x?, y?, z?];
-                cell::quaternion(parts).map_err(|problem| self.file.cell_error(columns[first_empty(&parts)], problem))
-            }
-        }
+    fn error(&self, problem: Problem) -> SessionError {
+        SessionError { path: self.path.clone(), line: None, column: None, problem }
     }
 }
 

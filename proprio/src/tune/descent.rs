@@ -52,7 +52,7 @@ pub(super) fn descend(
             return Ok(Stopped::Converged);
         }
         if here.number == MAX_ITERATIONS {
-            return Ok(Stopped::Iterations);
+            return Err(TuningError::NotConverged { iterations: MAX_ITERATIONS });
         }
         losses.push(loss);
         memory.update_hessian(&here.found.gradient, &here.place);

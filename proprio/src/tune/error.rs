@@ -35,6 +35,12 @@ pub enum TuningError {
         /// Root mean square distance of the tip from the chain of the true bend angles, % of the arm's length.
         percent: f64,
     },
+    /// The errors fall on and on.
+    #[error("the filters do not converge: their RMSE still falls after {iterations} iterations, expected 30 to 50")]
+    NotConverged {
+        /// Iterations after which descent is given up.
+        iterations: u64,
+    },
     /// The errors are no numbers.
     #[error("the errors of the filters are not finite, expected some mm and degrees")]
     NotFinite,
@@ -52,6 +58,9 @@ impl TuningError {
             Self::TooFewSamples { .. } => "record a longer session, with the camera seeing the tip to the end",
             Self::TruthMisfit { .. } => {
                 "x is to the right, y along the base, headings clockwise from y: check the axes and the arm's lengths"
+            }
+            Self::NotConverged { .. } => {
+                "make the table again with `proprio calibrate`, and take a session in which the arm moves as in use"
             }
             Self::NotFinite => "make the table again with `proprio calibrate`",
         }

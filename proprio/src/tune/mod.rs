@@ -78,7 +78,7 @@ impl<'t> Tuner<'t> {
     /// Descends until the RMSE converges, or until `is_interrupted` after an iteration.
     ///
     /// # Errors
-    /// [`Error::Tuning`] where the RMSE is no number.
+    /// [`Error::Tuning`] where the RMSE is no number, or falls on and on.
     pub fn tune(&self, is_interrupted: impl Fn() -> bool) -> Result<Tuning, Error> {
         let mut progress = Progress::new("tuning".to_owned(), MAX_ITERATIONS);
         let start = self.objective.start(&self.table.file);

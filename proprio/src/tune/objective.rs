@@ -18,7 +18,7 @@ use super::Dual;
 use super::errors::{End, Errors, ends};
 use super::filters::{Filters, SegmentGradient, SegmentNoises};
 use super::parameters::{PARAMETERS, Place, Ranges};
-use super::training::Training;
+use super::training::{Moment, Training};
 
 /// The sessions, and the arm that they are of.
 #[derive(Debug)]
@@ -125,10 +125,17 @@ impl Objective {
     }
 
     fn session(&self, session: &Training, noises: &[SegmentNoises]) -> (SessionErrors, Gradient) {
-        let mut filters: Vec<Filters> = self.pccs.iter().zip(noises).map(|(pcc, of)| Filters::new(pcc, of)).collect();
+        let start = || -> Vec<Filters> {
+            let segments = self.pccs.iter().zip(noises);
+            segments.map(|(pcc, of)| Filters::new(pcc, of)).collect()
+        };
+        let mut filters = start();
         let (mut errors, mut gradient) = (SessionErrors::default(), Gradient::new(filters.len()));
         let mut links: Vec<Option<Link<f64>>> = Vec::new();
-        for (is_held_back, measured) in session.rows() {
+        for Moment { is_held_back, starts, measured } in session.rows() {
+            if starts {
+                filters = start();
+            }
             links.clear();
             links.extend(filters.iter_mut().zip(measured).map(|(filters, measured)| filters.step(measured)));
             let ends = ends(chain(links.iter().copied()), measured);

@@ -173,7 +173,7 @@ fn descent_is_given_up_where_there_is_no_bottom() {
         iterations = iterate.number;
         true
     });
-    assert_eq!((stopped, iterations), (Ok(Stopped::Iterations), MAX_ITERATIONS));
+    assert_eq!((stopped, iterations), (Err(TuningError::NotConverged { iterations: MAX_ITERATIONS }), MAX_ITERATIONS));
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use estimator_core::{Estimator, Pcc};
+use estimator_core::Estimator;
 
 use super::error::TuningError;
 use crate::calibrate::{MISFIT_PERCENT, truth_misfit};
@@ -36,6 +36,18 @@ pub(super) struct Training {
     misfit_percent: f64,
     segments: usize,
     measured: Vec<Measured>,
+    /// Rows before which the estimator starts anew.
+    starts: Vec<bool>,
+}
+
+/// One sample.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Moment<'t> {
+    pub is_held_back: bool,
+    /// Whether the filters start anew before it.
+    pub starts: bool,
+    /// Its segments.
+    pub measured: &'t [Measured],
 }
 
 impl Training {
@@ -46,19 +58,21 @@ impl Training {
         let baked = table.bake::<f64>(rate_hz)?;
         let baked = baked.table();
         let mut estimator: Box<HostEstimator<f64>> = Box::new(Estimator::new(&baked).expect("the file was checked"));
-        let pccs: Vec<Pcc<f64>> = baked.segments.iter().map(Pcc::new).collect();
 
         let mut progress = Progress::new(format!("reading {}", session.display()), reader.progress().1);
-        let (mut measured, mut misfit, mut tips) = (Vec::new(), 0.0, 0.0);
+        let (mut measured, mut starts, mut misfit, mut tips) = (Vec::new(), Vec::new(), 0.0, 0.0);
         while let Some(row) = reader.next_row()? {
             if let Some(distance) = truth_misfit(&row, baked.segments) {
                 (misfit, tips) = (misfit + distance * distance, tips + 1.0);
             }
+            if row.starts {
+                estimator.start().expect("the file was checked");
+            }
+            starts.push(row.starts);
             let estimate = estimator.step(&row.sample);
-            let segments = estimate.segments.iter().zip(&pccs).zip(row.truth);
-            measured.extend(segments.map(|((segment, pcc), truth)| {
-                let [imu_c, bend] =
-                    [segment.imu_c, segment.bend].map(|link| link.map(|link| pcc.within_a_turn(link).theta.rest));
+            measured.extend(estimate.segments.iter().zip(row.truth).map(|(segment, truth)| {
+                // Without whole turns, as the filters take them.
+                let [imu_c, bend] = [segment.imu_c, segment.bend].map(|link| link.map(|link| link.theta.rest));
                 Measured { imu_c, bend, truth }
             }));
             progress.set(reader.progress().0);
@@ -68,16 +82,18 @@ impl Training {
             rate_hz,
             ends_with_line: reader.ends_with_line(),
             misfit_percent: (misfit / f64::max(tips, 1.0)).sqrt() * 1e5 / table.file.length_mm(),
-            segments: pccs.len(),
+            segments: baked.segments.len(),
             measured,
+            starts,
         })
     }
 
-    /// All samples, and whether they are held back.
-    pub fn rows(&self) -> impl Iterator<Item = (bool, &[Measured])> {
+    /// All samples.
+    pub fn rows(&self) -> impl Iterator<Item = Moment<'_>> {
         let rows = self.measured.chunks_exact(self.segments);
         let seen = rows.len() - rows.len() / HELD_BACK;
-        rows.enumerate().map(move |(row, segments)| (row >= seen, segments))
+        let rows = rows.zip(&self.starts).enumerate();
+        rows.map(move |(row, (measured, starts))| Moment { is_held_back: row >= seen, starts: *starts, measured })
     }
 
     /// An error of this session.
@@ -96,8 +112,8 @@ impl Training {
 
     /// From the smallest to the largest true heading of one segment's end.
     fn heading_range_deg(&self, segment: usize) -> f64 {
-        let rows = self.rows().filter(|(is_held_back, _)| !is_held_back);
-        let headings = rows.filter_map(|(_, segments)| segments[segment].truth?.heading_rad);
+        let rows = self.rows().filter(|moment| !moment.is_held_back);
+        let headings = rows.filter_map(|moment| moment.measured[segment].truth?.heading_rad);
         let [lo, hi] = headings.fold([f64::INFINITY, f64::NEG_INFINITY], |[lo, hi], h| [lo.min(h), hi.max(h)]);
         (hi - lo).to_degrees()
     }

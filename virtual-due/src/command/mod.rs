@@ -1,5 +1,6 @@
 //! What the command line says, and the run it asks for.
 
+#[cfg(unix)]
 mod pty;
 mod run;
 mod stdio;
@@ -66,6 +67,7 @@ enum Serial {
     /// This process' input and output. A file is read at the port's baud rate in virtual time.
     Stdio,
     /// A pseudo-terminal, whose path is printed. Opening it resets the board, as it does on a Due.
+    #[cfg(unix)]
     Pty,
 }
 
@@ -106,6 +108,7 @@ impl Cli {
         let mut run = Run::new(machine, arguments.seconds, paced);
         match arguments.serial {
             Serial::Stdio => run.execute(&mut stdio::Stdio::new()?)?,
+            #[cfg(unix)]
             Serial::Pty => {
                 let mut pty = pty::Pty::new()?;
                 eprintln!("serial port: {}", pty.path());

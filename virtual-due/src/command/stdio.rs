@@ -35,9 +35,11 @@ impl Stdio {
 
 /// Whether standard input is an ordinary file.
 fn is_file() -> std::io::Result<bool> {
-    use std::os::fd::AsFd;
-    let input = std::fs::File::from(stdin().as_fd().try_clone_to_owned()?);
-    Ok(input.metadata()?.is_file())
+    #[cfg(unix)]
+    let input = std::os::fd::AsFd::as_fd(&stdin()).try_clone_to_owned()?;
+    #[cfg(windows)]
+    let input = std::os::windows::io::AsHandle::as_handle(&stdin()).try_clone_to_owned()?;
+    Ok(std::fs::File::from(input).metadata()?.is_file())
 }
 
 impl Line for Stdio {

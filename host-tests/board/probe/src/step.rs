@@ -36,6 +36,8 @@ const SEGMENT: Segment<Q> = Segment {
     offset: Q::from_f64(0.017),
     offset_at: OffsetAt::End,
     bend: [Some(MAP); SENSORS_PER_SEGMENT],
+    hysteresis: None,
+    alike: None,
     reference: Turns::ZERO,
     orient: NOISE,
     coord: NOISE,
@@ -50,7 +52,7 @@ const fn table(segments: usize) -> Table<'static, Q> {
         sample_rate_millihertz: 100_000,
         threshold: Turns::from_bits(5_965_232),
     };
-    Table { segments: SEGMENTS.split_at(segments).0, tare_samples: TARE, anchor, observer: None }
+    Table { tare_samples: TARE, anchor, ..Table::bare(SEGMENTS.split_at(segments).0) }
 }
 
 /// Tables of 1, 2, 6, 12 and 16 segments.

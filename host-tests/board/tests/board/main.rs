@@ -5,6 +5,8 @@ mod engine;
 mod faults;
 mod last_words;
 mod pressures;
+#[cfg(unix)]
+mod recording;
 mod replay;
 mod requests;
 mod sensors;

@@ -1,0 +1,162 @@
+//! How far the shape may be off: variances of the bend angles, propagated along the chain to the world points.
+//!
+//! Variances are held [`SCALE`] times as large as they are, in rad², rad m and m², so that fixed point has 32 fractional
+//! bits for them: 1 mm² is 4300 steps, and 0.5 rad² or m² are as many as there can be.
+
+use heapless::Vec;
+use nalgebra::Vector2;
+
+use crate::angle::Phase;
+use crate::beyond::Seen;
+use crate::scalar::{Constant, Scalar};
+use crate::table::{OffsetAt, Segment};
+
+/// What variances are multiplied by.
+pub const SCALE: f64 = 64.0;
+
+/// Nothing is said of an angle whose variance is beyond this, 9.5°: the sum along the longest arm would leave fixed point.
+const LARGEST: Constant = Constant::new(1.75);
+
+/// What the angles' and ends' variances are made of, each [`SCALE`] times as large; the same for all segments.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct UncertaintyRule<S> {
+    /// Of θ whatever is known of the drift, rad².
+    pub theta: S,
+    /// Factor on the observer's variance of the bias, which is a share of the measurement's: per quarter turn and
+    /// [`DRIFT_SCALE`](UncertaintyRule::DRIFT_SCALE), rad.
+    pub drift: S,
+    /// Of θ where bend sensors alone tell it, rad².
+    pub bend: S,
+    /// Of θ while something touches the segment, beside the others, rad².
+    pub contact: S,
+    /// Of either coordinate of a segment's end in its own frame, whatever the angle, m².
+    pub end: S,
+}
+
+impl<S> UncertaintyRule<S> {
+    /// What the factor on the bias's variance is divided by, to fit fixed point.
+    pub const DRIFT_SCALE: i32 = 8;
+}
+
+/// What is known of one segment's error.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Uncertainty<S> {
+    /// Variance of θ_i, [`SCALE`] times rad²; `None` where nothing was measured.
+    pub theta: Option<S>,
+    /// Covariance of the segment's end in {W}; `None` from the first unknown angle on.
+    pub end: Option<Covariance<S>>,
+}
+
+/// The errors of the fused shape, from the base to the tip.
+pub type Uncertainties<S, const N: usize> = Vec<Uncertainty<S>, N>;
+
+/// What the variance of one segment's bend angle comes from.
+pub(crate) struct Sources {
+    pub seen: Seen,
+    /// The observer's variance of the bias, as a share of the measurement's in units of 2⁻³⁰.
+    pub drift: i32,
+    pub is_touched: bool,
+}
+
+impl<S: Scalar> UncertaintyRule<S> {
+    /// Variance of θ; `None` where nothing was measured.
+    pub(crate) fn theta(&self, sources: &Sources) -> Option<S> {
+        let measured = match sources.seen {
+            Seen { imu: true, .. } => {
+                // Quarter turns have the same bits.
+                let share = S::from_phase(Phase::from_bits(sources.drift));
+                self.theta + self.drift * share * S::from_int(Self::DRIFT_SCALE)
+            }
+            Seen { imu: false, bend: true } => self.bend,
+            Seen { imu: false, bend: false } => return None,
+        };
+        let theta = if sources.is_touched { measured + self.contact } else { measured };
+        theta.is_within(S::constant(LARGEST)).then_some(theta)
+    }
+}
+
+/// Covariance of a world point, [`SCALE`] times m².
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Covariance<S> {
+    /// Variance of x.
+    pub xx: S,
+    /// Covariance of x and y.
+    pub xy: S,
+    /// Variance of y.
+    pub yy: S,
+}
+
+impl<S: Scalar> Covariance<S> {
+    /// xx, xy and yy in m². For reports.
+    #[must_use]
+    pub fn square_metres(self) -> [f64; 3] {
+        [self.xx, self.xy, self.yy].map(|value| value.to_f64() / SCALE)
+    }
+}
+
+/// How far from a segment's end the point lies that the end turns about as θ changes, as a share of its chord: half of
+/// an arc's, and all of a connector's behind it.
+pub(crate) fn lever<S: Scalar>(segment: &Segment<S>) -> S {
+    let arm = match segment.offset_at {
+        OffsetAt::End => segment.length.half() + segment.offset,
+        OffsetAt::Start => segment.length.half(),
+    };
+    arm / (segment.length + segment.offset)
+}
+
+/// Covariance of the newest heading and point of a chain, segment by segment from the base.
+///
+/// An error of the heading before a segment turns it about its start; one of its own bend angle turns its end about a point
+/// on the way, a `lever` of its chord from the end: half of an arc's, all of a connector's behind it. The errors of the
+/// bend angles are taken to be independent.
+///
+/// ```
+/// use estimator_core::{SCALE, Spread};
+/// use nalgebra::Vector2;
+///
+/// // A straight arm of one arc of 0.1 m whose bend angle may be off by 0.1 rad: its end may be off by 5 mm, sideways.
+/// let mut spread = Spread::<f64>::base();
+/// spread.step(Vector2::new(0.0, 0.1), 0.5, 0.01 * SCALE, 0.0);
+/// let [xx, xy, yy] = spread.end().square_metres();
+/// assert!((xx.sqrt() - 0.005).abs() < 1e-12 && xy.abs() < 1e-12 && yy < 1e-12);
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Spread<S> {
+    heading: S,
+    /// Covariance of heading and point.
+    cross: Vector2<S>,
+    point: Covariance<S>,
+}
+
+impl<S: Scalar> Spread<S> {
+    /// The base, which is where it is.
+    #[must_use]
+    pub fn base() -> Self {
+        let point = Covariance { xx: S::zero(), xy: S::zero(), yy: S::zero() };
+        Self { heading: S::zero(), cross: Vector2::zeros(), point }
+    }
+
+    /// Goes on by one segment: its `chord` from start to end in {W}, its `lever`, the variance of its bend angle, and that
+    /// of what its end is off in either direction whatever the angle ([`SCALE`] times m²).
+    #[inline(never)]
+    pub fn step(&mut self, chord: Vector2<S>, lever: S, theta: S, point: S) {
+        // How the end moves with the heading, clockwise positive: (x, y) to (y, −x).
+        let (gx, gy) = (chord.y, -chord.x);
+        let levered = lever * theta;
+        let weight = self.heading + lever * levered;
+        let (tx, ty) = (weight * gx, weight * gy);
+        let (cx, cy) = (self.cross.x, self.cross.y);
+        self.point.xx += gx * (cx + cx + tx) + point;
+        self.point.xy += gx * (cy + ty) + gy * cx;
+        self.point.yy += gy * (cy + cy + ty) + point;
+        let shared = self.heading + levered;
+        self.cross = Vector2::new(cx + shared * gx, cy + shared * gy);
+        self.heading += theta;
+    }
+
+    /// Covariance of the newest segment's end.
+    #[must_use]
+    pub fn end(&self) -> Covariance<S> {
+        self.point
+    }
+}

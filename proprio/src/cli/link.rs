@@ -1,0 +1,77 @@
+//! What can be typed of a board and its line.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use proprio::link::Baud;
+
+/// Which board.
+#[derive(Debug, Args)]
+pub struct LinkArgs {
+    /// Serial port [default: that of the one Due that is plugged in]
+    #[arg(long, value_name = "PORT", conflicts_with = "emulated")]
+    pub port: Option<String>,
+    /// Speed of the line
+    #[arg(long, value_name = "BD", default_value_t, conflicts_with = "emulated")]
+    pub baud: Baud,
+    /// An emulated Due with a simulated arm instead of a real one
+    #[arg(long = "virtual")]
+    pub emulated: bool,
+    /// Firmware of the emulated Due [default: where cargo leaves it]
+    #[arg(long, value_name = "ELF", requires = "emulated")]
+    pub firmware: Option<PathBuf>,
+    /// What the simulated arm does until the firmware drives it: 1 free swings, 2 pushes, 3 an obstacle
+    #[arg(long, value_name = "1|2|3", requires = "emulated", default_value_t = 1, value_parser = clap::value_parser!(u8).range(1..=3))]
+    pub scenario: u8,
+    /// Seed of the simulated arm's motion and noise
+    #[arg(long, value_name = "K", requires = "emulated", default_value_t = 1)]
+    pub seed: u64,
+    /// Table that the board should have
+    #[arg(long, value_name = "TABLE.toml")]
+    pub table: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub struct Ports {
+    /// Print the list as JSON
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Debug, Args)]
+pub struct Status {
+    #[command(flatten)]
+    pub link: LinkArgs,
+    /// Print it as JSON
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Debug, Args)]
+pub struct Record {
+    #[command(flatten)]
+    pub link: LinkArgs,
+    /// Recording to write
+    #[arg(short, long, value_name = "FILE.mcap")]
+    pub output: PathBuf,
+    /// Duration, s [default: until Ctrl-C]
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
+    pub seconds: Option<f64>,
+}
+
+#[derive(Debug, Args)]
+pub struct Convert {
+    /// Session: CSV, recording or raw bytes (.bin)
+    pub input: PathBuf,
+    /// What to make of it: .csv, .mcap or .bin
+    pub output: PathBuf,
+}
+
+#[derive(Debug, Args)]
+pub struct Recover {
+    /// Recording that was cut
+    pub input: PathBuf,
+    /// Recording to write
+    #[arg(short, long, value_name = "WHOLE.mcap")]
+    pub output: PathBuf,
+}

@@ -1,0 +1,82 @@
+//! `proprio status`.
+
+use proprio::error::Error;
+use proprio::recording::chip_number;
+use proprio::status::Status;
+use telemetry::{SensorHealth, SensorState};
+
+use super::link;
+use crate::{cli, tables};
+
+pub fn run(args: &cli::Status) -> Result<(), Error> {
+    let (table, link, events) = link::open(&args.link)?;
+    let status = Status::of(&link, &events, table.is_some())?;
+    super::print(&if args.json { super::json(&status) } else { screen(&status) })
+}
+
+/// Everything on one screen.
+fn screen(status: &Status) -> String {
+    let Status { hello, health, rates, received, .. } = status;
+    let table = match status.table_matches {
+        Some(true) => ", the one given",
+        Some(false) => ", NOT the one given",
+        None => "",
+    };
+    let pressures = health.pressures_pa.map(|pressure_pa| format!("{:.1}", f64::from(pressure_pa) / 1e3)).join(" ");
+    let lines = [
+        ("line", format!("{}, {}", status.port, if status.answers { "answers" } else { "does NOT answer requests" })),
+        ("firmware", format!("{} ({}), proprio {}", hello.firmware, hello.revision, status.proprio)),
+        ("arm", format!("{}, table {:08x}{table}", hello.arm, hello.table)),
+        ("chip", chip_number(&hello.chip)),
+        ("boot", format!("number {} since power-on, by {:?}, {}", hello.boot, hello.reset, up(health.tick))),
+        ("last panic", hello.last_panic.as_deref().unwrap_or("none").to_owned()),
+        (
+            "rates",
+            format!(
+                "{:.1} samples/s, {:.1} estimates/s, {:.1} kB/s",
+                rates.samples_hz,
+                rates.estimates_hz,
+                rates.bytes_per_s / 1e3
+            ),
+        ),
+        ("received", format!("{} frames, {} damaged, {} lost", received.frames, received.damaged, received.lost)),
+        (
+            "load",
+            format!(
+                "{:.1} %, estimate {} µs and IMUs {} µs after the tick at most",
+                f64::from(health.load_permille) / 10.0,
+                health.longest_tick_us,
+                health.longest_imu_read_us
+            ),
+        ),
+        (
+            "counters",
+            format!(
+                "{} overruns, {} stale scans, {} dropped and {} damaged frames, {} bus recoveries, {} saturations",
+                health.overruns,
+                health.stale_scans,
+                health.dropped_frames,
+                health.damaged_frames,
+                health.bus_recoveries,
+                health.saturations
+            ),
+        ),
+        ("pressures", format!("{:?}, {pressures} kPa", health.actuation)),
+        ("bend sensors", sensors(&health.bend, |i| format!("{}{}", i / 2 + 1, ['a', 'b'][i % 2]))),
+        ("IMUs", sensors(&health.imu, |i| (i + 1).to_string())),
+    ];
+    let notes = status.mismatches.iter().map(|mismatch| format!("\nnote: {mismatch}\n"));
+    tables::pairs(&lines) + &notes.collect::<String>()
+}
+
+fn up(tick: u32) -> String {
+    format!("up for {:.1} s", f64::from(tick) / telemetry::TICK_HZ)
+}
+
+/// All that are well in one word, each other one by its name, state and how often it was missed.
+fn sensors(sensors: &[SensorHealth], name: impl Fn(usize) -> String) -> String {
+    let ok = sensors.iter().filter(|sensor| sensor.state == SensorState::Ok).count();
+    let others = sensors.iter().enumerate().filter(|(_, sensor)| sensor.state != SensorState::Ok);
+    let others = others.map(|(i, sensor)| format!("{} {:?} ({} missed)", name(i), sensor.state, sensor.missed));
+    [format!("{ok} of {} ok", sensors.len())].into_iter().chain(others).collect::<Vec<_>>().join(", ")
+}

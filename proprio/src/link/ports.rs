@@ -1,0 +1,132 @@
+//! The serial ports of this machine, and which of them a Due is on.
+
+use serde::Serialize;
+use serialport::{SerialPortInfo, SerialPortType};
+
+use super::LinkError;
+
+/// Arduino's two vendor numbers.
+const ARDUINO: [u16; 2] = [0x2341, 0x2a03];
+const PROGRAMMING: u16 = 0x003d;
+const NATIVE: u16 = 0x003e;
+
+/// A serial port.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Port {
+    /// By which it is opened.
+    pub name: String,
+    /// What is on it.
+    pub kind: Kind,
+    /// USB numbers of the vendor and the product, in hexadecimal.
+    pub usb: Option<String>,
+    /// USB serial number, which stays when the name changes.
+    pub serial_number: Option<String>,
+    /// What the device calls itself.
+    pub product: Option<String>,
+}
+
+/// What is on a port.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Kind {
+    /// The Due's programming port, on which the firmware talks.
+    DueProgramming,
+    /// The Due's native port.
+    DueNative,
+    /// Something else.
+    Other,
+}
+
+impl Kind {
+    /// As people call it.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::DueProgramming => "Due, programming port",
+            Self::DueNative => "Due, native port",
+            Self::Other => "other",
+        }
+    }
+}
+
+/// All serial ports, by name.
+///
+/// # Errors
+/// [`LinkError::List`].
+pub fn list() -> Result<Vec<Port>, LinkError> {
+    // Where Linux has none, as in some containers, serialport panics.
+    if cfg!(target_os = "linux") && !std::path::Path::new("/sys/class/tty").is_dir() {
+        return Ok(Vec::new());
+    }
+    let found = serialport::available_ports().map_err(LinkError::List)?;
+    // macOS lists each port twice; tty.* waits for a carrier that a Due does not give.
+    let mut ports: Vec<Port> =
+        found.into_iter().filter(|port| !port.port_name.starts_with("/dev/tty.")).map(Port::from).collect();
+    ports.sort_by(|a, b| a.name.cmp(&b.name));
+    Ok(ports)
+}
+
+impl From<SerialPortInfo> for Port {
+    fn from(found: SerialPortInfo) -> Self {
+        let SerialPortType::UsbPort(usb) = found.port_type else {
+            return Self { name: found.port_name, kind: Kind::Other, usb: None, serial_number: None, product: None };
+        };
+        let kind = match (ARDUINO.contains(&usb.vid), usb.pid) {
+            (true, PROGRAMMING) => Kind::DueProgramming,
+            (true, NATIVE) => Kind::DueNative,
+            _ => Kind::Other,
+        };
+        Self {
+            name: found.port_name,
+            kind,
+            usb: Some(format!("{:04x}:{:04x}", usb.vid, usb.pid)),
+            serial_number: usb.serial_number,
+            product: usb.product,
+        }
+    }
+}
+
+/// The one Due among the ports: its programming port, or its native port where that alone is plugged in.
+///
+/// # Errors
+/// [`LinkError::NoDue`] and [`LinkError::SeveralDues`].
+pub fn find_due(ports: &[Port]) -> Result<&Port, LinkError> {
+    for kind in [Kind::DueProgramming, Kind::DueNative] {
+        let found: Vec<&Port> = ports.iter().filter(|port| port.kind == kind).collect();
+        match found[..] {
+            [] => {}
+            [one] => return Ok(one),
+            _ => return Err(LinkError::SeveralDues(found.into_iter().map(|port| port.name.clone()).collect())),
+        }
+    }
+    Err(LinkError::NoDue)
+}
+
+#[cfg(test)]
+mod tests {
+    use serialport::UsbPortInfo;
+
+    use super::{Kind, LinkError, Port, SerialPortInfo, SerialPortType, find_due};
+
+    fn usb(name: &str, vid: u16, pid: u16) -> Port {
+        let usb = UsbPortInfo { vid, pid, serial_number: None, manufacturer: None, product: None };
+        SerialPortInfo { port_name: name.to_owned(), port_type: SerialPortType::UsbPort(usb) }.into()
+    }
+
+    #[test]
+    fn a_due_is_known_by_its_usb_numbers_and_found_by_its_programming_port() {
+        let ports =
+            [usb("a", 0x2341, 0x003e), usb("b", 0x2a03, 0x003d), usb("c", 0x2341, 0x0043), usb("d", 0x0403, 0x003d)];
+        let kinds = ports.each_ref().map(|port| port.kind);
+        assert_eq!(kinds, [Kind::DueNative, Kind::DueProgramming, Kind::Other, Kind::Other]);
+        assert_eq!(find_due(&ports).expect("there is one").name, "b");
+        assert_eq!(find_due(&ports[..1]).expect("its native port").name, "a");
+    }
+
+    #[test]
+    fn without_a_due_or_with_several_none_is_chosen() {
+        assert!(matches!(find_due(&[usb("c", 0x2341, 0x0043)]), Err(LinkError::NoDue)));
+        let two = [usb("a", 0x2341, 0x003d), usb("b", 0x2a03, 0x003d)];
+        assert!(matches!(find_due(&two), Err(LinkError::SeveralDues(names)) if names == ["a", "b"]));
+    }
+}

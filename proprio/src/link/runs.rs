@@ -1,0 +1,50 @@
+//! One run of a board after the other.
+
+/// Ticks that a stream may go back without a restart, 1 s: a piece of it may come twice.
+const REPEATED: u32 = 100;
+
+/// Tells the runs of a board apart: by the number of the boot in its `Hello`, and by ticks that begin anew, as after a
+/// power cut boots are numbered from 1 again.
+#[derive(Debug, Default)]
+pub struct Runs {
+    boot: Option<u32>,
+    tick: Option<u32>,
+}
+
+/// Where a sample stands in the stream.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Place {
+    /// Behind the others.
+    Next,
+    /// It has come already.
+    Repeated,
+    /// In another run.
+    Restarted,
+}
+
+impl Runs {
+    /// Takes a `Hello`'s boot; says whether it is of another run.
+    pub fn hello(&mut self, boot: u32) -> bool {
+        let restarted = self.boot.is_some_and(|before| before != boot);
+        if restarted {
+            self.tick = None;
+        }
+        self.boot = Some(boot);
+        restarted
+    }
+
+    /// Takes a sample's tick.
+    pub fn sample(&mut self, tick: u32) -> Place {
+        let place = match self.tick {
+            Some(last) if tick <= last && last - tick < REPEATED => return Place::Repeated,
+            Some(last) if tick <= last => Place::Restarted,
+            _ => Place::Next,
+        };
+        if place == Place::Restarted {
+            // The next `Hello`, whatever its boot, is of this run.
+            self.boot = None;
+        }
+        self.tick = Some(tick);
+        place
+    }
+}

@@ -1,0 +1,176 @@
+//! The emulated Due as a line: the program `virtual-due`, with pipes as its serial port.
+
+use std::collections::VecDeque;
+use std::env;
+use std::ffi::OsString;
+use std::io::{self, BufRead, BufReader, Read, Write};
+use std::path::{Path, PathBuf};
+use std::process::{Child, ChildStderr, ChildStdin, ChildStdout, Command, Stdio};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
+
+use super::{LinkError, Source, Transport};
+
+/// Names the program where it is in no usual place.
+const VARIABLE: &str = "PROPRIO_VIRTUAL_DUE";
+
+/// How long a read waits, as on a serial port.
+const WAIT: Duration = Duration::from_millis(10);
+
+/// Last lines of what the program says that are kept for an error.
+const LINES: usize = 5;
+
+/// A run of the emulated Due.
+#[derive(Debug, Clone)]
+pub struct VirtualDue {
+    /// ELF of the firmware; `None`: where cargo leaves it.
+    pub firmware: Option<PathBuf>,
+    /// What the arm does until the firmware drives its regulators: 1 to 3.
+    pub scenario: u8,
+    /// Draws the arm's motion and the sensors' noise.
+    pub seed: u64,
+}
+
+impl Source for VirtualDue {
+    fn open(&mut self) -> Result<(String, Box<dyn Transport>), LinkError> {
+        let program = program().ok_or(LinkError::NoVirtualDue)?;
+        let firmware = self.firmware.clone().unwrap_or_else(|| built_firmware(&program));
+        if !firmware.is_file() {
+            return Err(LinkError::NoFirmware(firmware));
+        }
+        let mut command = Command::new(&program);
+        command.arg("run").arg(&firmware).args(["--serial", "stdio", "--speed", "real"]);
+        command.args(["--scenario", &self.scenario.to_string(), "--seed", &self.seed.to_string()]);
+        command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+        detach(&mut command);
+        let child = command.spawn().map_err(|source| LinkError::Start { program, source })?;
+        Ok(("virtual Due".to_owned(), Box::new(Running::new(child)?)))
+    }
+
+    fn comes_back(&self) -> bool {
+        false
+    }
+}
+
+/// Ctrl-C is for this program, which then ends the other.
+#[cfg(unix)]
+fn detach(command: &mut Command) {
+    std::os::unix::process::CommandExt::process_group(command, 0);
+}
+
+/// Ctrl-C is for this program, which then ends the other.
+#[cfg(windows)]
+fn detach(command: &mut Command) {
+    const CREATE_NEW_PROCESS_GROUP: u32 = 0x200;
+    std::os::windows::process::CommandExt::creation_flags(command, CREATE_NEW_PROCESS_GROUP);
+}
+
+/// The program: named by the variable, beside this one or in cargo's folder for the dev profile, or on the PATH.
+fn program() -> Option<PathBuf> {
+    let name = format!("virtual-due{}", env::consts::EXE_SUFFIX);
+    let own = env::current_exe().ok();
+    let beside = own.as_deref().and_then(Path::parent);
+    let built = beside.and_then(Path::parent).map(|target| target.join("debug"));
+    let path = env::var_os("PATH").unwrap_or_default();
+    let folders = beside.map(Path::to_owned).into_iter().chain(built).chain(env::split_paths(&path));
+    let named = env::var_os(VARIABLE).map(PathBuf::from);
+    named.into_iter().chain(folders.map(|folder| folder.join(&name))).find(|program| program.is_file())
+}
+
+/// Where cargo leaves the firmware: beside the folder of the program, or below the current one.
+fn built_firmware(program: &Path) -> PathBuf {
+    let below: PathBuf = ["thumbv7m-none-eabi", "release", "firmware"].iter().collect();
+    let targets = program.parent().and_then(Path::parent).map(Path::to_owned);
+    let current = PathBuf::from(env::var_os("CARGO_TARGET_DIR").unwrap_or_else(|| OsString::from("target")));
+    let found =
+        targets.into_iter().chain([current.clone()]).map(|target| target.join(&below)).find(|path| path.is_file());
+    found.unwrap_or_else(|| current.join(below))
+}
+
+/// The program while it runs.
+struct Running {
+    child: Child,
+    input: ChildStdin,
+    output: Receiver<Vec<u8>>,
+    /// What did not fit the reader's buffer.
+    rest: Vec<u8>,
+    said: Arc<Mutex<VecDeque<String>>>,
+}
+
+impl Running {
+    fn new(mut child: Child) -> Result<Self, LinkError> {
+        let missing = || LinkError::Ended("the virtual Due has no pipes".to_owned());
+        let input = child.stdin.take().ok_or_else(missing)?;
+        let output = pump(child.stdout.take().ok_or_else(missing)?)?;
+        let said = listen(child.stderr.take().ok_or_else(missing)?)?;
+        Ok(Self { child, input, output, rest: Vec::new(), said })
+    }
+
+    fn ended(&mut self) -> io::Error {
+        let status = self.child.wait().map_or_else(|error| error.to_string(), |status| status.to_string());
+        let said = self.said.lock().unwrap_or_else(PoisonError::into_inner);
+        let said: Vec<&str> = said.iter().map(String::as_str).collect();
+        io::Error::other(format!("the virtual Due has ended ({status}): {}", said.join("; ")))
+    }
+}
+
+/// Reads its output in a thread of its own, as pipes of all systems can be read.
+fn pump(mut output: ChildStdout) -> Result<Receiver<Vec<u8>>, LinkError> {
+    let (sender, receiver) = channel();
+    let work = move || {
+        let mut buffer = [0; 4096];
+        while let Ok(count @ 1..) = output.read(&mut buffer) {
+            if sender.send(buffer[..count].to_vec()).is_err() {
+                break;
+            }
+        }
+    };
+    std::thread::Builder::new().name("virtual-due output".to_owned()).spawn(work).map_err(LinkError::Thread)?;
+    Ok(receiver)
+}
+
+/// Keeps the last lines of its standard error.
+fn listen(errors: ChildStderr) -> Result<Arc<Mutex<VecDeque<String>>>, LinkError> {
+    let said = Arc::new(Mutex::new(VecDeque::new()));
+    let ours = Arc::clone(&said);
+    let work = move || {
+        for line in BufReader::new(errors).lines().map_while(Result::ok) {
+            let mut said = said.lock().unwrap_or_else(PoisonError::into_inner);
+            if said.len() == LINES {
+                said.pop_front();
+            }
+            said.push_back(line);
+        }
+    };
+    std::thread::Builder::new().name("virtual-due errors".to_owned()).spawn(work).map_err(LinkError::Thread)?;
+    Ok(ours)
+}
+
+impl Transport for Running {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        if self.rest.is_empty() {
+            match self.output.recv_timeout(WAIT) {
+                Ok(bytes) => self.rest = bytes,
+                Err(RecvTimeoutError::Timeout) => return Ok(0),
+                Err(RecvTimeoutError::Disconnected) => return Err(self.ended()),
+            }
+        }
+        let count = self.rest.len().min(buffer.len());
+        buffer[..count].copy_from_slice(&self.rest[..count]);
+        self.rest.drain(..count);
+        Ok(count)
+    }
+
+    fn write(&mut self, bytes: &[u8]) -> io::Result<()> {
+        self.input.write_all(bytes).and_then(|()| self.input.flush())
+    }
+}
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        // It may have ended by itself.
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}

@@ -1,0 +1,143 @@
+//! CDR, the form of ROS 2 messages: little-endian, each number aligned to its own size.
+
+/// Its first four bytes: plain CDR, little-endian (DDS-XTypes 1.3, 7.6.2).
+const HEADER: [u8; 4] = [0, 1, 0, 0];
+
+/// A message that is being written.
+#[derive(Debug)]
+pub struct CdrWriter(Vec<u8>);
+
+impl CdrWriter {
+    pub fn new() -> Self {
+        Self(HEADER.to_vec())
+    }
+
+    pub fn into_bytes(self) -> Vec<u8> {
+        self.0
+    }
+
+    fn align(&mut self, size: usize) {
+        let length = HEADER.len() + (self.0.len() - HEADER.len()).next_multiple_of(size);
+        self.0.resize(length, 0);
+    }
+
+    fn put<const N: usize>(&mut self, bytes: [u8; N]) {
+        self.align(N);
+        self.0.extend_from_slice(&bytes);
+    }
+
+    pub fn u8(&mut self, value: u8) {
+        self.put([value]);
+    }
+
+    pub fn u16(&mut self, value: u16) {
+        self.put(value.to_le_bytes());
+    }
+
+    pub fn i16(&mut self, value: i16) {
+        self.put(value.to_le_bytes());
+    }
+
+    pub fn u32(&mut self, value: u32) {
+        self.put(value.to_le_bytes());
+    }
+
+    pub fn u64(&mut self, value: u64) {
+        self.put(value.to_le_bytes());
+    }
+
+    pub fn f64(&mut self, value: f64) {
+        self.put(value.to_le_bytes());
+    }
+
+    /// Numbers without their count, as an array has them.
+    pub fn floats(&mut self, values: &[f64]) {
+        for value in values {
+            self.f64(*value);
+        }
+    }
+
+    /// With the zero that CDR ends a string with.
+    pub fn string(&mut self, text: &str) {
+        self.length(text.len() + 1);
+        self.0.extend_from_slice(text.as_bytes());
+        self.0.push(0);
+    }
+
+    /// Of the sequence whose items follow.
+    pub fn length(&mut self, length: usize) {
+        self.u32(length as u32);
+    }
+}
+
+/// A message that is being read; `None` where it is too short.
+#[derive(Debug)]
+pub struct CdrReader<'b> {
+    body: &'b [u8],
+    at: usize,
+}
+
+impl<'b> CdrReader<'b> {
+    pub fn new(message: &'b [u8]) -> Option<Self> {
+        message.strip_prefix(&HEADER).map(|body| Self { body, at: 0 })
+    }
+
+    fn take<const N: usize>(&mut self) -> Option<[u8; N]> {
+        let start = self.at.next_multiple_of(N);
+        let bytes = self.body.get(start..)?.first_chunk()?;
+        self.at = start + N;
+        Some(*bytes)
+    }
+
+    pub fn u32(&mut self) -> Option<u32> {
+        self.take().map(u32::from_le_bytes)
+    }
+
+    pub fn skip_string(&mut self) -> Option<()> {
+        let length = self.u32()? as usize;
+        self.at = self.at.checked_add(length).filter(|end| *end <= self.body.len())?;
+        Some(())
+    }
+
+    /// A sequence of floats.
+    pub fn floats(&mut self) -> Option<Vec<f64>> {
+        let length = self.u32()?;
+        (0..length).map(|_| self.take().map(f64::from_le_bytes)).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{CdrReader, CdrWriter};
+
+    #[test]
+    fn numbers_are_aligned_behind_the_header() {
+        let mut cdr = CdrWriter::new();
+        cdr.u8(1);
+        cdr.u16(0x0302);
+        cdr.string("ab");
+        cdr.f64(1.0);
+        let expected =
+            [[0, 1, 0, 0], [1, 0, 2, 3], [3, 0, 0, 0], [b'a', b'b', 0, 0], [0; 4], [0, 0, 0xf0, 0x3f]].concat();
+        // The float begins at 12 behind the header, and is moved to 16.
+        let padded = [&expected[..16], &[0; 4], &expected[16..]].concat();
+        assert_eq!(cdr.into_bytes(), padded);
+    }
+
+    #[test]
+    fn what_is_cut_is_not_read() {
+        let mut cdr = CdrWriter::new();
+        cdr.string("frame");
+        cdr.length(2);
+        cdr.f64(1.5);
+        cdr.f64(-2.5);
+        let bytes = cdr.into_bytes();
+        let read = |bytes: &[u8]| {
+            let mut cdr = CdrReader::new(bytes)?;
+            cdr.skip_string()?;
+            cdr.floats()
+        };
+        assert_eq!(read(&bytes), Some(vec![1.5, -2.5]));
+        assert_eq!((0..bytes.len()).find_map(|length| read(&bytes[..length])), None);
+    }
+}

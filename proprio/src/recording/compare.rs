@@ -1,0 +1,131 @@
+//! The board's own estimates against those of a replay.
+
+use std::fmt;
+
+use estimator_core::{Method, Q};
+use serde::Serialize;
+use telemetry::{Estimate, SegmentEstimate};
+
+use crate::replay::Outcome;
+use crate::session::Row;
+
+/// How many of the board's estimates a replay gives again, bit for bit.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct Comparison {
+    /// Estimates that are in the recording.
+    pub estimates: u64,
+    /// Of these: the same in the replay.
+    pub equal: u64,
+    /// Of these: not compared, as a sample before them, since the estimator's start, is not in the recording.
+    pub not_compared: u64,
+    /// The first that differs.
+    pub first_difference: Option<Difference>,
+    /// Whether the board's table was that of the replay, where its `Hello` is in the recording.
+    pub table_matches: Option<bool>,
+}
+
+/// An estimate that differs.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Difference {
+    /// Number of the tick.
+    pub tick: u32,
+    /// The first segment that differs, from 1.
+    pub segment: usize,
+    /// What the board said; `None`: that it does not know.
+    pub recorded: Option<Values>,
+    /// What the replay says.
+    pub computed: Option<Values>,
+}
+
+/// One segment's estimate.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Values {
+    /// Bend angle, rad.
+    pub theta_rad: f64,
+    /// World position of the segment's end, m.
+    pub x_m: f64,
+    /// World position of the segment's end, m.
+    pub y_m: f64,
+}
+
+impl From<SegmentEstimate> for Values {
+    fn from(of: SegmentEstimate) -> Self {
+        let [theta_rad, x_m, y_m] = [of.theta, of.end[0], of.end[1]].map(|bits| Q::from_bits(bits).to_f64());
+        Self { theta_rad, x_m, y_m }
+    }
+}
+
+impl Comparison {
+    /// Compares one row's estimate, where the board has made one.
+    pub fn add(&mut self, row: &Row, outcome: &Outcome<Q>) {
+        let Some(board) = row.board else { return };
+        let Some(recorded) = board.estimate else { return };
+        self.estimates += 1;
+        if !board.complete {
+            self.not_compared += 1;
+            return;
+        }
+        let [.., fusion] = &outcome.shapes;
+        const { assert!(matches!(Method::ALL, [.., Method::Fusion])) };
+        let computed = Estimate::of(recorded.tick, fusion);
+        let pairs = recorded.segments.iter().zip(&computed.segments);
+        match pairs.enumerate().find(|(_, (recorded, computed))| recorded != computed) {
+            None => self.equal += 1,
+            Some((i, (recorded, computed))) => {
+                self.first_difference.get_or_insert(Difference {
+                    tick: board.tick,
+                    segment: i + 1,
+                    recorded: recorded.map(Values::from),
+                    computed: computed.map(Values::from),
+                });
+            }
+        }
+    }
+
+    /// Whether every estimate that could be compared is the same.
+    #[must_use]
+    pub fn is_exact(&self) -> bool {
+        self.first_difference.is_none()
+    }
+}
+
+impl fmt::Display for Comparison {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.estimates == 0 {
+            return write!(f, "the board's own estimates are not in the recording");
+        }
+        let compared = self.estimates - self.not_compared;
+        if let Some(difference) = &self.first_difference {
+            let Difference { tick, segment, recorded, computed } = difference;
+            write!(
+                f,
+                "{} of {compared} recorded estimates are not those of this replay; the first: tick {tick}, segment \
+                 {segment}, recorded {}, computed {}",
+                compared - self.equal,
+                Shown(*recorded),
+                Shown(*computed)
+            )?;
+        } else {
+            write!(f, "the {compared} recorded estimates are, bit for bit, those of this replay")?;
+        }
+        if self.not_compared > 0 {
+            let more = self.not_compared;
+            write!(f, "; {more} more are not compared, as samples before them are not in the recording")?;
+        }
+        if self.table_matches == Some(false) {
+            write!(f, "; the board had another table")?;
+        }
+        Ok(())
+    }
+}
+
+struct Shown(Option<Values>);
+
+impl fmt::Display for Shown {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.0 {
+            None => write!(f, "nothing"),
+            Some(Values { theta_rad, x_m, y_m }) => write!(f, "θ {theta_rad} rad, x {x_m} m, y {y_m} m"),
+        }
+    }
+}

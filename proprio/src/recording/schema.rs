@@ -1,0 +1,64 @@
+//! The forms of the messages: ROS 2's own, and ours, each with all that it is made of.
+
+/// A message's name and its definition, and those that it needs.
+#[derive(Debug)]
+pub struct Schema {
+    pub name: &'static str,
+    definition: &'static str,
+    needs: &'static [(&'static str, &'static str)],
+}
+
+const TIME: (&str, &str) = ("builtin_interfaces/Time", include_str!("definitions/Time.msg"));
+const HEADER: (&str, &str) = ("std_msgs/Header", include_str!("definitions/Header.msg"));
+
+pub const JOINT_STATE: Schema = Schema {
+    name: "sensor_msgs/msg/JointState",
+    definition: include_str!("definitions/JointState.msg"),
+    needs: &[HEADER, TIME],
+};
+
+pub const POSE_ARRAY: Schema = Schema {
+    name: "geometry_msgs/msg/PoseArray",
+    definition: include_str!("definitions/PoseArray.msg"),
+    needs: &[
+        HEADER,
+        TIME,
+        ("geometry_msgs/Pose", include_str!("definitions/Pose.msg")),
+        ("geometry_msgs/Point", include_str!("definitions/Point.msg")),
+        ("geometry_msgs/Quaternion", include_str!("definitions/Quaternion.msg")),
+    ],
+};
+
+pub const DIAGNOSTIC_ARRAY: Schema = Schema {
+    name: "diagnostic_msgs/msg/DiagnosticArray",
+    definition: include_str!("definitions/DiagnosticArray.msg"),
+    needs: &[
+        HEADER,
+        TIME,
+        ("diagnostic_msgs/DiagnosticStatus", include_str!("definitions/DiagnosticStatus.msg")),
+        ("diagnostic_msgs/KeyValue", include_str!("definitions/KeyValue.msg")),
+    ],
+};
+
+pub const SAMPLE: Schema = Schema {
+    name: "proprio_msgs/msg/Sample",
+    definition: include_str!("definitions/Sample.msg"),
+    needs: &[HEADER, TIME],
+};
+
+pub const TRUTH: Schema = Schema {
+    name: "proprio_msgs/msg/Truth",
+    definition: include_str!("definitions/Truth.msg"),
+    needs: &[HEADER, TIME],
+};
+
+impl Schema {
+    /// The definition and all that it needs, as MCAP's encoding `ros2msg` has them.
+    pub fn text(&self) -> String {
+        let mut text = self.definition.to_owned();
+        for (name, definition) in self.needs {
+            text.extend([&"=".repeat(80), "\nMSG: ", name, "\n", definition]);
+        }
+        text
+    }
+}
