@@ -1,11 +1,13 @@
 //! From the file's units to the estimator's parameters, for one sample rate.
 
 use estimator_core::{
-    AnchorRule, BendMap, COVARIANCE_LIMIT, Hysteresis, Noise, ObserverRule, OffsetAt, PLAYS, Play, SENSORS_PER_SEGMENT,
-    Scalar, Segment, Table, Turns,
+    AnchorRule, BendMap, COVARIANCE_LIMIT, ContactRule, Hysteresis, Noise, ObserverRule, OffsetAt, PLAYS, Play,
+    SENSORS_PER_SEGMENT, Scalar, Segment, Table, Turns, UncertaintyRule,
 };
 
+use crate::drift::DriftKind;
 use crate::file::{ArmFile, FileError, NoiseKeys, SegmentKeys, Side};
+use crate::uncertainty::{AlikeKeys, ContactKeys};
 
 /// A table's parameters in the number type `S`, for sessions of one sample rate.
 #[derive(Debug, Clone, PartialEq)]
@@ -14,14 +16,23 @@ pub struct Baked<S> {
     tare_samples: u32,
     anchor: AnchorRule,
     observer: Option<ObserverRule>,
+    contact: Option<ContactRule>,
+    uncertainty: Option<UncertaintyRule<S>>,
 }
 
-impl<S> Baked<S> {
+impl<S: Copy> Baked<S> {
     /// The parameters as the estimator takes them.
     #[must_use]
     pub fn table(&self) -> Table<'_, S> {
-        let Self { segments, tare_samples, anchor, observer } = self;
-        Table { segments, tare_samples: *tare_samples, anchor: *anchor, observer: *observer }
+        let Self { segments, tare_samples, anchor, observer, contact, uncertainty } = self;
+        Table {
+            segments,
+            tare_samples: *tare_samples,
+            anchor: *anchor,
+            observer: *observer,
+            contact: *contact,
+            uncertainty: *uncertainty,
+        }
     }
 }
 
@@ -35,6 +46,9 @@ impl ArmFile {
         self.bend_sensors()?;
         let references = self.tare.heading_deg.iter().copied().chain(std::iter::repeat(0.0));
         let segments = self.segments.iter().zip(references);
+        let value_hz = self.anchor.rate_hz.min(rate_hz);
+        let observer = self.drift.as_ref().filter(|drift| drift.kind == DriftKind::Observer);
+        let measurement_deg2 = observer.map_or(0.0, |drift| drift.measurement_deg2(value_hz));
         Ok(Baked {
             segments: segments.map(|(segment, reference)| segment.bake(reference, rate_hz)).collect(),
             tare_samples: samples(self.tare.seconds, rate_hz),
@@ -44,7 +58,9 @@ impl ArmFile {
                 sample_rate_millihertz: millihertz(rate_hz),
                 threshold: Turns::from_rad(self.anchor.threshold_deg.to_radians()),
             },
-            observer: self.drift.as_ref().and_then(|drift| drift.bake(self.anchor.rate_hz.min(rate_hz))),
+            observer: observer.map(|drift| drift.bake(value_hz)),
+            contact: self.contact.as_ref().map(ContactKeys::bake),
+            uncertainty: self.uncertainty.as_ref().map(|keys| keys.bake(measurement_deg2)),
         })
     }
 }
@@ -73,6 +89,7 @@ impl SegmentKeys {
             },
             bend,
             hysteresis: self.bake_hysteresis(),
+            alike: self.alike.map(AlikeKeys::bake),
             reference: Turns::from_rad(reference_deg.to_radians()),
             orient: self.orient_or_default().bake(rate_hz),
             coord: self.coord_or_default().bake(rate_hz),

@@ -7,6 +7,7 @@ use estimator_core::{BendMap, H_LIMIT, PLAYS, SENSORS_PER_SEGMENT, VOLTS_PER_COU
 use crate::drift::DriftKeys;
 use crate::file::{ArmFile, BendKeys, FileError, MAX_SEGMENTS, MAX_WINDOW, NoiseKeys, SegmentKeys};
 use crate::tuning::TuningKeys;
+use crate::uncertainty::{ContactKeys, UncertaintyKeys};
 
 /// Lengths that fixed point holds with room for the chain (m: ±32).
 const MAX_ARM_MM: f64 = 16_000.0;
@@ -37,9 +38,12 @@ impl ArmFile {
         within("anchor.threshold_deg", self.anchor.threshold_deg, 0.0..=360.0)?;
         within("anchor.rate_hz", self.anchor.rate_hz, 0.01..=10_000.0)?;
         self.drift.as_ref().map_or(Ok(()), DriftKeys::check)?;
+        self.contact.as_ref().map_or(Ok(()), ContactKeys::check)?;
+        self.uncertainty.as_ref().map_or(Ok(()), UncertaintyKeys::check)?;
         self.tuning.as_ref().map_or(Ok(()), TuningKeys::check)?;
         for (i, segment) in self.segments.iter().enumerate() {
             segment.check(&format!("segment[{}]", i + 1))?;
+            segment.alike.map_or(Ok(()), |alike| alike.check(&format!("segment[{}].alike", i + 1), i + 1))?;
         }
         let length = self.length_mm();
         ensure(length <= MAX_ARM_MM, "segment", &format!("{length} mm of arm"), &format!("at most {MAX_ARM_MM} mm"))

@@ -131,17 +131,19 @@ impl DriftKeys {
         within("drift.doubt_deg", self.doubt_deg, 0.0..=180.0)
     }
 
-    /// The observer's parameters for values at `rate_hz`; `None` where the anchor is wanted.
-    pub(crate) fn bake(&self, rate_hz: f64) -> Option<ObserverRule> {
-        if self.kind == DriftKind::Anchor {
-            return None;
-        }
-        let measurement_deg2 = self.noise_deg2_s * rate_hz;
+    /// R for values at `rate_hz`, degrees².
+    pub(crate) fn measurement_deg2(&self, rate_hz: f64) -> f64 {
+        self.noise_deg2_s * rate_hz
+    }
+
+    /// The observer's parameters for values at `rate_hz`.
+    pub(crate) fn bake(&self, rate_hz: f64) -> ObserverRule {
+        let measurement_deg2 = self.measurement_deg2(rate_hz);
         let share = |variance_deg2: f64| (variance_deg2 / measurement_deg2 * ONE).round().min(LARGEST) as i32;
         let variance = |deviation_deg: f64| share(deviation_deg * deviation_deg);
         let degrees = |degrees: f64| Turns::from_rad(degrees.to_radians());
         let walk_deg = self.walk_deg_per_s * ObserverRule::RATE_S;
-        Some(ObserverRule {
+        ObserverRule {
             step: (f64::powi(2.0, 32) / (rate_hz * ObserverRule::RATE_S)).round() as u32,
             prior: [
                 variance(self.start_deg),
@@ -155,6 +157,6 @@ impl DriftKeys {
             jump: degrees(self.jump_deg),
             still: degrees(self.still_deg),
             doubt: variance(self.doubt_deg),
-        })
+        }
     }
 }

@@ -10,6 +10,7 @@ use toml_edit::Item;
 use crate::drift::DriftKeys;
 use crate::place::{line_and_column, line_of};
 use crate::tuning::TuningKeys;
+use crate::uncertainty::{AlikeKeys, ContactKeys, UncertaintyKeys};
 
 /// The `format` that this crate reads and writes.
 const FORMAT: u32 = 1;
@@ -39,6 +40,12 @@ pub struct ArmFile {
     /// Which correction takes out the IMUs' drift; `None`: the anchor.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub drift: Option<DriftKeys>,
+    /// When something touches the arm; `None`: nobody looks.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub contact: Option<ContactKeys>,
+    /// How far an estimate may be off; `None`: nobody says.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub uncertainty: Option<UncertaintyKeys>,
     /// How the filters were tuned, where they were.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub tuning: Option<TuningKeys>,
@@ -98,6 +105,9 @@ pub struct SegmentKeys {
     /// What corrects their angle for the way that they came, up to three plays; none where it does not help.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub hysteresis: Vec<PlayKeys>,
+    /// The earlier segment that bends alike, where there is one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub alike: Option<AlikeKeys>,
     /// KF_orient's parameters, rad² and rad²/s; derived from the maps' `rmse_deg` where there are none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub orient: Option<NoiseKeys>,

@@ -36,6 +36,7 @@ mod noise;
 mod place;
 mod source;
 mod tuning;
+mod uncertainty;
 
 pub use bake::Baked;
 pub use check::H_RANGE;
@@ -46,6 +47,7 @@ pub use file::{
 };
 pub use noise::{LAG_S, RMSE_DEG_UNKNOWN};
 pub use tuning::{RmseKeys, Stopped, TuningKeys};
+pub use uncertainty::{AlikeKeys, ContactKeys, UncertaintyKeys};
 
 /// The reference arm's description, `arms/planar-6.toml`.
 pub const PLANAR_6_ARM: &str = include_str!("../arms/planar-6.toml");

@@ -3,7 +3,9 @@
 
 use std::fmt::Write;
 
-use estimator_core::{BendMap, Hysteresis, Noise, ObserverRule, OffsetAt, Play, Q, Segment};
+use estimator_core::{
+    Alike, BendMap, ContactRule, Hysteresis, Noise, ObserverRule, OffsetAt, Play, Q, Segment, UncertaintyRule,
+};
 
 use crate::bake::Baked;
 
@@ -27,9 +29,9 @@ impl Baked<Q> {
     #[must_use]
     pub fn to_rust(&self) -> String {
         let table = self.table();
-        let (segments, anchor, observer) = (table.segments, table.anchor, table.observer);
+        let (segments, anchor) = (table.segments, table.anchor);
         let mut source = String::from(
-            "use estimator_core::{AnchorRule, BendMap, Noise, ObserverRule, OffsetAt, Play, Q, Segment, Table, Turns};\n\n",
+            "use estimator_core::{AnchorRule, BendMap, Noise, OffsetAt, Q, Segment, Table, Turns};\n\n",
         );
         let count = segments.len();
         let _ = writeln!(source, "/// The arm's segments, from the base.\nstatic SEGMENTS: [Segment<Q>; {count}] = [");
@@ -39,13 +41,15 @@ impl Baked<Q> {
         let _ = writeln!(
             source,
             "];\n\n/// The arm's table.\npub static TABLE: Table<'static, Q> = Table {{\n    segments: &SEGMENTS,\n    tare_samples: {},\n    anchor: AnchorRule {{ window: \
-             {}, rate_millihertz: {}, sample_rate_millihertz: {}, threshold: Turns::from_bits({}) }},\n    observer: {},\n}};",
+             {}, rate_millihertz: {}, sample_rate_millihertz: {}, threshold: Turns::from_bits({}) }},\n    observer: {},\n    contact: {},\n    uncertainty: {},\n}};",
             table.tare_samples,
             anchor.window,
             anchor.rate_millihertz,
             anchor.sample_rate_millihertz,
             anchor.threshold.bits(),
-            observer.map_or_else(|| "None".to_owned(), |rule| observer_source(&rule))
+            option(table.observer.as_ref(), observer_source),
+            option(table.contact.as_ref(), contact_source),
+            option(table.uncertainty.as_ref(), uncertainty_source)
         );
         source
     }
@@ -57,6 +61,30 @@ impl Baked<Q> {
     pub fn checksum(&self) -> u32 {
         CRC_32.checksum(self.to_rust().as_bytes())
     }
+}
+
+fn option<T>(value: Option<&T>, source: impl FnOnce(&T) -> String) -> String {
+    value.map_or_else(|| "None".to_owned(), source)
+}
+
+fn contact_source(ContactRule { bend, alike }: &ContactRule) -> String {
+    let [bend, alike] = [bend, alike].map(|angle| format!("Turns::from_bits({})", angle.bits()));
+    format!("Some(estimator_core::ContactRule {{ bend: {bend}, alike: {alike} }})")
+}
+
+fn uncertainty_source(rule: &UncertaintyRule<Q>) -> String {
+    format!(
+        "Some(estimator_core::UncertaintyRule {{ theta: {}, drift: {}, bend: {}, contact: {}, end: {} }})",
+        q(rule.theta),
+        q(rule.drift),
+        q(rule.bend),
+        q(rule.contact),
+        q(rule.end)
+    )
+}
+
+fn alike_source(Alike { segment, ratio }: &Alike) -> String {
+    format!("Some(estimator_core::Alike {{ segment: {segment}, ratio: {ratio} }})")
 }
 
 fn observer_source(rule: &ObserverRule) -> String {
@@ -73,14 +101,15 @@ fn segment_source(segment: &Segment<Q>) -> String {
         OffsetAt::Start => "Start",
         OffsetAt::End => "End",
     };
-    let maps = segment.bend.each_ref().map(|map| map.as_ref().map_or_else(|| "None".to_owned(), map_source));
+    let maps = segment.bend.each_ref().map(|map| option(map.as_ref(), map_source));
     format!(
         "    Segment {{\n        length: {},\n        offset: {},\n        offset_at: OffsetAt::{offset_at},\n        bend: \
-         [{}],\n        hysteresis: {},\n        reference: Turns::from_bits({}),\n        orient: {},\n        coord: {},\n    }},\n",
+         [{}],\n        hysteresis: {},\n        alike: {},\n        reference: Turns::from_bits({}),\n        orient: {},\n        coord: {},\n    }},\n",
         q(segment.length),
         q(segment.offset),
         maps.join(", "),
-        segment.hysteresis.as_ref().map_or_else(|| "None".to_owned(), hysteresis_source),
+        option(segment.hysteresis.as_ref(), hysteresis_source),
+        option(segment.alike.as_ref(), alike_source),
         segment.reference.bits(),
         noise(&segment.orient),
         noise(&segment.coord)

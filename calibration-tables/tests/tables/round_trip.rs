@@ -1,8 +1,8 @@
 //! A file is written and read without loss: every number to its last bit, every name to its last character.
 
 use calibration_tables::{
-    AnchorKeys, ArmFile, BendKeys, DriftKeys, DriftKind, NoiseKeys, PlayKeys, RmseKeys, SegmentKeys, Side, Stopped,
-    TareKeys, TuningKeys,
+    AlikeKeys, AnchorKeys, ArmFile, BendKeys, ContactKeys, DriftKeys, DriftKind, NoiseKeys, PlayKeys, RmseKeys,
+    SegmentKeys, Side, Stopped, TareKeys, TuningKeys, UncertaintyKeys,
 };
 use proptest::option;
 use proptest::prelude::*;
@@ -56,6 +56,7 @@ fn segment() -> impl Strategy<Value = SegmentKeys> {
             offset_at,
             bend,
             hysteresis,
+            alike: None,
             orient,
             coord,
         },
@@ -84,6 +85,31 @@ fn drift() -> impl Strategy<Value = DriftKeys> {
             }
         },
     )
+}
+
+fn contact() -> impl Strategy<Value = ContactKeys> {
+    (0.1..90.0_f64, 0.1..90.0_f64).prop_map(|(bend_deg, alike_deg)| ContactKeys { bend_deg, alike_deg })
+}
+
+fn uncertainty() -> impl Strategy<Value = UncertaintyKeys> {
+    (0.0..9.0_f64, 0.0..10.0_f64, 0.0..9.0_f64, 0.0..9.0_f64, 0.0..100.0_f64).prop_map(
+        |(theta_deg, drift_share, bend_deg, contact_deg, end_mm)| UncertaintyKeys {
+            theta_deg,
+            drift_share,
+            bend_deg,
+            contact_deg,
+            end_mm,
+        },
+    )
+}
+
+/// Segments of which each may bend like the first.
+fn segments() -> impl Strategy<Value = Vec<SegmentKeys>> {
+    let alike = option::of((-7.9..7.9_f64).prop_map(|ratio| AlikeKeys { segment: 1, ratio }));
+    let later = (segment(), alike).prop_map(|(segment, alike)| SegmentKeys { alike, ..segment });
+    (segment(), prop::collection::vec(later, 0..16)).prop_map(|(first, later)| {
+        std::iter::once(first).chain(later).collect()
+    })
 }
 
 fn rmse() -> impl Strategy<Value = RmseKeys> {
@@ -115,19 +141,20 @@ fn tuning() -> impl Strategy<Value = TuningKeys> {
 }
 
 fn file() -> impl Strategy<Value = ArmFile> {
-    let segments = prop::collection::vec(segment(), 1..=16);
     let tare = (0.0..3600.0_f64, prop_oneof![Just(None), Just(Some(-0.0)), (-3600.0..3600.0_f64).prop_map(Some)]);
     let anchor = (1..=1000_u16, 0.0..360.0_f64, magnitude(-2.0..4.0));
-    let records = (option::of(drift()), option::of(tuning()));
-    (any::<String>(), magnitude(-2.0..4.0), tare, anchor, records, segments).prop_map(
-        |(arm, rate_hz, (seconds, heading), (window, threshold_deg, anchor_hz), (drift, tuning), segments)| ArmFile {
+    let records = (option::of(drift()), option::of(contact()), option::of(uncertainty()), option::of(tuning()));
+    (any::<String>(), magnitude(-2.0..4.0), tare, anchor, records, segments()).prop_map(
+        |(arm, rate_hz, (seconds, heading), (window, threshold_deg, anchor_hz), records, segments)| ArmFile {
             format: 1,
             arm,
             rate_hz,
             tare: TareKeys { seconds, heading_deg: heading.map_or_else(Vec::new, |deg| vec![deg; segments.len()]) },
             anchor: AnchorKeys { window, threshold_deg, rate_hz: anchor_hz },
-            drift,
-            tuning,
+            drift: records.0,
+            contact: records.1,
+            uncertainty: records.2,
+            tuning: records.3,
             segments,
         },
     )
