@@ -53,6 +53,9 @@ pub struct Contact {
     pub is_touched: bool,
 }
 
+/// What touches the segments, from the base to the tip.
+pub type Contacts<const N: usize> = heapless::Vec<Contact, N>;
+
 /// What is watched of one segment.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Touch {

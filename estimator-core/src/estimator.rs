@@ -7,7 +7,7 @@ use crate::anchor::{Anchor, Pace, Slot};
 use crate::angle::{Angle, Turns};
 use crate::bend::BendMap;
 use crate::beyond::{Beyond, Seen};
-use crate::contact::{Contact, ContactRule};
+use crate::contact::{ContactRule, Contacts};
 use crate::filter::{Block, Gains};
 use crate::imu::{Heading, Tangent};
 use crate::pcc::{Link, Pcc, SegmentShape, chain};
@@ -246,8 +246,9 @@ impl<'t, S: Scalar, const N: usize, const W: usize> Estimator<'t, S, N, W> {
     }
 
     /// Whether something touches the segments, from the base to the tip; nothing where the table does not say how to tell.
-    pub fn contacts(&self) -> impl Iterator<Item = Contact> {
-        self.states.iter().map(|state| state.beyond.touch.contact)
+    #[must_use]
+    pub fn contacts(&self) -> Contacts<N> {
+        all(self.states.iter().map(|state| state.beyond.touch.contact))
     }
 
     /// How far the fused shape of the newest sample may be off; empty where the table does not say what errors come from.

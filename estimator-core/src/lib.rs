@@ -57,7 +57,7 @@ mod uncertainty;
 pub use anchor::{Anchor, AnchorRule, Pace, Slot};
 pub use angle::{Angle, Phase, Turns};
 pub use bend::{BendMap, VOLTS_PER_COUNT};
-pub use contact::{Alike, Contact, ContactRule};
+pub use contact::{Alike, Contact, ContactRule, Contacts};
 pub use estimator::{Estimate, Estimator, Fused, Method, SegmentEstimate, Shape};
 pub use filter::{Block, COVARIANCE_LIMIT, Gains, H_LIMIT, Noise};
 pub use hysteresis::{Hysteresis, PLAYS, Play};

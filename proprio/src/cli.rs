@@ -8,6 +8,7 @@ use clap::builder::Styles;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 pub use link::{Convert, LinkArgs, Ports, Record, Recover, Status};
+use proprio::calibrate::Correct;
 use proprio::session::ImuColumns;
 
 /// Colours of help and errors; off where stderr is no terminal or NO_COLOR is set.
@@ -77,6 +78,9 @@ pub struct Calibrate {
     /// Table to write
     #[arg(short, long, value_name = "TABLE.toml")]
     pub output: PathBuf,
+    /// Segments whose bend sensors are corrected for hysteresis
+    #[arg(long, value_enum, default_value_t = Correct::Auto)]
+    pub hysteresis: Correct,
 }
 
 #[derive(Debug, Args)]

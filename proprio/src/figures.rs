@@ -5,7 +5,8 @@ use serde::Serialize;
 use serde::ser::{SerializeMap, Serializer};
 
 use crate::recording::Comparison;
-use crate::score::Figures;
+use crate::honesty::HonestyFigures;
+use crate::score::{Figures, Score};
 
 /// The figures of one or more sessions, in the form of `replay --json`.
 #[derive(Debug, Serialize)]
@@ -42,6 +43,15 @@ pub struct ByMethod {
     /// Those of each of [`Method::ALL`].
     #[serde(serialize_with = "by_name")]
     pub methods: [Figures; Method::ALL.len()],
+    /// How honest the covariances of fusion are, where there are any.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub uncertainty: Option<HonestyFigures>,
+}
+
+impl From<&Score> for ByMethod {
+    fn from(score: &Score) -> Self {
+        Self { methods: score.figures(), uncertainty: score.honesty() }
+    }
 }
 
 fn by_name<S: Serializer>(figures: &[Figures; Method::ALL.len()], serializer: S) -> Result<S::Ok, S::Error> {

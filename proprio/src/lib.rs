@@ -26,6 +26,7 @@ pub mod distances;
 pub mod error;
 pub mod estimates;
 pub mod figures;
+pub mod honesty;
 pub mod interrupt;
 pub mod link;
 pub mod output;

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use calibration_tables::{ArmFile, Baked, FileError, MAX_SEGMENTS, MAX_WINDOW};
-use estimator_core::{Estimate, Estimator, Method, Q, Scalar, Shape};
+use estimator_core::{Contacts, Estimate, Estimator, Method, Q, Scalar, Shape, Uncertainties};
 use telemetry::{Hello, TICK_HZ};
 
 use crate::error::Error;
@@ -60,6 +60,10 @@ pub struct Outcome<S> {
     pub estimate: Estimate<S, MAX_SEGMENTS>,
     /// The shape by each of [`Method::ALL`].
     pub shapes: [Shape<S, MAX_SEGMENTS>; Method::ALL.len()],
+    /// How far the fused shape may be off; empty where the table does not say what errors come from.
+    pub uncertainties: Uncertainties<S, MAX_SEGMENTS>,
+    /// What touches each segment.
+    pub contacts: Contacts<MAX_SEGMENTS>,
 }
 
 /// The extent of a session.
@@ -115,7 +119,8 @@ pub fn replay<S: Scalar>(
         }
         let estimate = estimator.step(&row.sample);
         let shapes = Method::ALL.map(|method| estimator.shape(&estimate, method));
-        visit(&row, &Outcome { estimate, shapes })?;
+        let (uncertainties, contacts) = (estimator.uncertainties(), estimator.contacts());
+        visit(&row, &Outcome { estimate, shapes, uncertainties, contacts })?;
         last_us = row.sample.time_us;
         first_us.get_or_insert(last_us);
         samples += 1;

@@ -4,6 +4,7 @@ use estimator_core::{Method, Scalar};
 use serde::Serialize;
 
 use crate::distances::Distances;
+use crate::honesty::{Honesty, HonestyFigures};
 use crate::replay::Outcome;
 use crate::session::Row;
 
@@ -20,6 +21,7 @@ struct Errors {
 pub struct Score {
     length_m: f64,
     errors: [Errors; Method::ALL.len()],
+    honesty: Honesty,
 }
 
 /// The figures of one method; `None` where it said nothing, or there was no truth.
@@ -50,7 +52,7 @@ impl Score {
     /// No errors yet, for an arm of `length_mm`.
     #[must_use]
     pub fn new(length_mm: f64) -> Self {
-        Self { length_m: length_mm / 1e3, errors: Default::default() }
+        Self { length_m: length_mm / 1e3, errors: Default::default(), honesty: Honesty::default() }
     }
 
     /// Adds one row, as far as it has truth.
@@ -68,10 +70,12 @@ impl Score {
                 errors.tips.add(tip_m);
             }
         }
+        self.honesty.add(row, outcome);
     }
 
     /// Adds all errors of another session of the same arm.
     pub fn append(&mut self, other: &Self) {
+        self.honesty.append(&other.honesty);
         for (errors, other) in self.errors.iter_mut().zip(&other.errors) {
             errors.tips.append(&other.tips);
             errors.theta_square_sum += other.theta_square_sum;
@@ -83,6 +87,13 @@ impl Score {
     #[must_use]
     pub fn tips(&self, method: Method) -> &Distances {
         &self.errors[method as usize].tips
+    }
+
+    /// How honest the covariances were; `None` where there were none, or no truth.
+    #[must_use]
+    pub fn honesty(&self) -> Option<HonestyFigures> {
+        let figures = self.honesty.figures();
+        figures.end_nees.map(|_| figures)
     }
 
     /// The figures of each of [`Method::ALL`].

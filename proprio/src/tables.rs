@@ -63,7 +63,31 @@ pub fn replay(all: &AllFigures) -> String {
         ("Tip error, 75th percentile in mm".to_owned(), |figures| figures.tip_p75_mm),
         ("Bend angles, RMSE in deg".to_owned(), |figures| figures.theta_rmse_deg),
     ];
-    parts.map(|(title, figure)| format!("{title}\n{}\n", figures(all, figure))).join("\n")
+    let figures = parts.map(|(title, figure)| format!("{title}\n{}\n", figures(all, figure))).join("\n");
+    figures + &honesty(all)
+}
+
+/// How honest the covariances are: a line a session; nothing where there are none.
+fn honesty(all: &AllFigures) -> String {
+    if all.all.uncertainty.is_none() {
+        return String::new();
+    }
+    let mut table = table(&["session", "tip, NEES", "in 95 % ellipse", "all ends, NEES", "in 95 % ellipse", "angles, NEES"]);
+    let sessions = all.sessions.iter().map(|session| (session.path.as_str(), &session.figures));
+    for (name, figures) in sessions.chain([("all", &all.all)]) {
+        let Some(of) = &figures.uncertainty else { continue };
+        let nees = |value: Option<f64>| value.map_or("–".to_owned(), |value| format!("{value:.2}"));
+        let inside = |value: Option<f64>| value.map_or("–".to_owned(), |value| format!("{value:.1} %"));
+        table.add_row([
+            name.to_owned(),
+            nees(of.tip_nees),
+            inside(of.tip_inside_percent),
+            nees(of.end_nees),
+            inside(of.end_inside_percent),
+            nees(of.theta_nees),
+        ]);
+    }
+    format!("\nErrors of fusion over what its covariances expect\n{}\n", text(&mut table))
 }
 
 fn figures(all: &AllFigures, figure: Pick) -> String {

@@ -80,8 +80,8 @@ fn replay_all<S: Scalar>(
             tell(path, recorded);
         }
         all.append(&score);
-        let figures = ByMethod { methods: score.figures() };
+        let figures = ByMethod::from(&score);
         each.push(SessionFigures { path: path.display().to_string(), samples, seconds, figures, recorded });
     }
-    Ok(AllFigures { sessions: each, all: ByMethod { methods: all.figures() }, length_mm })
+    Ok(AllFigures { sessions: each, all: ByMethod::from(&all), length_mm })
 }

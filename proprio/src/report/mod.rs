@@ -119,7 +119,7 @@ impl<'t> Gathering<'t> {
             path: session.name.clone(),
             samples: session.extent.samples,
             seconds: session.extent.seconds,
-            figures: ByMethod { methods: session.score.figures() },
+            figures: ByMethod::from(&session.score),
             recorded: None,
         };
         let crc32 = self.table.bake::<Q>(file.rate_hz)?.checksum();
@@ -136,7 +136,7 @@ impl<'t> Gathering<'t> {
             },
             numbers: AllFigures {
                 sessions: sessions.iter().map(of_session).collect(),
-                all: ByMethod { methods: all.figures() },
+                all: ByMethod::from(all),
                 length_mm: file.length_mm(),
             },
             missing: self.missing(),

@@ -6,6 +6,7 @@
 //! | `interrupted` | the same while a fast interrupt strikes everywhere |
 //! | `preemption` | in which order tasks of three priorities run |
 //! | `step` | the estimator's step and nothing else, for the benchmark |
+//! | `beyond` | the same with observer, contact and uncertainty |
 //! | `growth` | the same for arms of 1 to 16 segments |
 #![no_std]
 

@@ -2,8 +2,8 @@
 
 use crate::random::Random;
 use estimator_core::{
-    AnchorRule, Angle, Arc, BendMap, Estimator, ImuReading, Noise, OffsetAt, Phase, Q, SENSORS_PER_SEGMENT, Sample,
-    Scalar, Segment, Table, Turns,
+    Alike, AnchorRule, Angle, Arc, BendMap, ContactRule, Estimator, ImuReading, Noise, ObserverRule, OffsetAt, Phase,
+    Play, Q, SENSORS_PER_SEGMENT, Sample, Scalar, Segment, Table, Turns, UncertaintyRule,
 };
 
 /// Samples of each arm, those of the tare included.
@@ -55,6 +55,46 @@ const fn table(segments: usize) -> Table<'static, Q> {
     Table { tare_samples: TARE, anchor, ..Table::bare(SEGMENTS.split_at(segments).0) }
 }
 
+/// Half a degree a play, and a tenth of it in the correction.
+const PLAY: Play<Q> = Play { half_width: Q::from_f64(0.01), weight: Q::from_f64(0.1) };
+
+/// Segments of which all is asked that a table can ask beyond the paper's method.
+static SEGMENTS_BEYOND: [Segment<Q>; 6] = {
+    let first = Segment { hysteresis: Some([PLAY; 3]), ..SEGMENT };
+    let second = Segment { alike: Some(Alike { segment: 0, ratio: 1 << 28 }), ..first };
+    let fourth = Segment { alike: Some(Alike { segment: 2, ratio: 1 << 28 }), ..first };
+    let sixth = Segment { alike: Some(Alike { segment: 4, ratio: 1 << 28 }), ..first };
+    [first, second, first, fourth, first, sixth]
+};
+
+const fn degrees(degrees: i64) -> Turns {
+    Turns::from_bits((degrees << 32) / 360)
+}
+
+/// The table of six segments with the observer, contact and uncertainty.
+pub static TABLE_BEYOND: Table<'static, Q> = Table {
+    segments: &SEGMENTS_BEYOND,
+    observer: Some(ObserverRule {
+        step: 6_710_886,
+        prior: [193_273, 21_990_233, 391_378_894],
+        growth: [0, 35, 1],
+        gate: degrees(8),
+        patience: 300,
+        jump: degrees(12),
+        still: degrees(1),
+        doubt: 13_421_773,
+    }),
+    contact: Some(ContactRule { bend: degrees(5), alike: degrees(4) }),
+    uncertainty: Some(UncertaintyRule {
+        theta: Q::from_f64(0.001),
+        drift: Q::from_f64(0.3),
+        bend: Q::from_f64(0.2),
+        contact: Q::from_f64(0.1),
+        end: Q::from_f64(6.4e-5),
+    }),
+    ..table(6)
+};
+
 /// Tables of 1, 2, 6, 12 and 16 segments.
 pub static TABLES: [Table<'static, Q>; 5] = [table(1), table(2), table(6), table(12), table(16)];
 
@@ -72,6 +112,23 @@ pub fn steps<const N: usize>(table: &'static Table<'static, Q>) {
         step_begins((&raw const sample).cast());
         let shape = estimator.fuse(&sample);
         step_ends((&raw const shape).cast());
+    }
+}
+
+/// All steps of one arm, each with the covariances of its shape.
+#[inline(never)]
+pub fn steps_with_uncertainty<const N: usize>(table: &'static Table<'static, Q>) {
+    let mut estimator = Estimator::<Q, N, WINDOW>::unstarted(table);
+    if estimator.start().is_err() {
+        return;
+    }
+    let mut arm = Arm::<N>::new();
+    for _ in 0..STEPS {
+        let sample = arm.sample();
+        step_begins((&raw const sample).cast());
+        estimator.fuse(&sample);
+        let uncertainties = estimator.uncertainties();
+        step_ends((&raw const uncertainties).cast());
     }
 }
 

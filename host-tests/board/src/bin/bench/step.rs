@@ -35,9 +35,10 @@ impl Range {
 ///
 /// # Panics
 /// If the firmware does not build, or does not run as it says.
-pub fn figures() -> [Figure; 5] {
+pub fn figures() -> [Figure; 7] {
     let growth = arms("growth", &SEGMENTS);
     let [(_, tare, after)] = &arms("step", &[6])[..] else { panic!("the firmware steps one arm") };
+    let [(_, _, beyond)] = &arms("beyond", &[6])[..] else { panic!("the firmware steps one arm") };
     let for_each =
         |arm: usize| growth.get(arm).map_or(f64::NAN, |(segments, _, after)| after.most as f64 / f64::from(*segments));
     [
@@ -46,6 +47,8 @@ pub fn figures() -> [Figure; 5] {
         Figure { name: "step_spread", value: (after.most - after.least) as f64 / after.least as f64 * 100.0 },
         Figure { name: "step_growth", value: for_each(4) / for_each(2) },
         Figure { name: "step_routines", value: unwanted(&elf("board-probe", "step")) as f64 },
+        Figure { name: "beyond_instructions", value: beyond.most as f64 },
+        Figure { name: "beyond_routines", value: unwanted(&elf("board-probe", "beyond")) as f64 },
     ]
 }
 
