@@ -103,6 +103,7 @@ fn the_first_estimate_that_differs_is_named() {
     assert_eq!(["theta_rad", "x_m", "y_m"].map(difference), [0, 0, 1]);
     assert!(stderr.contains("200 of 500 recorded estimates are not those of this replay"), "{stderr}");
     assert!(stderr.contains("tick 300, segment 3, recorded θ "), "{stderr}");
+    assert!(stderr.contains(" (synthetic)"), "{stderr}");
 }
 
 #[test]
