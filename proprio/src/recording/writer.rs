@@ -18,16 +18,13 @@ use crate::session::Truth;
 /// How long anything may wait to be written, ns. A file that is cut loses no more than that.
 const FLUSH_NS: u64 = 900_000_000;
 
-/// Ticks of which the times are remembered: an estimate follows its sample at once.
-const NO_SAMPLE: Option<(u32, HostNs)> = None;
-
 /// A recording that is being made. Every second it appends what came as one whole chunk; nothing is ever changed again.
 pub struct Recorder<W: Write> {
     mcap: mcap::Writer<NoSeek<W>>,
     channels: Channels,
     clock: BoardClock,
     hello: Option<Hello>,
-    /// Tick and time of the last sample.
+    /// Tick and time of the last sample, which its estimate follows at once.
     sample: Option<(u32, HostNs)>,
     flushed: HostNs,
     raw_messages: u32,
@@ -50,8 +47,7 @@ impl<W: Write> Recorder<W> {
     /// # Errors
     /// Those of `sink`.
     pub fn new(sink: W, at: HostNs, line: &str) -> io::Result<Self> {
-        // Chunks are put together in memory, so that the file only grows. Compression would need a C compiler, and
-        // what a board reads is mostly noise.
+        // Chunks are put together in memory, so that the file only grows. Compression would need a C compiler.
         let options = WriteOptions::new()
             .compression(None)
             .library(format!("proprio {}", env!("CARGO_PKG_VERSION")))
@@ -75,7 +71,7 @@ impl<W: Write> Recorder<W> {
             truth: None,
         };
         let clock = BoardClock::default();
-        Ok(Self { mcap, channels, clock, hello: None, sample: NO_SAMPLE, flushed: at, raw_messages: 0 })
+        Ok(Self { mcap, channels, clock, hello: None, sample: None, flushed: at, raw_messages: 0 })
     }
 
     /// Attaches the table that the board has, as its file stands.
