@@ -23,6 +23,7 @@ pub mod align;
 pub mod calibrate;
 pub mod convert;
 pub mod distances;
+pub mod drive;
 pub mod error;
 pub mod estimates;
 pub mod figures;

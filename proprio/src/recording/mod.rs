@@ -42,5 +42,7 @@ pub const JOINT_STATES: &str = "/joint_states";
 pub const SHAPE: &str = "/proprio/shape";
 /// Topic of `diagnostic_msgs/msg/DiagnosticArray`.
 pub const DIAGNOSTICS: &str = "/diagnostics";
+/// Topic of `proprio_msgs/msg/SetPoints`.
+pub const SET_POINTS: &str = "/proprio/set_points";
 /// Topic of `proprio_msgs/msg/Truth`.
 pub const TRUTH: &str = "/proprio/truth";
