@@ -118,7 +118,9 @@ impl Error {
             Self::SameKind(_) => "copy the file, or give the output another ending".to_owned(),
             Self::Stdout(_) => "write to a place that has room, or use --out".to_owned(),
             Self::OneSession(_) => "replay the sessions one by one".to_owned(),
-            Self::Rate(_) | Self::Seconds(_) | Self::Pressure(_) | Self::Ramp(_) => "give a value in this range".to_owned(),
+            Self::Rate(_) | Self::Seconds(_) | Self::Pressure(_) | Self::Ramp(_) => {
+                "give a value in this range".to_owned()
+            }
         }
     }
 }

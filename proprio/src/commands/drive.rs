@@ -34,10 +34,11 @@ pub fn run(args: &Drive) -> Result<(), Error> {
     let (table, link, events) = link::open(&args.link)?;
     let heed = Heed::interrupts();
     let status = Status::of(&link, &link.subscribe(), table.is_some())?;
+    // Nothing is written of a board that is not armed; an armed one stays vented until the first set-points.
+    let mut driver = Driver::arm(&link, &status)?;
     let recorder = args.output.as_deref().map(|path| FileRecorder::create(path, &link, table.as_ref()));
     let mut drive = Session { recorder: recorder.transpose()?, events, screen: Screen::new(), board_kpa: None };
     drive.catch_up()?;
-    let mut driver = Driver::arm(&link, &status).map_err(Error::Drive)?;
     let driven = drive.follow(&mut driver, &profile, Ramp::new(args.ramp * 1e3), &heed);
     // However it ended: vented first.
     let vented = driver.vent();
@@ -101,13 +102,7 @@ impl Session<'_> {
     }
 
     /// Follows the profile, and goes down to nothing at its end.
-    fn follow(
-        &mut self,
-        driver: &mut Driver,
-        profile: &Profile,
-        mut ramp: Ramp,
-        heed: &Heed,
-    ) -> Result<Driven, Error> {
+    fn follow(&mut self, driver: &mut Driver, profile: &Profile, mut ramp: Ramp, heed: &Heed) -> Result<Driven, Error> {
         let (start, mut last) = (Instant::now(), Instant::now());
         loop {
             let passed = start.elapsed();
@@ -148,7 +143,8 @@ impl Session<'_> {
     }
 
     fn show(&self, passed: Duration, end_s: f64, asked_pa: [u32; REGULATORS]) {
-        let end = if end_s.is_finite() { format!(" of {}", time(Duration::from_secs_f64(end_s))) } else { String::new() };
+        let end =
+            if end_s.is_finite() { format!(" of {}", time(Duration::from_secs_f64(end_s))) } else { String::new() };
         let board = self.board_kpa.as_deref().unwrap_or("–");
         self.screen.show(format!("{}{end}  asked {}  board {board} kPa", time(passed), kpa(asked_pa)));
     }

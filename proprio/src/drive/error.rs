@@ -42,7 +42,9 @@ impl DriveError {
     #[must_use]
     pub fn remedy(&self) -> &'static str {
         match self {
-            Self::OtherTable(_) => "`proprio flash --table` brings the table to the board",
+            Self::OtherTable(_) => {
+                "build and flash the firmware with this table (docs/FLASHING.md), or give the board's"
+            }
             Self::Crashed(_) => "air off until it is understood; a second `proprio drive` takes it for understood",
             Self::Blind => "`proprio status` tells how each of them is",
             Self::HeldBack { .. } => {

@@ -28,7 +28,7 @@ impl Ramp {
     /// Whether no pressure is left.
     #[must_use]
     pub fn is_vented(&self) -> bool {
-        self.now_pa == [0.0; REGULATORS]
+        self.now_pa.iter().all(|now_pa| *now_pa <= 0.0)
     }
 }
 

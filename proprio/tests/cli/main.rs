@@ -11,6 +11,7 @@ mod calibrate_faults;
 mod calibrate_gaps;
 mod common;
 mod convert;
+mod drive;
 mod estimates;
 mod figures;
 mod guide;
