@@ -22,7 +22,7 @@ const LONGEST_STEP: Duration = PERIOD.saturating_mul(2);
 pub fn run(args: &Drive) -> Result<(), Error> {
     // All that can be wrong is said before the board is touched.
     let profile = profile(args)?;
-    if !(args.ramp > 0.0) {
+    if args.ramp.is_nan() || args.ramp <= 0.0 {
         return Err(Error::Ramp(args.ramp));
     }
     args.output.as_deref().map_or(Ok(()), recorder::check)?;
@@ -92,13 +92,11 @@ struct Driven {
 impl Session<'_> {
     /// Takes what came until the board was known: it belongs into the recording, and is judged already.
     fn catch_up(&mut self) -> Result<(), Error> {
-        match &mut self.recorder {
-            Some(recorder) => recorder.take_rest(&self.events),
-            None => {
-                while self.events.next(Duration::ZERO).is_some() {}
-                Ok(())
-            }
+        if let Some(recorder) = &mut self.recorder {
+            return recorder.take_rest(&self.events);
         }
+        while self.events.next(Duration::ZERO).is_some() {}
+        Ok(())
     }
 
     /// Follows the profile, and goes down to nothing at its end.
