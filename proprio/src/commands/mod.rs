@@ -5,6 +5,7 @@ mod calibrate;
 mod completions;
 mod convert;
 mod link;
+mod monitor;
 mod ports;
 mod record;
 mod recover;
@@ -32,6 +33,7 @@ impl Command {
             Self::Ports(args) => ports::run(&args),
             Self::Status(args) => status::run(&args),
             Self::Record(args) => record::run(&args),
+            Self::Monitor(args) => monitor::run(&args),
             Self::Convert(args) => convert::run(&args),
             Self::Recover(args) => recover::run(&args),
             Self::Completions(args) => completions::run(&args),

@@ -52,6 +52,9 @@ pub const TRUTH: Schema = Schema {
     needs: &[HEADER, TIME],
 };
 
+pub const STRING: Schema =
+    Schema { name: "std_msgs/msg/String", definition: include_str!("definitions/String.msg"), needs: &[] };
+
 impl Schema {
     /// The definition and all that it needs, as MCAP's encoding `ros2msg` has them.
     pub fn text(&self) -> String {

@@ -9,10 +9,9 @@ use mcap::write::NoSeek;
 use mcap::{Attachment, McapError, WriteOptions};
 use telemetry::{Estimate, Hello, Message, SCHEMA, Sample};
 
-use super::board_clock::BoardClock;
 use super::schema::{self, Schema};
-use super::{DIAGNOSTICS, JOINT_STATES, RAW, SAMPLES, SHAPE, TRUTH, messages};
-use crate::link::HostNs;
+use super::{DIAGNOSTICS, JOINT_STATES, MARKS, RAW, SAMPLES, SHAPE, TRUTH, messages};
+use crate::link::{BoardClock, HostNs};
 use crate::session::Truth;
 
 /// How long anything may wait to be written, ns. A file that is cut loses no more than that.
@@ -31,6 +30,7 @@ pub struct Recorder<W: Write> {
     sample: Option<(u32, HostNs)>,
     flushed: HostNs,
     raw_messages: u32,
+    marks: u32,
 }
 
 /// Numbers of the channels.
@@ -42,6 +42,8 @@ struct Channels {
     diagnostics: u16,
     /// Only where there is truth.
     truth: Option<u16>,
+    /// Only where there are marks.
+    marks: Option<u16>,
 }
 
 impl<W: Write> Recorder<W> {
@@ -73,9 +75,10 @@ impl<W: Write> Recorder<W> {
             shape: channel(&mut mcap, SHAPE, &schema::POSE_ARRAY)?,
             diagnostics: channel(&mut mcap, DIAGNOSTICS, &schema::DIAGNOSTIC_ARRAY)?,
             truth: None,
+            marks: None,
         };
         let clock = BoardClock::default();
-        Ok(Self { mcap, channels, clock, hello: None, sample: NO_SAMPLE, flushed: at, raw_messages: 0 })
+        Ok(Self { mcap, channels, clock, hello: None, sample: NO_SAMPLE, flushed: at, raw_messages: 0, marks: 0 })
     }
 
     /// Attaches the table that the board has, as its file stands.
@@ -131,6 +134,19 @@ impl<W: Write> Recorder<W> {
         };
         let stamp = self.stamp(tick, at);
         self.write(channel, tick, at, stamp, &messages::truth(stamp, ends))
+    }
+
+    /// Writes that a person has marked this moment, and what for.
+    ///
+    /// # Errors
+    /// Those of the sink.
+    pub fn mark(&mut self, at: HostNs, text: &str) -> io::Result<()> {
+        let channel = match self.channels.marks {
+            Some(channel) => channel,
+            None => *self.channels.marks.insert(channel(&mut self.mcap, MARKS, &schema::STRING)?),
+        };
+        self.marks = self.marks.wrapping_add(1);
+        self.write(channel, self.marks, at, at, &messages::mark(text))
     }
 
     /// Writes what came, where it has waited long enough.
