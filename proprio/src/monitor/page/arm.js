@@ -1,5 +1,7 @@
 // The arm, to scale.
 
+import { minus } from './plot.js';
+
 const RAD = Math.PI / 180;
 /** Time of the tip's trail, s. */
 const TRAIL = 10;
@@ -145,7 +147,8 @@ export function armValues(store, row) {
   const [x, y] = [value(`x${n}_mm`), value(`y${n}_mm`)];
   if (!Number.isFinite(x)) return 'no estimate yet';
   const heading = store.series('theta', '_deg').reduce((sum, column) => sum + column[row], 0);
-  const text = `tip x ${x.toFixed(1)} mm, y ${y.toFixed(1)} mm, heading ${heading.toFixed(1)}°`;
+  const [shownX, shownY, shownHeading] = [x, y, heading].map((number) => minus(number.toFixed(1)));
+  const text = `tip x ${shownX} mm, y ${shownY} mm, heading ${shownHeading}°`;
   const error = Math.hypot(x - value(`truth${n}_x_mm`), y - value(`truth${n}_y_mm`));
   return Number.isFinite(error) ? `${text}, ${error.toFixed(1)} mm from truth` : text;
 }

@@ -1,5 +1,6 @@
 // Board and link, in words and numbers.
 
+import { minus } from './plot.js';
 import { text } from './sensors.js';
 
 /** What is told, and how; `undefined` where it is not known. */
@@ -18,7 +19,7 @@ const FACTS = [
   ['recording', 'Recording', (s) => (s.recording ? recording(s.recording) : 'none')],
 ];
 
-const signed = (value) => (value < 0 ? `−${(-value).toFixed(1)}` : `+${value.toFixed(1)}`);
+const signed = (value) => (value < 0 ? '' : '+') + minus(value.toFixed(1));
 
 function recording({ file, samples, marks, dropped_events, failed }) {
   if (failed) return `${file} FAILED: ${failed}`;

@@ -20,7 +20,8 @@ const app = {
   arm: null, status: null, live: null, session: null,
   view: new View(), isFixed: false, isPlaying: false, hidden: new Set(), marks: [],
   uncertainty: null, contact: null,
-  isDirty: true, newest_us: 0, drawn: 0, skipped: 0,
+  /** Something was changed by hand; rows have come. */
+  isDirty: true, isNew: false, newest_us: 0, drawn: 0, skipped: 0,
   /** What is shown: a session, or what comes. */
   get store() { return this.session?.store ?? this.live; },
   changed() { this.isDirty = true; },
@@ -58,7 +59,7 @@ const feed = new Feed({
       if (!(time <= app.live.last)) app.live.push(time, values);
     }
     Object.assign(app, { newest_us, uncertainty: uncertainty ?? app.uncertainty, contact: contact ?? app.contact });
-    if (!app.session && app.view.isFollowing) app.changed();
+    if (!app.session && app.view.isFollowing) app.isNew = true;
   },
   status(status) {
     app.status = status;
@@ -222,9 +223,9 @@ function armSpec() {
   return { store, row, geometry, colours: palette, uncertainty: isNow && app.uncertainty, contact: isNow && app.contact };
 }
 
-function plotSpec({ before, range }) {
+function plotSpec({ before, range }, width) {
   const { store, view, hidden, marks } = app;
-  const [from, to] = view.window(store);
+  const [from, to] = wholePixels(view.window(store), width);
   const columns = store?.series(before, '_deg') ?? [];
   const seen = columns.filter((_, i) => !hidden.has(i));
   const [low, high] = store?.count ? extent(seen, ...visible(store, from, to)) : [NaN, NaN];
@@ -234,10 +235,20 @@ function plotSpec({ before, range }) {
   return { store, columns, range, from, to, cursor: view.cursor, marks: app.session ? [] : marks, hidden, colours: palette, empty };
 }
 
-function draw() {
+/** The window moved on by whole pixels only: rows stay in their columns, and what would look the same is not drawn again. */
+function wholePixels([from, to], width) {
+  const pixel = (to - from) / width;
+  const end = Math.ceil(to / pixel) * pixel;
+  return [end - (to - from), end];
+}
+
+/** Draws the arm, and the plots where they have changed or moved on. */
+function draw(isAll) {
   const spec = armSpec();
   drawArm(...fit($('arm-canvas')), spec);
-  for (const plot of plots) drawPlot(...fit(plot.canvas), plotSpec(plot));
+  const [, end] = wholePixels(app.view.window(app.store), plots[0].canvas.clientWidth);
+  if (isAll || end !== drawnTo) for (const plot of plots) drawPlot(...fit(plot.canvas), plotSpec(plot, plot.canvas.clientWidth));
+  drawnTo = end;
   if (spec.store?.count) text($('arm-values'), armValues(spec.store, spec.row));
   app.drawn++;
 }
@@ -266,7 +277,7 @@ function drawSlowly() {
   if (!isSession) facts.show(app.status);
 }
 
-let seen_us = 0, shown_us = 0, played = performance.now();
+let drawnTo = NaN, seen_us = 0, shown_us = 0, played = performance.now();
 function frame(now) {
   requestAnimationFrame(frame);
   // What was drawn in the frame before is on the screen now.
@@ -279,9 +290,9 @@ function frame(now) {
     app.isDirty = true;
   }
   played = now;
-  if (!app.isDirty) return;
-  app.isDirty = false;
-  draw();
+  if (!app.isDirty && !app.isNew) return;
+  draw(app.isDirty);
+  Object.assign(app, { isDirty: false, isNew: false });
   if (!app.session && app.view.isFollowing && app.newest_us !== seen_us) shown_us = seen_us = app.newest_us;
 }
 requestAnimationFrame(frame);
@@ -314,7 +325,7 @@ function exportSvg() {
     width = Math.max(width, canvas.clientWidth);
   };
   add($('arm-canvas'), `Arm, ${$('arm-values').textContent}`, (w, h) => drawArm(c, w, h, armSpec()));
-  for (const plot of plots) add(plot.canvas, `${plot.title}, ${plot.unit}`, (w, h) => drawPlot(c, w, h, plotSpec(plot)));
+  for (const plot of plots) add(plot.canvas, `${plot.title}, ${plot.unit}`, (w, h) => drawPlot(c, w, h, plotSpec(plot, w)));
   save('proprio.svg', 'image/svg+xml', c.text(width, y, palette.paper));
 }
 

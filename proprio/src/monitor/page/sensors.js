@@ -1,5 +1,7 @@
 // A strip for each sensor: value, state, reason.
 
+import { minus } from './plot.js';
+
 /** How a state looks; whatever is not here is bad. */
 const LOOKS = { Ok: 'ok', Slow: 'warn', Intermittent: 'warn', read: 'ok', missing: 'bad', '–': 'none' };
 
@@ -33,7 +35,7 @@ export class Strips {
       const told = health?.[i];
       const state = told?.state ?? (!store.count || health ? '–' : isRead ? 'read' : 'missing');
       const reason = told ? [told.reason, told.missed ? `${told.missed} missed` : ''].filter(Boolean).join(', ') : '';
-      text(strip.value, !isRead ? '–' : strip.kind === 'imu' ? `${value.toFixed(1)}°` : `${value} counts`);
+      text(strip.value, !isRead ? '–' : strip.kind === 'imu' ? `${minus(value.toFixed(1))}°` : `${value} counts`);
       text(strip.state, state);
       text(strip.reason, reason);
       const look = LOOKS[state] ?? 'bad';
