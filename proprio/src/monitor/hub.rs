@@ -12,8 +12,8 @@ use super::observer::Observer;
 use super::shared::Shared;
 use crate::link::{Event, HostNs, Link, Subscription, What};
 
-/// Time from one batch of rows to the next: 40 a second.
-const BATCH: Duration = Duration::from_millis(25);
+/// Time from one batch of rows to the next: 50 a second.
+const BATCH: Duration = Duration::from_millis(20);
 /// Time from one status to the next.
 const STATUS: Duration = Duration::from_millis(200);
 /// Notes that are kept.
