@@ -74,6 +74,7 @@ fn what_is_seen_is_exported_as_csv_and_svg() {
 fn plots_are_zoomed_and_moved_from_the_keyboard() {
     let (_rig, mut browser) = opened();
     browser.press(" ");
+    browser.wait_for("document.getElementById('pause').getAttribute('aria-pressed') === 'true'");
     browser.value("document.querySelector('#figures canvas').focus()");
     let plot = "document.querySelector('#figures canvas').toDataURL()";
     for key in ["+", "-", "ArrowLeft", "*"] {
