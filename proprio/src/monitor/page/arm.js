@@ -63,7 +63,6 @@ export function drawArm(c, width, height, { store, row, geometry, uncertainty, c
   c.lineCap = 'round';
   c.lineJoin = 'round';
   trail(c, store, row, to, colours);
-  truth(c, store, row, to, colours);
   const segments = shape(store, row, geometry);
   const thick = Math.max(5, 26 * scale);
   segments.forEach(({ line }, i) => {
@@ -81,6 +80,7 @@ export function drawArm(c, width, height, { store, row, geometry, uncertainty, c
     c.lineWidth = 1.5;
     c.stroke();
   });
+  truth(c, store, row, to, colours);
 }
 
 function path(c, points, { colour, width, alpha = 1, dash = [] }) {

@@ -12,6 +12,7 @@ export class Control {
     this.section = section;
     this.complain = complain;
     this.part = (id) => section.querySelector(id);
+    this.button = document.getElementById('vent');
     this.takeToken();
     this.isDriving = false;
     this.part('#unlock').addEventListener('submit', (event) => {
@@ -19,7 +20,7 @@ export class Control {
       this.setToken(this.part('#token').value.trim());
     });
     this.part('#arm-pressures').addEventListener('click', () => this.arm());
-    this.part('#vent').addEventListener('click', () => this.vent());
+    this.button.addEventListener('click', () => this.vent());
     this.sliders = NAMES.map((name, i) => this.slider(name, i));
     setInterval(() => this.refresh(), REFRESH);
   }
@@ -43,7 +44,7 @@ export class Control {
   lock() {
     this.part('#unlock').hidden = Boolean(this.token);
     this.part('#driving').hidden = !this.token;
-    this.part('#vent').disabled = !this.token;
+    this.button.disabled = !this.token;
   }
 
   slider(name, i) {
@@ -62,7 +63,7 @@ export class Control {
 
   /** What the board says: only while it is armed is there anything to be set. */
   status(arm, health) {
-    this.section.hidden = !arm.allows_control;
+    this.section.hidden = this.button.hidden = !arm.allows_control;
     this.lock();
     const state = health?.actuation ?? 'no board';
     this.part('#actuation').textContent = state.toLowerCase();

@@ -45,7 +45,7 @@ const feed = new Feed({
       app.live = new Store(arm.columns);
       build();
     }
-    for (const id of ['record', 'mark']) $(id).hidden = !arm.is_live;
+    for (const id of ['record', 'mark', 'board']) $(id).hidden = !arm.is_live;
     linkState(arm.is_live ? 'wait' : 'ok', arm.is_live ? 'waiting for the board' : 'sessions only');
     if (arm.session && !app.session) load(arm.session, {}).then(openSession, (error) => complain(error.message));
   },
@@ -231,7 +231,9 @@ function plotSpec({ before, range }, width) {
   const [low, high] = store?.count ? extent(seen, ...visible(store, from, to)) : [NaN, NaN];
   if (!app.isFixed) range.follow(low, high);
   const hasTable = Boolean(app.session || app.arm?.opens_sessions);
-  const empty = low <= high ? '' : !store?.count ? 'nothing has come yet' : hasTable ? 'not known here' : 'takes a table: --table TABLE.toml';
+  const unknown = !store?.count ? 'nothing has come yet' : !hasTable ? 'takes a table: --table TABLE.toml'
+    : app.session || before === 'theta' ? 'not known here' : 'known from the next tare on';
+  const empty = low <= high ? '' : unknown;
   return { store, columns, range, from, to, cursor: view.cursor, marks: app.session ? [] : marks, hidden, colours: palette, empty };
 }
 
@@ -274,7 +276,7 @@ function drawSlowly() {
   $('key-truth').hidden = !store.names.some((name) => /^truth\d+_x_mm$/.test(name) && at(name));
   $('key-ellipse').hidden = !app.uncertainty;
   $('key-contact').hidden = !app.contact;
-  if (!isSession) facts.show(app.status);
+  facts.show(app.status);
 }
 
 let drawnTo = NaN, seen_us = 0, shown_us = 0, played = performance.now();

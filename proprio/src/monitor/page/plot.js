@@ -137,7 +137,7 @@ export function drawPlot(c, width, height, spec) {
     c.fillStyle = colours.faint;
     c.textAlign = 'center';
     c.textBaseline = 'middle';
-    c.fillText(empty, inner.x + inner.w / 2, inner.y + inner.h / 2);
+    c.fillText(empty, inner.x + inner.w / 2, inner.y + 0.4 * inner.h);
     return;
   }
   c.save();
@@ -182,7 +182,7 @@ function axes(c, inner, { from, to, range, toX, toY, colours, width }) {
   c.lineWidth = 1;
   c.textBaseline = 'middle';
   c.textAlign = 'right';
-  const vertical = ticks(range.low, range.high, 4);
+  const vertical = ticks(range.low, range.high, 6);
   for (const value of vertical.found) {
     const y = Math.round(toY(value)) + 0.5;
     c.strokeStyle = colours.grid;

@@ -23,14 +23,15 @@ export class View {
   /** Stays where it is. */
   hold(store) {
     [, this.end] = this.window(store);
-    this.cursor ??= this.end;
+    this.cursor ??= Math.min(this.end, store.last);
   }
 
   /** From and to; a span of 0 is all there is. */
   window(store) {
     const last = store?.count ? store.last : 0, first = store?.count ? store.first : 0;
     const span = this.span || Math.max(last - first, SHORTEST);
-    const to = this.end ?? last;
+    // At the begin the picture fills from the left.
+    const to = this.end ?? Math.max(last, first + span);
     return [to - span, to];
   }
 
