@@ -58,11 +58,7 @@ fn show(args: &cli::Monitor) -> Result<(), Error> {
 }
 
 /// Starts the server, and prints where it is.
-fn start(
-    args: &cli::Monitor,
-    live: Option<(Link, Subscription)>,
-    table: Option<NamedTable>,
-) -> Result<Monitor, Error> {
+fn start(args: &cli::Monitor, live: Option<(Link, Subscription)>, table: Option<NamedTable>) -> Result<Monitor, Error> {
     let token = args.allow_control.then(Token::new).transpose().map_err(Error::Random)?;
     let address = |port: u16| match &token {
         Some(token) => format!("http://127.0.0.1:{port}/#token={token}\n"),

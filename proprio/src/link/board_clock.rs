@@ -60,8 +60,7 @@ impl BoardClock {
         let here = Least { board_ns, difference_ns: (at.0 as i64).saturating_sub(board_ns) };
         let least = self.least.filter(|least| least.difference_ns <= here.difference_ns).unwrap_or(here);
         self.least = Some(least);
-        let difference_ns =
-            self.least_before.map_or(least.difference_ns, |before| before.min(least.difference_ns));
+        let difference_ns = self.least_before.map_or(least.difference_ns, |before| before.min(least.difference_ns));
         HostNs(board_ns.saturating_add(difference_ns).max(0) as u64)
     }
 

@@ -70,10 +70,7 @@ pub(super) struct Sent {
 pub(super) async fn send(State(server): State<Server>, Query(sent): Query<Sent>, mut body: Body) -> Answer<()> {
     let failed = |error: &dyn std::fmt::Display| (StatusCode::CONFLICT, error.to_string()).into_response();
     let suffix = std::path::Path::new(&sent.name).extension().unwrap_or_default().to_string_lossy().into_owned();
-    let mut file = tempfile::Builder::new()
-        .suffix(&format!(".{suffix}"))
-        .tempfile()
-        .map_err(|error| failed(&error))?;
+    let mut file = tempfile::Builder::new().suffix(&format!(".{suffix}")).tempfile().map_err(|error| failed(&error))?;
     while let Some(frame) = body.frame().await {
         let data: Bytes = frame.map_err(|error| failed(&error))?.into_data().unwrap_or_default();
         file.write_all(&data).map_err(|error| failed(&error))?;
@@ -89,9 +86,12 @@ pub(super) struct Record {
 
 pub(super) async fn record(State(server): State<Server>, Json(Record { on }): Json<Record>) -> Answer<Response> {
     let shared = server.shared;
-    let done = beside(move || {
-        if on { shared.begin_recording().map(|()| shared.recording()) } else { shared.finish_recording() }
-    });
+    let done =
+        beside(
+            move || {
+                if on { shared.begin_recording().map(|()| shared.recording()) } else { shared.finish_recording() }
+            },
+        );
     Ok(Json(done.await?.map_err(Error::into_response)?).into_response())
 }
 
@@ -112,7 +112,9 @@ pub(super) enum Control {
     Arm,
     /// Vents, and disarms.
     Vent,
-    SetPressures { kpa: [f64; REGULATORS] },
+    SetPressures {
+        kpa: [f64; REGULATORS],
+    },
 }
 
 impl From<Control> for Command {
@@ -132,7 +134,12 @@ impl From<Control> for Command {
 pub(super) async fn control(State(server): State<Server>, headers: HeaderMap, body: Bytes) -> Answer<()> {
     let shared = server.shared;
     // The token before anything else is looked at.
-    shared.token.as_ref().ok_or(Refused::ReadOnly).and_then(|token| token.check(&headers)).map_err(Refused::into_response)?;
+    shared
+        .token
+        .as_ref()
+        .ok_or(Refused::ReadOnly)
+        .and_then(|token| token.check(&headers))
+        .map_err(Refused::into_response)?;
     let control: Control =
         serde_json::from_slice(&body).map_err(|error| (StatusCode::BAD_REQUEST, error.to_string()).into_response())?;
     let asked = beside(move || shared.link.as_ref().map(|link| link.request(control.into())));

@@ -19,7 +19,9 @@ pub(super) enum Feed<'a> {
     Rows(Rows),
     Status(Box<Status>),
     /// This page was too slow: so many messages are not sent to it.
-    Skipped { messages: u64 },
+    Skipped {
+        messages: u64,
+    },
 }
 
 impl Feed<'_> {
@@ -116,7 +118,7 @@ pub(super) struct Status {
     pub restarts: u32,
     /// Events that this program was too slow for.
     pub dropped_events: u64,
-    pub drift: Option<ClockDrift>,
+    pub clock: Option<BoardTime>,
     /// From the sample to the screen.
     pub latency: Option<Percentiles>,
     /// The part of it that is not measured but reckoned: the board's work and the frame on the line.
@@ -187,6 +189,14 @@ impl From<SensorHealth> for Sensor {
     }
 }
 
+/// The board's clock against the host's.
+#[derive(Debug, Serialize)]
+pub(super) struct BoardTime {
+    /// The board's time 0, ms since 1970, UTC.
+    pub zero_ms: f64,
+    pub drift: Option<ClockDrift>,
+}
+
 /// How fast the board's clock parts from the host's.
 #[derive(Debug, Serialize)]
 pub(super) struct ClockDrift {
@@ -225,7 +235,7 @@ impl Status {
             lost: link.counts.lost,
             restarts: link.restarts,
             dropped_events: 0,
-            drift: None,
+            clock: None,
             latency: None,
             least_delay_ms: None,
             recording: None,

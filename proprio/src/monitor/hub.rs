@@ -92,7 +92,7 @@ impl<'t> Hub<'t> {
         status.health = self.live.health.as_ref().map(Into::into);
         status.sensors = self.live.sensors().into_iter().map(Into::into).collect();
         status.dropped_events = self.events.dropped();
-        status.drift = self.live.clock().drift().map(Into::into);
+        status.clock = self.live.board_time();
         status.latency = self.shared.latency().percentiles();
         status.least_delay_ms = self.live.least_delay_us().map(|delay_us| f64::from(delay_us) / 1e3);
         status.recording = self.shared.recording();

@@ -5,6 +5,7 @@ use std::collections::VecDeque;
 use estimator_core::Sample;
 use telemetry::{BEND_SENSORS, Estimate, Health, Message, SEGMENTS, SensorHealth, SensorState};
 
+use super::feed::BoardTime;
 use super::observer::Observer;
 use super::row::Row;
 use crate::link::{BoardClock, Event, HostNs, What};
@@ -47,6 +48,8 @@ pub(super) struct Live<'t> {
     /// Whether the observer has seen every sample since the estimator's start.
     is_observed: bool,
     clock: BoardClock,
+    /// The board's time 0 on the host's clock, ns.
+    zero_ns: Option<u64>,
     /// The row that waits for its estimate, and its tick.
     open: Option<(u32, Taken)>,
     last: Option<Last>,
@@ -71,6 +74,7 @@ impl<'t> Live<'t> {
             observer,
             is_observed: false,
             clock: BoardClock::default(),
+            zero_ns: None,
             open: None,
             last: None,
             base_us: 0,
@@ -149,6 +153,7 @@ impl<'t> Live<'t> {
         row.set_sample(&Sample::<SEGMENTS>::from(sample));
         let delay_ns = self.least_delay_us().map_or(0, |delay_us| u64::from(delay_us) * 1000);
         let sampled = HostNs(self.clock.host_ns(at, sample.time_us).0.saturating_sub(delay_ns));
+        self.zero_ns = Some(sampled.0.saturating_sub(sample.time_us.saturating_mul(1000)));
         Taken { row, sampled }
     }
 
@@ -164,8 +169,10 @@ impl<'t> Live<'t> {
         self.health.map(|health| health.longest_tick_us.saturating_add(SAMPLE_FRAME_US))
     }
 
-    pub fn clock(&self) -> &BoardClock {
-        &self.clock
+    /// How the board's clock stands to the host's.
+    pub fn board_time(&self) -> Option<BoardTime> {
+        let zero_ms = self.zero_ns? as f64 / 1e6;
+        Some(BoardTime { zero_ms, drift: self.clock.drift().map(Into::into) })
     }
 
     /// The state of a sensor has changed: bend sensors first, then IMUs. Health says the same, up to a fifth of a second later.

@@ -90,7 +90,8 @@ impl Monitor {
         let baked = options.table.as_ref().map(|table| table.bake::<Q>(TICK_HZ)).transpose()?;
 
         let table = options.table.as_ref();
-        let segments = if live.is_some() { SEGMENTS } else { table.map_or(SEGMENTS, |table| table.file.segments.len()) };
+        let segments =
+            if live.is_some() { SEGMENTS } else { table.map_or(SEGMENTS, |table| table.file.segments.len()) };
         let mut arm = Arm::new(segments, table.map(|table| &table.file).filter(|file| file.segments.len() == segments));
         (arm.is_live, arm.allows_control) = (live.is_some(), options.token.is_some());
         arm.opens_sessions = table.is_some();
@@ -114,8 +115,13 @@ impl Monitor {
                 _ = stopped => Ok(()),
             }
         };
-        // That it ends early leaves nothing to be told to anybody.
-        monitor.spawn("server", move || drop(runtime.block_on(work))).map_err(failed)?;
+        let serve = move || {
+            // That it ends early leaves nothing to be told to anybody.
+            let _ = runtime.block_on(work);
+            // A long session that is being opened is not waited for.
+            runtime.shutdown_background();
+        };
+        monitor.spawn("server", serve).map_err(failed)?;
         Ok(monitor)
     }
 

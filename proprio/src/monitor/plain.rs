@@ -48,14 +48,19 @@ impl Plain {
                 write!(line, "θ {}°  tip {tip} mm", thetas.join(" "))
             }
         };
-        let _ = write!(line, "  {:.1} samples/s  {} lost  {} damaged", rates.samples_hz, link.counts.lost, link.counts.damaged);
+        let _ = write!(
+            line,
+            "  {:.1} samples/s  {} lost  {} damaged",
+            rates.samples_hz, link.counts.lost, link.counts.damaged
+        );
         if let Some(health) = &self.live.health {
             let _ = write!(line, "  load {:.1} %", f64::from(health.load_permille) / 10.0);
             if health.actuation != Actuation::Disarmed {
                 let _ = write!(line, "  {:?}", health.actuation);
             }
         }
-        for (i, sensor) in self.live.sensors().iter().enumerate().filter(|(_, sensor)| sensor.state != SensorState::Ok) {
+        for (i, sensor) in self.live.sensors().iter().enumerate().filter(|(_, sensor)| sensor.state != SensorState::Ok)
+        {
             let _ = match i.checked_sub(BEND_SENSORS) {
                 Some(imu) => write!(line, "  IMU {} {:?}", imu + 1, sensor.state),
                 None => write!(line, "  bend {}{} {:?}", i / 2 + 1, ['a', 'b'][i % 2], sensor.state),

@@ -141,5 +141,7 @@ impl Sessions {
 /// By the ending of its name.
 fn is_session(name: &str) -> bool {
     let extension = Path::new(name).extension();
-    ["csv", "mcap", "bin"].iter().any(|ending| extension.is_some_and(|extension| extension.eq_ignore_ascii_case(ending)))
+    ["csv", "mcap", "bin"]
+        .iter()
+        .any(|ending| extension.is_some_and(|extension| extension.eq_ignore_ascii_case(ending)))
 }

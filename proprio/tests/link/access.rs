@@ -12,7 +12,12 @@ fn only_this_machine_s_own_names_are_answered() {
     for host in [page.host(), format!("localhost:{}", page.port())] {
         assert_eq!(page.ask("GET", "/", &[("Host", &host)], "").status, 200, "{host}");
     }
-    let strangers = ["example.com".to_owned(), format!("example.com:{}", page.port()), "127.0.0.1".to_owned(), "127.0.0.1:1".to_owned()];
+    let strangers = [
+        "example.com".to_owned(),
+        format!("example.com:{}", page.port()),
+        "127.0.0.1".to_owned(),
+        "127.0.0.1:1".to_owned(),
+    ];
     for host in strangers {
         for path in ["/", "/status", "/history", "/sessions"] {
             let answer = page.ask("GET", path, &[("Host", &host)], "");

@@ -1,11 +1,14 @@
 //! What the live page is told, and recorded from it.
 
+use proprio::link::{Event, HostClock, Link, What};
+use proprio::monitor::Plain;
 use telemetry::{
-    Actuation, BEND_SENSORS, Estimate, Health, Message, REGULATORS, SEGMENTS, SegmentEstimate, SensorHealth, SensorState,
+    Actuation, BEND_SENSORS, Estimate, Health, Message, REGULATORS, SEGMENTS, SegmentEstimate, SensorHealth,
+    SensorState,
 };
 
 use super::http::Page;
-use super::line::{Line, sample};
+use super::line::{Line, sample, wait_for};
 
 /// 2⁻²⁶ rad or m.
 fn bits(value: f64) -> i32 {
@@ -197,6 +200,41 @@ fn what_is_recorded_from_the_page_is_all_that_came_even_if_no_page_keeps_up() {
     assert_eq!(ticks, 20_000);
     // CDR: four bytes of what it is, the length with its zero, the text.
     assert_eq!(marks, [b"\0\x01\0\0\x05\0\0\0push\0".to_vec()]);
+}
+
+#[test]
+fn a_recording_is_completed_when_the_monitor_ends() {
+    let line = Line::new();
+    let page = Page::of(&line, None);
+    line.board().restart(1);
+    page.post("/record", r#"{"on":true}"#);
+    say(&line, 0..50);
+    page.wait_for_status(|status| status["recording"]["samples"] == 50);
+    let file = page.monitor.finish().expect("it can be written").expect("it was recorded");
+    let recording = std::fs::read(file).expect("it is there");
+    let summary = mcap::Summary::read(&recording).expect("it is whole").expect("it has an index");
+    assert!(summary.stats.expect("it has statistics").message_count > 100);
+}
+
+#[test]
+fn a_line_for_a_terminal_has_the_shape_the_rates_and_what_is_wrong() {
+    let line = Line::new();
+    let (link, events) = Link::start(Box::new(line.clone()), None).expect("memory opens");
+    let (mut plain, clock) = (Plain::new(), HostClock::new());
+    assert!(plain.line(clock.now(), &link.state()).starts_with("no estimate yet  "));
+    line.board().restart(1);
+    line.board().say(&Message::Health(health(0, SensorState::Off)));
+    say(&line, 0..1);
+    wait_for(&events, |what| {
+        plain.take(&Event { at: clock.now(), what: what.clone() });
+        matches!(what, What::Message(Message::Estimate(_))).then_some(())
+    });
+    let said = plain.line(clock.now(), &link.state());
+    assert!(said.starts_with("θ +0.0 +5.7 +11.5 +17.2 +22.9 +28.6°  tip 50.0 100.0 mm  "), "{said}");
+    assert!(said.ends_with(" samples/s  0 lost  0 damaged  load 12.3 %  IMU 3 Off"), "{said}");
+    line.board().unplugged = true;
+    wait_for(&events, |what| matches!(what, What::Lost(_)).then_some(()));
+    assert!(plain.line(clock.now(), &link.state()).starts_with("the line is gone"));
 }
 
 #[test]

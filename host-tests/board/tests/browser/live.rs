@@ -2,8 +2,7 @@
 
 use std::time::Duration;
 
-use super::chromium::Browser;
-use super::rig::Rig;
+use board_tests::browser::{Browser, MonitorRun};
 
 /// The page is live: samples come and the arm is there.
 const LIVE: &str = "document.getElementById('link').dataset.state === 'ok' \
@@ -12,8 +11,8 @@ const LIVE: &str = "document.getElementById('link').dataset.state === 'ok' \
 /// Sum of what the canvas shows, which changes with the picture.
 const PICTURE: &str = "document.getElementById('arm-canvas').toDataURL()";
 
-fn opened(arguments: &[&str]) -> (Rig, Browser) {
-    let rig = Rig::live(arguments);
+fn opened(arguments: &[&str]) -> (MonitorRun, Browser) {
+    let rig = MonitorRun::live(arguments);
     let mut browser = Browser::start();
     browser.screen([1400, 1000], "light");
     browser.open(&rig.address);
@@ -96,9 +95,18 @@ fn another_page_gets_neither_feed_nor_answers() {
          socket.onopen = () => told('open'); socket.onerror = () => told('refused'); }})"
     );
     assert_eq!(browser.value(&socket), "refused");
-    let post = format!("fetch('{}/record', {{method: 'POST', body: '{{\"on\":true}}'}}).then(() => 'answered', () => 'refused')", rig.origin());
+    let post = format!(
+        "fetch('{}/record', {{method: 'POST', body: '{{\"on\":true}}'}}).then(() => 'answered', () => 'refused')",
+        rig.origin()
+    );
     assert_eq!(browser.value(&post), "refused");
-    let recorded = rig.folder.path().read_dir().expect("a folder").flatten().any(|file| file.file_name().to_string_lossy().ends_with(".mcap"));
+    let recorded = rig
+        .folder
+        .path()
+        .read_dir()
+        .expect("a folder")
+        .flatten()
+        .any(|file| file.file_name().to_string_lossy().ends_with(".mcap"));
     assert!(!recorded);
 }
 

@@ -4,8 +4,7 @@
 //! in `target/browser`.
 #![cfg(unix)]
 
-mod chromium;
 mod live;
+mod modules;
 mod page;
-mod rig;
 mod sessions;

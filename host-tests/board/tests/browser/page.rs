@@ -1,10 +1,9 @@
 //! The page's own hands: pause, axes, export; and how it looks.
 
-use super::chromium::Browser;
-use super::rig::Rig;
+use board_tests::browser::{Browser, MonitorRun};
 
-fn opened() -> (Rig, Browser) {
-    let rig = Rig::live(&[]);
+fn opened() -> (MonitorRun, Browser) {
+    let rig = MonitorRun::live(&[]);
     let mut browser = Browser::start();
     browser.screen([1400, 1000], "light");
     browser.open(&rig.address);

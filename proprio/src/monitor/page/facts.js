@@ -13,13 +13,15 @@ const FACTS = [
   ['restarts', 'Restarts', (s) => String(s.restarts)],
   ['load', 'CPU load', (s) => s.health && `${s.health.load_percent.toFixed(1)} %, estimate at most ${s.health.longest_tick_ms.toFixed(1)} ms after the tick`],
   ['trouble', 'Since boot', (s) => s.health && `${s.health.overruns} overruns, ${s.health.dropped_frames} frames dropped, ${s.health.bus_recoveries} bus recoveries, ${s.health.saturations} saturations`],
-  ['clock', 'Board\'s clock', (s) => (s.drift ? `${signed(s.drift.board_ppm)} ± ${s.drift.error_ppm.toFixed(1)} ppm against this machine, over ${s.drift.seconds.toFixed(0)} s` : 'not known before 40 s')],
+  ['clock', 'Board\'s clock', (s) => s.clock && `began ${new Date(s.clock.zero_ms).toISOString().slice(11, 23)} UTC, ${drift(s.clock.drift)}`],
   ['latency', 'Sample to screen', (s) => s.latency && `${s.latency.p50_ms.toFixed(0)} ms median, ${s.latency.p95_ms.toFixed(0)} ms 95 %, ${s.latency.largest_ms.toFixed(0)} ms largest${s.least_delay_ms ? `; ${s.least_delay_ms.toFixed(1)} ms of it reckoned` : ''}`],
   ['slow', 'Too slow', (s) => (s.dropped_events ? `${s.dropped_events} events dropped by this machine` : 'nothing dropped')],
   ['recording', 'Recording', (s) => (s.recording ? recording(s.recording) : 'none')],
 ];
 
 const signed = (value) => (value < 0 ? '' : '+') + minus(value.toFixed(1));
+
+const drift = (of) => (of ? `${signed(of.board_ppm)} ± ${of.error_ppm.toFixed(1)} ppm fast, over ${of.seconds.toFixed(0)} s` : 'drift known after 40 s');
 
 function recording({ file, samples, marks, dropped_events, failed }) {
   if (failed) return `${file} FAILED: ${failed}`;

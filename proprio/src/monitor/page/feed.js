@@ -38,7 +38,6 @@ export class Feed {
         break;
       case 'skipped':
         this.tell.skipped(message.messages);
-        this.catchUp();
         break;
     }
   }

@@ -3,7 +3,7 @@
 import { Store } from './store.js';
 import { Feed, ask } from './feed.js';
 import { armValues, drawArm } from './arm.js';
-import { PLOTS, Range, clock, drawPlot, extent, visible } from './plot.js';
+import { PLOTS, Range, clock, drawPlot, extent, innerWidth, visible } from './plot.js';
 import { View, handle } from './view.js';
 import { Strips, text } from './sensors.js';
 import { Facts } from './facts.js';
@@ -223,9 +223,9 @@ function armSpec() {
   return { store, row, geometry, colours: palette, uncertainty: isNow && app.uncertainty, contact: isNow && app.contact };
 }
 
-function plotSpec({ before, range }, width) {
+function plotSpec({ before, range, canvas }) {
   const { store, view, hidden, marks } = app;
-  const [from, to] = wholePixels(view.window(store), width);
+  const [from, to] = wholePixels(view.window(store), innerWidth(canvas));
   const columns = store?.series(before, '_deg') ?? [];
   const seen = columns.filter((_, i) => !hidden.has(i));
   const [low, high] = store?.count ? extent(seen, ...visible(store, from, to)) : [NaN, NaN];
@@ -248,8 +248,8 @@ function wholePixels([from, to], width) {
 function draw(isAll) {
   const spec = armSpec();
   drawArm(...fit($('arm-canvas')), spec);
-  const [, end] = wholePixels(app.view.window(app.store), plots[0].canvas.clientWidth);
-  if (isAll || end !== drawnTo) for (const plot of plots) drawPlot(...fit(plot.canvas), plotSpec(plot, plot.canvas.clientWidth));
+  const [, end] = wholePixels(app.view.window(app.store), innerWidth(plots[0].canvas));
+  if (isAll || end !== drawnTo) for (const plot of plots) drawPlot(...fit(plot.canvas), plotSpec(plot));
   drawnTo = end;
   if (spec.store?.count) text($('arm-values'), armValues(spec.store, spec.row));
   app.drawn++;
@@ -327,7 +327,7 @@ function exportSvg() {
     width = Math.max(width, canvas.clientWidth);
   };
   add($('arm-canvas'), `Arm, ${$('arm-values').textContent}`, (w, h) => drawArm(c, w, h, armSpec()));
-  for (const plot of plots) add(plot.canvas, `${plot.title}, ${plot.unit}`, (w, h) => drawPlot(c, w, h, plotSpec(plot, w)));
+  for (const plot of plots) add(plot.canvas, `${plot.title}, ${plot.unit}`, (w, h) => drawPlot(c, w, h, plotSpec(plot)));
   save('proprio.svg', 'image/svg+xml', c.text(width, y, palette.paper));
 }
 

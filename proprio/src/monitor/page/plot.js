@@ -219,4 +219,4 @@ export function shares(canvas, event) {
 }
 
 /** Width of a plot's inside. */
-export const innerWidth = (canvas) => canvas.getBoundingClientRect().width - LEFT - RIGHT;
+export const innerWidth = (canvas) => canvas.clientWidth - LEFT - RIGHT;

@@ -5,11 +5,12 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStdin, Command, Stdio};
 use std::{env, fs};
 
-use board_tests::firmware;
 use tempfile::TempDir;
 
+use crate::build::firmware;
+
 /// A board, and a monitor of it.
-pub struct Rig {
+pub struct MonitorRun {
     due: Option<(Child, ChildStdin)>,
     monitor: Child,
     /// What the monitor has printed.
@@ -18,21 +19,23 @@ pub struct Rig {
     pub folder: TempDir,
 }
 
-/// A tool of this workspace, beside the tests.
+/// A tool of this workspace: beside this program, or above it, as cargo builds tests in `deps`.
 fn tool(name: &str) -> PathBuf {
-    let tests = env::current_exe().expect("the system tells");
-    let built = tests.parent().and_then(Path::parent).expect("cargo builds tests in deps");
-    let tool = built.join(name);
-    assert!(tool.is_file(), "{} is not built; `cargo verify` does", tool.display());
-    tool
+    let own = env::current_exe().expect("the system tells");
+    let mut built = own.ancestors().skip(1).take(2).map(|folder| folder.join(name));
+    built.find(|tool| tool.is_file()).unwrap_or_else(|| panic!("{name} is not built; `cargo verify` does"))
 }
 
-pub fn table() -> PathBuf {
+fn table() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../calibration-tables/planar-6.toml")
 }
 
-impl Rig {
-    /// A live board.
+impl MonitorRun {
+    /// A live board on a pseudo-terminal.
+    ///
+    /// # Panics
+    /// If the tools are not built, or do not start.
+    #[must_use]
     pub fn live(arguments: &[&str]) -> Self {
         let folder = tempfile::tempdir().expect("there is room for a temporary folder");
         fs::write(folder.path().join("firmware"), firmware()).expect("there is room");
@@ -51,6 +54,10 @@ impl Rig {
     }
 
     /// A session and no board.
+    ///
+    /// # Panics
+    /// As [`MonitorRun::live`].
+    #[must_use]
     pub fn session(path: &Path) -> Self {
         let folder = tempfile::tempdir().expect("there is room for a temporary folder");
         Self::start(folder, None, &[path.to_str().expect("a path of this workspace")])
@@ -67,18 +74,22 @@ impl Rig {
     }
 
     /// `unplug imu3`, `plug imu3`, `unplug bend2a`.
+    ///
+    /// # Panics
+    /// If there is no board.
     pub fn hand(&mut self, line: &str) {
         let (_, hand) = self.due.as_mut().expect("there is a board");
         writeln!(hand, "{line}").expect("it runs");
     }
 
     /// The address without the token.
+    #[must_use]
     pub fn origin(&self) -> &str {
         self.address.split("/#").next().unwrap_or_default().trim_end_matches('/')
     }
 }
 
-impl Drop for Rig {
+impl Drop for MonitorRun {
     fn drop(&mut self) {
         let due = self.due.as_mut().map(|(due, _)| due);
         for process in [Some(&mut self.monitor), due].into_iter().flatten() {

@@ -2,7 +2,6 @@
 
 use std::io::{BufRead, BufReader};
 use std::net::TcpStream;
-use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 use std::{env, fs};
@@ -13,7 +12,7 @@ use tungstenite::stream::MaybeTlsStream;
 use tungstenite::{Message, WebSocket};
 
 /// Longest time for anything to be so.
-pub const PATIENCE: Duration = Duration::from_secs(60);
+const PATIENCE: Duration = Duration::from_secs(60);
 
 /// A browser with one page.
 pub struct Browser {
@@ -29,6 +28,10 @@ pub struct Browser {
 
 impl Browser {
     /// Starts it, with nothing in its page.
+    ///
+    /// # Panics
+    /// If there is no Chromium.
+    #[must_use]
     pub fn start() -> Self {
         let folder = tempfile::tempdir().expect("there is room for a temporary folder");
         let program = env::var_os("CHROMIUM").unwrap_or_else(|| "chromium".into());
@@ -47,8 +50,7 @@ impl Browser {
             stream.set_read_timeout(Some(PATIENCE)).expect("a timeout");
         }
         let process = process.expect("it was looked at");
-        let mut browser =
-            Self { process, socket, last_id: 0, session: String::new(), complaints: Vec::new(), folder };
+        let mut browser = Self { process, socket, last_id: 0, session: String::new(), complaints: Vec::new(), folder };
         let target = browser.call("Target.createTarget", &json!({"url": "about:blank"}))["targetId"].clone();
         let attached = browser.call("Target.attachToTarget", &json!({"targetId": target, "flatten": true}));
         browser.session = attached["sessionId"].as_str().expect("a session").to_owned();
@@ -61,6 +63,9 @@ impl Browser {
     }
 
     /// Calls a method, and gives its result.
+    ///
+    /// # Panics
+    /// If the browser has ended, or refuses.
     pub fn call(&mut self, method: &str, params: &Value) -> Value {
         self.last_id += 1;
         let mut call = json!({"id": self.last_id, "method": method, "params": params});
@@ -97,6 +102,9 @@ impl Browser {
     }
 
     /// What an expression of JavaScript comes to; a promise, when it is kept.
+    ///
+    /// # Panics
+    /// If the expression throws.
     pub fn value(&mut self, expression: &str) -> Value {
         let params = json!({"expression": expression, "returnByValue": true, "awaitPromise": true});
         let mut result = self.call("Runtime.evaluate", &params);
@@ -111,6 +119,9 @@ impl Browser {
     }
 
     /// Waits until an expression is true, and says how long it took.
+    ///
+    /// # Panics
+    /// If it is not so within a minute.
     pub fn wait_for(&mut self, expression: &str) -> Duration {
         let start = Instant::now();
         while self.value(expression) != true {
@@ -129,6 +140,9 @@ impl Browser {
     }
 
     /// Waits for a download, and gives what is in it.
+    ///
+    /// # Panics
+    /// If there is none within a minute.
     pub fn download(&mut self, name: &str) -> String {
         let path = self.folder.path().join("downloads").join(name);
         let start = Instant::now();
@@ -140,9 +154,14 @@ impl Browser {
     }
 
     /// Leaves a picture of the whole page in `target/browser`.
+    ///
+    /// # Panics
+    /// If it cannot be written.
     pub fn picture(&mut self, name: &str) {
         let picture = self.call("Page.captureScreenshot", &json!({"format": "png", "captureBeyondViewport": true}));
-        let target = Path::new(env!("CARGO_TARGET_TMPDIR")).parent().expect("cargo's folder").join("browser");
+        // target/debug/deps/browser-…
+        let own = env::current_exe().expect("the system tells");
+        let target = own.ancestors().nth(3).expect("cargo's folder").join("browser");
         fs::create_dir_all(&target).expect("cargo's folder can be written to");
         let picture = base64(picture["data"].as_str().expect("a picture"));
         fs::write(target.join(name), picture).expect("there is room");
