@@ -16,7 +16,7 @@ use crate::link::{Drift, LinkState};
 pub(super) enum Feed<'a> {
     /// First of all.
     Arm(&'a Arm),
-    Rows(Rows),
+    Rows(Batch),
     Status(Box<Status>),
     /// This page was too slow: so many messages are not sent to it.
     Skipped {
@@ -82,7 +82,7 @@ impl From<&calibration_tables::SegmentKeys> for Geometry {
 
 /// What came since the message before.
 #[derive(Debug, Default, Serialize)]
-pub(super) struct Rows {
+pub(super) struct Batch {
     /// Time of each row, s, and its values in the order of [`Arm::columns`].
     pub rows: Vec<(f64, Vec<f32>)>,
     /// When the last one was sampled, µs by this program's clock: the page sends it back once it has drawn it.

@@ -6,14 +6,14 @@ use std::time::{Duration, Instant};
 
 use estimator_core::Table;
 
-use super::feed::{Feed, Rows, Status};
+use super::feed::{Batch, Feed, Status};
 use super::live::{Live, Taken};
 use super::observer::Observer;
 use super::shared::Shared;
 use crate::link::{Event, HostNs, Link, Subscription, What};
 
 /// Time from one batch of rows to the next: 50 a second.
-const BATCH: Duration = Duration::from_millis(20);
+const PERIOD: Duration = Duration::from_millis(20);
 /// Time from one status to the next.
 const STATUS: Duration = Duration::from_millis(200);
 /// Notes that are kept.
@@ -24,7 +24,7 @@ pub(super) struct Hub<'t> {
     shared: Arc<Shared>,
     events: Subscription,
     live: Live<'t>,
-    rows: Rows,
+    batch: Batch,
     batched: Instant,
     told: Instant,
     notes: Vec<String>,
@@ -34,17 +34,17 @@ impl<'t> Hub<'t> {
     pub fn new(shared: Arc<Shared>, events: Subscription, table: Option<&'t Table<'t, estimator_core::Q>>) -> Self {
         let live = Live::new(table.and_then(|table| Observer::new(table).ok()));
         let now = Instant::now();
-        Self { shared, events, live, rows: Rows::default(), batched: now, told: now, notes: Vec::new() }
+        Self { shared, events, live, batch: Batch::default(), batched: now, told: now, notes: Vec::new() }
     }
 
     /// Works until it is told to stop.
     pub fn run(mut self, link: &Link, stop: &AtomicBool) {
         while !stop.load(Ordering::Relaxed) {
-            let wait = BATCH.saturating_sub(self.batched.elapsed());
+            let wait = PERIOD.saturating_sub(self.batched.elapsed());
             if let Some(event) = self.events.next(wait) {
                 self.take(&event);
             }
-            if self.batched.elapsed() >= BATCH {
+            if self.batched.elapsed() >= PERIOD {
                 self.batched = Instant::now();
                 self.send_rows();
             }
@@ -65,8 +65,8 @@ impl<'t> Hub<'t> {
         }
         if let Some(Taken { row, sampled }) = self.live.take(event) {
             self.shared.history().push(&row);
-            self.rows.newest_us = sampled.0 / 1000;
-            self.rows.rows.push((row.time_s, row.values));
+            self.batch.newest_us = sampled.0 / 1000;
+            self.batch.rows.push((row.time_s, row.values));
         }
     }
 
@@ -80,9 +80,9 @@ impl<'t> Hub<'t> {
     }
 
     fn send_rows(&mut self) {
-        let rows = std::mem::take(&mut self.rows);
-        if !rows.rows.is_empty() {
-            self.shared.tell(&Feed::Rows(rows));
+        let batch = std::mem::take(&mut self.batch);
+        if !batch.rows.is_empty() {
+            self.shared.tell(&Feed::Rows(batch));
         }
     }
 

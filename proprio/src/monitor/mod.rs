@@ -83,22 +83,14 @@ impl Monitor {
     /// # Errors
     /// [`Error::Listen`], and [`Error::Table`] on an arm description.
     pub fn start(live: Option<(Link, Subscription)>, options: Options) -> Result<Self, Error> {
-        let failed = |source| Error::Listen { port: options.port, source };
-        let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, options.port)).map_err(failed)?;
+        let port = options.port;
+        let failed = |source| Error::Listen { port, source };
+        let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port)).map_err(failed)?;
         listener.set_nonblocking(true).map_err(failed)?;
         let address = listener.local_addr().map_err(failed)?;
         let baked = options.table.as_ref().map(|table| table.bake::<Q>(TICK_HZ)).transpose()?;
-
-        let table = options.table.as_ref();
-        let segments =
-            if live.is_some() { SEGMENTS } else { table.map_or(SEGMENTS, |table| table.file.segments.len()) };
-        let mut arm = Arm::new(segments, table.map(|table| &table.file).filter(|file| file.segments.len() == segments));
-        (arm.is_live, arm.allows_control) = (live.is_some(), options.token.is_some());
-        arm.opens_sessions = table.is_some();
-        let sessions = Sessions::new(options.folder, table, options.session);
-        arm.session = sessions.given();
         let (link, events) = live.unzip();
-        let shared = Arc::new(Shared::new(link, arm, options.token, sessions));
+        let shared = Arc::new(shared(link, options));
         let stop = Arc::new(AtomicBool::new(false));
         let (stop_server, stopped) = tokio::sync::oneshot::channel();
         let mut monitor = Self { address, shared, stop, stop_server: Some(stop_server), threads: Vec::new() };
@@ -162,9 +154,22 @@ impl Drop for Monitor {
     }
 }
 
+/// What the threads share, and what the page is told first.
+fn shared(link: Option<Link>, options: Options) -> Shared {
+    let table = options.table.as_ref();
+    let table_segments = table.map(|table| table.file.segments.len());
+    let segments = table_segments.filter(|_| link.is_none()).unwrap_or(SEGMENTS);
+    // A table for another number of segments is not this arm's.
+    let mut arm = Arm::new(segments, table.map(|table| &table.file).filter(|_| table_segments == Some(segments)));
+    (arm.is_live, arm.allows_control) = (link.is_some(), options.token.is_some());
+    arm.opens_sessions = table.is_some();
+    let sessions = Sessions::new(options.folder, table, options.session);
+    arm.session = sessions.given();
+    Shared::new(link, arm, options.token, sessions)
+}
+
 fn hub(shared: &Arc<Shared>, events: Subscription, baked: Option<&Baked<Q>>, stop: &AtomicBool) {
     let table = baked.map(Baked::table);
-    // A table for another number of segments is not this arm's.
     let table = table.as_ref().filter(|table| table.segments.len() == SEGMENTS);
     if let Some(link) = &shared.link {
         Hub::new(Arc::clone(shared), events, table).run(link, stop);

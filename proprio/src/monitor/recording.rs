@@ -4,7 +4,7 @@ use std::fs::{File, OpenOptions};
 use std::io::{self, BufWriter};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
 use std::time::Duration;
@@ -130,15 +130,23 @@ impl Work {
                 None => self.recorder.flush_if_due(self.clock.now())?,
             }
             self.shared.dropped.store(self.events.dropped(), Ordering::Relaxed);
-            match self.asked.recv_timeout(Duration::ZERO) {
+            match self.asked.try_recv() {
                 Ok(Mark { at, text }) => {
                     self.recorder.mark(at, &text)?;
                     self.shared.marks.fetch_add(1, Ordering::Relaxed);
                 }
-                Err(RecvTimeoutError::Timeout) => {}
-                Err(RecvTimeoutError::Disconnected) => return Ok(()),
+                Err(TryRecvError::Empty) => {}
+                Err(TryRecvError::Disconnected) => return self.take_the_rest(),
             }
         }
+    }
+
+    /// What has come until now.
+    fn take_the_rest(&mut self) -> io::Result<()> {
+        while let Some(event) = self.events.next(Duration::ZERO) {
+            self.take(&event)?;
+        }
+        Ok(())
     }
 
     fn take(&mut self, Event { at, what }: &Event) -> io::Result<()> {

@@ -15,7 +15,7 @@ const LONGEST: usize = 4096;
 /// What a page says.
 #[derive(Debug, Deserialize)]
 struct Shown {
-    /// [`newest_us`](super::feed::Rows::newest_us) of the batch that is on its screen.
+    /// [`newest_us`](super::feed::Batch::newest_us) of the batch that is on its screen.
     shown_us: u64,
 }
 

@@ -109,7 +109,8 @@ fn a_long_session_is_thinned_to_what_a_page_holds() {
     let text = std::fs::read_to_string(session("scenario-1.csv")).expect("a committed file");
     let (head, rows) = text.split_once('\n').expect("a header");
     let cells = rows.lines().next().and_then(|row| row.split_once(',')).expect("cells").1;
-    let long: String = (0..130_000).map(|i| format!("{}.{:02},{cells}\n", i / 100, i % 100)).collect();
+    let long: Vec<String> = (0..130_000).map(|i| format!("{}.{:02},{cells}\n", i / 100, i % 100)).collect();
+    let long = long.concat();
     std::fs::write(page.folder.path().join("long.csv"), format!("{head}\n{long}")).expect("there is room");
     let about = page.get("/session?name=long.csv").about();
     assert_eq!((&about["samples"], &about["every"], &about["rows"]), (&130_000.into(), &4.into(), &32_500.into()));
