@@ -65,26 +65,32 @@ const feed = new Feed({
     app.status = status;
     const name = status.board ? status.board.arm : '';
     if (!app.session) text($('arm-name'), name);
-    if (!status.port) linkState('bad', 'line gone');
+    if (!status.port) linkState('bad', 'line gone, waiting');
     else if (status.samples_hz > 0) linkState('ok', `live, ${status.samples_hz.toFixed(0)} samples/s`);
     else linkState('wait', 'no samples');
-    const isRecording = Boolean(status.recording && !status.recording.failed);
-    $('record').setAttribute('aria-pressed', isRecording);
-    text($('record'), isRecording ? 'Stop recording' : 'Record');
-    $('mark').disabled = !isRecording;
+    recordState(Boolean(status.recording && !status.recording.failed), true);
     control.status(app.arm, status.health);
   },
   skipped(messages) { app.skipped += messages; },
   gone() {
     app.status = null;
     linkState('bad', 'monitor is not running');
+    recordState(false, false);
     if (app.arm) control.status(app.arm, null);
   },
 });
 
 function linkState(state, what) {
   $('link').dataset.state = state;
+  document.body.toggleAttribute('data-stale', state === 'bad' && !app.session);
   text($('link'), what);
+}
+
+function recordState(isRecording, isPossible) {
+  $('record').setAttribute('aria-pressed', isRecording);
+  $('record').disabled = !isPossible;
+  text($('record'), isRecording ? 'Stop recording' : 'Record');
+  $('mark').disabled = !isRecording;
 }
 
 /** What went wrong, until the next thing is done or some seconds have passed. */

@@ -30,9 +30,10 @@ export class Strips {
   /** `health`: what the board says of each, in this order; without it a sensor is read or missing. */
   show(store, row, health) {
     this.strips.forEach((strip, i) => {
-      const value = store.count ? store.column(strip.column)[row] : NaN;
-      const isRead = Number.isFinite(value);
       const told = health?.[i];
+      // A board that says nothing of itself reads nothing either.
+      const value = store.count && (told || !health) ? store.column(strip.column)[row] : NaN;
+      const isRead = Number.isFinite(value);
       const state = told?.state ?? (!store.count || health ? '–' : isRead ? 'read' : 'missing');
       const reason = told ? [told.reason, told.missed ? `${told.missed} missed` : ''].filter(Boolean).join(', ') : '';
       text(strip.value, !isRead ? '–' : strip.kind === 'imu' ? `${minus(value.toFixed(1))}°` : `${value} counts`);
