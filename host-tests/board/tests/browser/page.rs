@@ -28,6 +28,10 @@ fn space_pauses_the_picture_while_samples_go_on_and_then_catches_up() {
     let paused = browser.value(plot);
     browser.value("new Promise((done) => setTimeout(done, 1500))");
     assert_eq!(browser.value(plot), paused);
+    // Drawn anew it is the same: nothing that has come since creeps in.
+    browser.value("{ const segment = document.querySelector('#segments button'); segment.click(); segment.click() }");
+    browser.value("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))");
+    assert_eq!(browser.value(plot), paused);
     assert_eq!(browser.text("time"), paused_at);
     browser.press(" ");
     browser.wait_for(&format!("parseFloat(document.getElementById('time').textContent) > {paused_s} + 1.4"));

@@ -14,8 +14,8 @@ export function save(name, type, text) {
 }
 
 /** The rows between two times, as CSV: an empty cell where there is no value. */
-export function csv(store, from, to) {
-  const [first, last] = visible(store, from, to);
+export function csv(store, from, to, limit) {
+  const [first, last] = visible(store, from, to, limit);
   const lines = [['time_s', ...store.names].join(',')];
   const cell = (value) => (Number.isNaN(value) ? '' : String(Math.round(value * 1e4) / 1e4));
   for (let i = first; i < last; i++) {

@@ -234,13 +234,13 @@ function plotSpec({ before, range, canvas }) {
   const [from, to] = wholePixels(view.window(store), innerWidth(canvas));
   const columns = store?.series(before, '_deg') ?? [];
   const seen = columns.filter((_, i) => !hidden.has(i));
-  const [low, high] = store?.count ? extent(seen, ...visible(store, from, to)) : [NaN, NaN];
+  const [low, high] = store?.count ? extent(seen, ...visible(store, from, to, view.limit)) : [NaN, NaN];
   if (!app.isFixed) range.follow(low, high);
   const hasTable = Boolean(app.session || app.arm?.opens_sessions);
   const unknown = !store?.count ? 'nothing has come yet' : !hasTable ? 'takes a table: --table TABLE.toml'
     : app.session || before === 'theta' ? 'not known here' : 'known from the next tare on';
   const empty = low <= high ? '' : unknown;
-  return { store, columns, range, from, to, cursor: view.cursor, marks: app.session ? [] : marks, hidden, colours: palette, empty };
+  return { store, columns, range, from, to, limit: view.limit, cursor: view.cursor, marks: app.session ? [] : marks, hidden, colours: palette, empty };
 }
 
 /** The window moved on by whole pixels only: rows stay in their columns, and what would look the same is not drawn again. */
@@ -273,7 +273,7 @@ function drawSlowly() {
   const scrub = $('scrub');
   scrub.disabled = !store.count;
   if (store.count) {
-    [scrub.min, scrub.max] = [store.first, store.last];
+    [scrub.min, scrub.max] = [store.first, view.last(store)];
     const time = view.cursor ?? store.last;
     if (document.activeElement !== scrub || isRunning) scrub.value = time;
     text($('time'), clock(time));
@@ -313,7 +313,7 @@ setInterval(() => {
 // Hands
 
 function exportCsv() {
-  if (app.store?.count) save('proprio.csv', 'text/csv', csv(app.store, ...app.view.window(app.store)));
+  if (app.store?.count) save('proprio.csv', 'text/csv', csv(app.store, ...app.view.window(app.store), app.view.limit));
 }
 
 /** The arm and all plots, one below the other, as they are seen. */
@@ -357,7 +357,7 @@ const BUTTONS = { pause, record, mark, open: () => attempt(() => chooser.show())
 for (const [id, act] of Object.entries(BUTTONS)) $(id).addEventListener('click', act);
 $('fixed').addEventListener('change', ({ target }) => app.fix(target.checked));
 $('span').addEventListener('change', ({ target }) => {
-  app.view.span = Number(target.value);
+  app.view.setSpan(app.store, Number(target.value));
   app.changed();
 });
 $('scrub').addEventListener('input', ({ target }) => {

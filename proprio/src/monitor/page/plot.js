@@ -41,10 +41,9 @@ export class Range {
   }
 }
 
-/** Rows that are at least partly between two times. */
-export function visible(store, from, to) {
-  const first = store.rowAt(from), last = store.rowAt(to);
-  return [first, Math.min(store.end, last + 2)];
+/** Rows between two times, and one on each side, so that lines go on to the edge; none after the limit. */
+export function visible(store, from, to, limit) {
+  return [store.rowAt(from), Math.min(store.end, store.rowAt(to) + 2, store.rowAt(limit) + 1)];
 }
 
 /** Least and largest of the columns in these rows. */
@@ -128,7 +127,7 @@ export function clock(seconds, step = 0.01) {
 
 /** Draws one plot onto a canvas or an SVG of this size. */
 export function drawPlot(c, width, height, spec) {
-  const { store, columns, range, from, to, cursor, marks, hidden, colours, empty } = spec;
+  const { store, columns, range, from, to, limit, cursor, marks, hidden, colours, empty } = spec;
   const inner = { x: LEFT, y: TOP, w: width - LEFT - RIGHT, h: height - TOP - BOTTOM };
   const toX = (time) => inner.x + ((time - from) / (to - from)) * inner.w;
   const toY = (value) => inner.y + (1 - (value - range.low) / (range.high - range.low)) * inner.h;
@@ -146,7 +145,7 @@ export function drawPlot(c, width, height, spec) {
   c.clip();
   for (const mark of marks ?? []) vertical(c, toX(mark), inner, colours.faint, [2, 3]);
   if (store?.count) {
-    const [first, last] = visible(store, from, to);
+    const [first, last] = visible(store, from, to, limit);
     // Where rows are dense, lines of one pixel: browsers draw them twenty times as fast as wider ones.
     c.lineWidth = last - first > inner.w ? 1 : 1.6;
     c.lineJoin = 'bevel';

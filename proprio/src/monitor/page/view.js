@@ -16,19 +16,24 @@ export class View {
   follow() {
     this.end = null;
     this.cursor = null;
+    this.limit = Infinity;
   }
 
   get isFollowing() { return this.end === null; }
 
-  /** Stays where it is. */
+  /** Stays where it is; what comes later is not seen. */
   hold(store) {
+    if (this.isFollowing) this.limit = store.last;
     [, this.end] = this.window(store);
-    this.cursor ??= Math.min(this.end, store.last);
+    this.cursor ??= Math.min(this.end, this.limit);
   }
+
+  /** Time of the last row that is seen. */
+  last(store) { return Math.min(this.limit, store.last); }
 
   /** From and to; a span of 0 is all there is. */
   window(store) {
-    const last = store?.count ? store.last : 0, first = store?.count ? store.first : 0;
+    const last = store?.count ? this.last(store) : 0, first = store?.count ? store.first : 0;
     const span = this.span || Math.max(last - first, SHORTEST);
     // At the begin the picture fills from the left.
     const to = this.end ?? Math.max(last, first + span);
@@ -43,19 +48,32 @@ export class View {
     this.span = span;
   }
 
+  /** This span, around the moment that the arm shows; as far as there are rows on both sides. */
+  setSpan(store, span) {
+    if (!this.isFollowing && span) {
+      const [from, to] = this.window(store);
+      const share = (this.cursor - from) / (to - from);
+      this.zoom(store, span / (to - from), Math.min(1, Math.max(0, share)));
+      this.end = Math.max(store.first + span, Math.min(this.end, this.last(store)));
+    } else if (!this.isFollowing) {
+      this.end = this.last(store);
+    }
+    this.span = span;
+  }
+
   /** To the right by a share of the width, which ends all following. */
   move(store, share) {
     this.hold(store);
     const [from, to] = this.window(store);
     if (!this.span) this.span = to - from;
     const end = to + share * (to - from);
-    this.end = Math.min(Math.max(end, store.first + 0.1 * this.span), store.last + 0.9 * this.span);
+    this.end = Math.min(Math.max(end, store.first + 0.1 * this.span), this.last(store) + 0.9 * this.span);
   }
 
   /** To this moment; the window follows it. */
   seek(store, time) {
     this.hold(store);
-    this.cursor = Math.min(Math.max(time, store.first), store.last);
+    this.cursor = Math.min(Math.max(time, store.first), this.last(store));
     const [from, to] = this.window(store);
     if (this.cursor < from || this.cursor > to) this.end = this.cursor < from ? this.cursor + (to - from) : this.cursor;
   }
