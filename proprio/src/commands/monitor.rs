@@ -7,6 +7,7 @@ use proprio::interrupt::Heed;
 use proprio::link::{Event, HostClock, Link, LinkError, Subscription, What};
 use proprio::monitor::{Monitor, Options, Plain, Token};
 use proprio::replay::NamedTable;
+use proprio::session::SessionReader;
 
 use super::link;
 use crate::cli;
@@ -48,8 +49,13 @@ pub fn run(args: &cli::Monitor) -> Result<(), Error> {
 /// A session without a board.
 fn show(args: &cli::Monitor) -> Result<(), Error> {
     let table = args.link.table.as_deref().ok_or(Error::SessionWithoutTable)?;
+    let table = NamedTable::load(table)?;
+    if let Some(session) = &args.session {
+        // What is wrong with it is better said here than on the page.
+        SessionReader::open(session, &table.needs()?)?;
+    }
     let heed = Heed::interrupts();
-    let monitor = start(args, None, Some(NamedTable::load(table)?))?;
+    let monitor = start(args, None, Some(table))?;
     while !heed.is_requested() {
         std::thread::sleep(LOOK);
     }

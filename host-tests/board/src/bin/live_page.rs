@@ -45,6 +45,7 @@ mod figures {
                 ));
                 frames(&mut browser, name, span);
             }
+            latency(&mut browser);
         }
     }
 
@@ -84,9 +85,24 @@ mod figures {
             rates.push(text.split(' ').next().and_then(|rate| rate.parse::<u32>().ok()).unwrap_or_default());
         }
         rates.sort_unstable();
-        let (rows, latency) = (browser.text("fact-page"), browser.text("fact-latency"));
+        let rows = browser.text("fact-page");
         println!("{name}, {span} s seen: {} frames/s median, {} least of 20 s ({rows})", rates[10], rates[0]);
-        println!("    sample to screen: {latency}");
+    }
+
+    /// Of the last 3000 pictures, which are those of one screen and some of the one before.
+    fn latency(browser: &mut Browser) {
+        let status = browser.value("fetch('/status').then((answer) => answer.json())");
+        let of = |name: &str| status["latency"][name].as_f64().unwrap_or(f64::NAN);
+        let reckoned = status["least_delay_ms"].as_f64().unwrap_or(f64::NAN);
+        println!(
+            "    sample to screen, ms: {:.0} at 5 %, {:.0} median, {:.0} at 95 %, {:.0} at 99 %, {:.0} largest of {}; {reckoned:.1} of it reckoned",
+            of("p5_ms"),
+            of("p50_ms"),
+            of("p95_ms"),
+            of("p99_ms"),
+            of("largest_ms"),
+            of("reports")
+        );
     }
 
     /// The virtual Due in a thread of this process: its first minutes at once, then as the wall clock.
