@@ -6,6 +6,7 @@ use std::time::Duration;
 
 use proprio::link::Link;
 use proprio::monitor::{Monitor, Options, Token};
+use proprio::replay::NamedTable;
 use serde_json::Value;
 use tempfile::TempDir;
 use tungstenite::client::IntoClientRequest;
@@ -39,12 +40,27 @@ impl Answer {
     }
 }
 
+impl Answer {
+    /// One column of its rows, as bits.
+    pub fn column(&self, columns: &Value, name: &str) -> Vec<u32> {
+        let rows = self.about()["rows"].as_u64().expect("a number") as usize;
+        let place = columns.as_array().and_then(|names| names.iter().position(|column| column == name));
+        let begin = self.body.iter().position(|byte| *byte == b'\n').expect("a line") + 1;
+        let floats = &self.body[begin + 8 * rows..][place.expect("a column") * 4 * rows..][..4 * rows];
+        floats.as_chunks().0.iter().map(|bytes| u32::from_le_bytes(*bytes)).collect()
+    }
+}
+
 impl Page {
     /// Of a board on this line.
     pub fn of(line: &Line, token: Option<Token>) -> Self {
+        Self::with_table(line, token, None)
+    }
+
+    pub fn with_table(line: &Line, token: Option<Token>, table: Option<NamedTable>) -> Self {
         let live = Link::start(Box::new(line.clone()), None).expect("memory opens");
         let folder = tempfile::tempdir().expect("there is room for a temporary folder");
-        let options = Options { port: 0, table: None, folder: folder.path().to_owned(), token, session: None };
+        let options = Options { port: 0, table, folder: folder.path().to_owned(), token, session: None };
         Self { monitor: Monitor::start(Some(live), options).expect("a free port"), folder }
     }
 

@@ -1,9 +1,14 @@
 //! What the live page is told, and recorded from it.
 
+use std::path::Path;
+
 use proprio::link::{Event, HostClock, Link, What};
 use proprio::monitor::Plain;
+use proprio::replay::NamedTable;
+use proprio::simulate::Simulation;
+use rig_twin::Scenario;
 use telemetry::{
-    Actuation, BEND_SENSORS, Estimate, Health, Message, REGULATORS, SEGMENTS, SegmentEstimate, SensorHealth,
+    Actuation, BEND_SENSORS, Estimate, Health, Message, REGULATORS, SEGMENTS, Sample, SegmentEstimate, SensorHealth,
     SensorState,
 };
 
@@ -119,9 +124,7 @@ fn a_page_that_is_opened_later_gets_what_came_before() {
     let page = Page::of(&line, None);
     line.board().restart(1);
     say(&line, 0..500);
-    page.wait_for_status(|status| status["frames"].as_u64() >= Some(1001));
-    // The rows of the last frames are taken in the same breath.
-    std::thread::sleep(std::time::Duration::from_millis(100));
+    page.wait_for_status(|_| page.get("/history").about()["rows"] == 500);
     let history = page.get("/history");
     let about = history.about();
     assert_eq!((&about["rows"], &about["columns"]), (&500.into(), &72.into()));
@@ -235,6 +238,36 @@ fn a_line_for_a_terminal_has_the_shape_the_rates_and_what_is_wrong() {
     line.board().unplugged = true;
     wait_for(&events, |what| matches!(what, What::Lost(_)).then_some(()));
     assert!(plain.line(clock.now(), &link.state()).starts_with("the line is gone"));
+}
+
+#[test]
+fn drift_and_innovations_of_a_live_board_are_those_of_its_recording() {
+    let line = Line::new();
+    let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../calibration-tables/planar-6.toml"));
+    let page = Page::with_table(&line, None, Some(NamedTable::load(path).expect("the reference table")));
+    line.board().restart(1);
+    let columns = page.socket(Some(&page.origin())).expect("its own page").next("arm")["columns"].clone();
+    page.post("/record", r#"{"on":true}"#);
+    let simulation = Simulation::new(Scenario::Two, 7, 10.0, 100.0).expect("a valid run");
+    for (tick, read) in (0..).zip(simulation) {
+        let time_us = u64::from(tick) * 10_000;
+        let said = Sample { tick, time_us, tare: 0, bend: read.counts, imu: read.quaternions };
+        line.board().say(&Message::Sample(said));
+    }
+    page.wait_for_status(|status| status["recording"]["samples"] == 1000);
+    page.wait_for_status(|_| page.get("/history").about()["rows"] == 999);
+    let live = page.get("/history");
+    let done: serde_json::Value = serde_json::from_slice(&page.post("/record", r#"{"on":false}"#).body).expect("JSON");
+    let file = Path::new(done["file"].as_str().expect("a name")).file_name().expect("a name").display().to_string();
+    let recorded = page.get(&format!("/session?name={file}"));
+    assert_eq!(recorded.about()["rows"], 1000);
+    for name in ["drift6_deg", "innovation_imu2_deg", "innovation_bend3_deg", "bend1a_adc", "imu4_deg"] {
+        let (live, mut recorded) = (live.column(&columns, name), recorded.column(&columns, name));
+        // The last row waits for its estimate.
+        recorded.pop();
+        assert!(live.iter().filter(|bits| !f32::from_bits(**bits).is_nan()).count() > 800, "{name}");
+        assert_eq!(live, recorded, "{name}");
+    }
 }
 
 #[test]
