@@ -1,6 +1,6 @@
 //! The live page: an arm and its sensors in a browser on this machine, and sessions that were recorded.
 //!
-//! The link's events go two ways: to the [hub](hub), which makes rows of them and sends batches to every page, and to the
+//! The link's events go two ways: to the hub, which makes rows of them and sends batches to every page, and to the
 //! recording, which has a queue of its own. Each page has a bounded queue of messages as well, which drops the oldest; a
 //! browser that is slow loses pictures and holds up nobody.
 //!
