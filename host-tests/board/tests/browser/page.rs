@@ -21,9 +21,11 @@ fn time_s(browser: &mut Browser) -> f64 {
 #[ignore = "needs Chromium: .ci/browser runs it"]
 fn space_pauses_the_picture_while_samples_go_on_and_then_catches_up() {
     let (_rig, mut browser) = opened();
+    let plot = "document.querySelector('#figures canvas').toDataURL()";
+    let live = browser.value(plot).to_string();
+    browser.wait_for(&format!("{plot} !== {live}"));
     browser.press(" ");
     browser.wait_for("document.getElementById('pause').getAttribute('aria-pressed') === 'true'");
-    let plot = "document.querySelector('#figures canvas').toDataURL()";
     let (paused_at, paused_s) = (browser.text("time"), time_s(&mut browser));
     let paused = browser.value(plot);
     browser.value("new Promise((done) => setTimeout(done, 1500))");

@@ -66,8 +66,10 @@ const feed = new Feed({
     const name = status.board ? status.board.arm : '';
     if (!app.session) text($('arm-name'), name);
     if (!status.port) linkState('bad', 'line gone, waiting');
-    else if (status.samples_hz > 0) linkState('ok', `live, ${status.samples_hz.toFixed(0)} samples/s`);
+    else if (status.samples_hz > 0) linkState('ok', 'live');
     else linkState('wait', 'no samples');
+    const load = status.health ? `, load ${status.health.load_percent.toFixed(1)} %` : '';
+    text($('glance'), `${status.samples_hz.toFixed(0)} samples/s, ${status.lost} lost${load}`);
     recordState(Boolean(status.recording && !status.recording.failed), true);
     control.status(app.arm, status.health);
   },
@@ -75,6 +77,7 @@ const feed = new Feed({
   gone() {
     app.status = null;
     linkState('bad', 'monitor is not running');
+    text($('glance'), '');
     recordState(false, false);
     if (app.arm) control.status(app.arm, null);
   },
@@ -250,13 +253,14 @@ function wholePixels([from, to], width) {
   return [end - (to - from), end];
 }
 
-/** Draws the arm, and the plots where they have changed or moved on. */
+/** Draws the arm, and the plots where they have changed or the newest row is in another column of pixels. */
 function draw(isAll) {
   const spec = armSpec();
   drawArm(...fit($('arm-canvas')), spec);
-  const [, end] = wholePixels(app.view.window(app.store), innerWidth(plots[0].canvas));
-  if (isAll || end !== drawnTo) for (const plot of plots) drawPlot(...fit(plot.canvas), plotSpec(plot));
-  drawnTo = end;
+  const [from, to] = app.view.window(app.store);
+  const column = Math.ceil(((app.store?.last ?? 0) / (to - from)) * innerWidth(plots[0].canvas));
+  if (isAll || column !== drawnTo) for (const plot of plots) drawPlot(...fit(plot.canvas), plotSpec(plot));
+  drawnTo = column;
   if (spec.store?.count) text($('arm-values'), armValues(spec.store, spec.row));
   app.drawn++;
 }
