@@ -32,7 +32,7 @@ pub(super) struct Hub<'t> {
 
 impl<'t> Hub<'t> {
     pub fn new(shared: Arc<Shared>, events: Subscription, table: Option<&'t Table<'t, estimator_core::Q>>) -> Self {
-        let live = Live::new(table.and_then(|table| Observer::new(table).ok()));
+        let live = Live::new(table.map(Observer::new));
         let now = Instant::now();
         Self { shared, events, live, batch: Batch::default(), batched: now, told: now, notes: Vec::new() }
     }

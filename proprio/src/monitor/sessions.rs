@@ -105,8 +105,7 @@ impl Sessions {
         let mut reader = SessionReader::open(path, &table.needs()?)?;
         let baked = table.bake::<Q>(reader.rate_hz(file.rate_hz))?;
         let baked = baked.table();
-        let failed = |_| Error::Table { path: table_path.clone(), source: calibration_tables::FileError::Size };
-        let mut observer = Observer::new(&baked).map_err(failed)?;
+        let mut observer = Observer::new(&baked);
         let mut history = History::new(row::names(segments).len());
         let (mut samples, mut every) = (0, 1);
         while let Some(read) = reader.next_row()? {

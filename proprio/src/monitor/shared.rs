@@ -66,11 +66,11 @@ impl Shared {
         lock(&self.recording).as_ref().map(Recording::progress)
     }
 
-    /// Begins a recording, where none is under way.
+    /// Begins a recording, where none is under way; one that has failed is not.
     pub fn begin_recording(&self) -> Result<(), Error> {
         let Some(link) = &self.link else { return Ok(()) };
         let mut recording = lock(&self.recording);
-        if recording.is_none() {
+        if recording.as_ref().is_none_or(|recording| recording.progress().failed.is_some()) {
             let table = self.sessions.table_toml()?;
             *recording = Some(Recording::begin(link, &self.sessions.folder, table.as_deref(), self.clock)?);
         }
