@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use clap::builder::Styles;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
-pub use link::{Convert, Drive, LinkArgs, Ports, Record, Recover, Status};
+pub use link::{Convert, Drive, LinkArgs, Monitor, Ports, Record, Recover, Status};
 use proprio::session::ImuColumns;
 
 /// Colours of help and errors; off where stderr is no terminal or NO_COLOR is set.
@@ -46,6 +46,8 @@ pub enum Command {
     Record(Record),
     /// Drive the arm's pressures, and vent them at the end
     Drive(Drive),
+    /// Show a live arm, or a session, on a page in the browser
+    Monitor(Monitor),
     /// Turn a session into CSV, a recording or raw bytes
     Convert(Convert),
     /// Save what is whole of a recording that was cut

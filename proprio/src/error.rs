@@ -83,6 +83,20 @@ pub enum Error {
     /// Standard output cannot be written.
     #[error("standard output cannot be written: {0}")]
     Stdout(io::Error),
+    /// The monitor cannot have its port.
+    #[error("port {port} of 127.0.0.1 cannot be listened on: {source}")]
+    Listen {
+        /// The port.
+        port: u16,
+        /// Why not.
+        source: io::Error,
+    },
+    /// There is no token.
+    #[error("the system gives no random numbers: {0}")]
+    Random(io::Error),
+    /// The monitor is given a session and no table.
+    #[error("a session is shown by what the estimator makes of it, and that takes a table")]
+    SessionWithoutTable,
     /// `--out` with several sessions.
     #[error("--out takes the estimates of one session, found {0} sessions")]
     OneSession(usize),
@@ -117,6 +131,9 @@ impl Error {
             Self::OutputKind(_) => "give the output one of these endings".to_owned(),
             Self::SameKind(_) => "copy the file, or give the output another ending".to_owned(),
             Self::Stdout(_) => "write to a place that has room, or use --out".to_owned(),
+            Self::Listen { .. } => "give another with --listen; is a monitor running already?".to_owned(),
+            Self::Random(_) => "watch without --allow-control".to_owned(),
+            Self::SessionWithoutTable => "give the arm's table with --table".to_owned(),
             Self::OneSession(_) => "replay the sessions one by one".to_owned(),
             Self::Rate(_) | Self::Seconds(_) | Self::Pressure(_) | Self::Ramp(_) => {
                 "give a value in this range".to_owned()

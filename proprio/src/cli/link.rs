@@ -88,6 +88,27 @@ fn pressures_kpa(text: &str) -> Result<[f64; REGULATORS], String> {
 }
 
 #[derive(Debug, Args)]
+pub struct Monitor {
+    /// Session to show instead of a board; takes a table
+    #[arg(conflicts_with_all = ["port", "emulated", "allow_control", "plain"])]
+    pub session: Option<PathBuf>,
+    #[command(flatten)]
+    pub link: LinkArgs,
+    /// Port of 127.0.0.1 that the page is on; 0: any that is free
+    #[arg(long, value_name = "PORT", default_value_t = 8642)]
+    pub listen: u16,
+    /// Folder that recordings are written to and sessions opened from
+    #[arg(long, value_name = "FOLDER", default_value = ".")]
+    pub folder: PathBuf,
+    /// Let who has the token that is printed drive the board
+    #[arg(long)]
+    pub allow_control: bool,
+    /// Print one line a second instead
+    #[arg(long, conflicts_with_all = ["listen", "folder", "allow_control"])]
+    pub plain: bool,
+}
+
+#[derive(Debug, Args)]
 pub struct Convert {
     /// Session: CSV, recording or raw bytes (.bin)
     pub input: PathBuf,

@@ -6,6 +6,7 @@ mod completions;
 mod convert;
 mod drive;
 mod link;
+mod monitor;
 mod ports;
 mod record;
 mod recorder;
@@ -36,6 +37,7 @@ impl Command {
             Self::Status(args) => status::run(&args),
             Self::Record(args) => record::run(&args),
             Self::Drive(args) => drive::run(&args),
+            Self::Monitor(args) => monitor::run(&args),
             Self::Convert(args) => convert::run(&args),
             Self::Recover(args) => recover::run(&args),
             Self::Completions(args) => completions::run(&args),

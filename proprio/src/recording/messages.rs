@@ -86,6 +86,13 @@ pub fn diagnostics(stamp: HostNs, health: &Health, hello: Option<&Hello>) -> Vec
     cdr.into_bytes()
 }
 
+/// `std_msgs/msg/String`.
+pub fn mark(text: &str) -> Vec<u8> {
+    let mut cdr = CdrWriter::new();
+    cdr.string(text);
+    cdr.into_bytes()
+}
+
 /// The chip's number in hexadecimal.
 pub fn chip_number(chip: &[u8; 16]) -> String {
     format!("{:032x}", u128::from_be_bytes(*chip))

@@ -9,10 +9,9 @@ use mcap::write::NoSeek;
 use mcap::{Attachment, McapError, WriteOptions};
 use telemetry::{Estimate, Hello, Message, SCHEMA, Sample, SetPressures};
 
-use super::board_clock::BoardClock;
 use super::schema::{self, Schema};
-use super::{DIAGNOSTICS, JOINT_STATES, RAW, SAMPLES, SET_POINTS, SHAPE, TRUTH, messages};
-use crate::link::HostNs;
+use super::{DIAGNOSTICS, JOINT_STATES, MARKS, RAW, SAMPLES, SET_POINTS, SHAPE, TRUTH, messages};
+use crate::link::{BoardClock, HostNs};
 use crate::session::Truth;
 
 /// How long anything may wait to be written, ns. A file that is cut loses no more than that.
@@ -30,6 +29,7 @@ pub struct Recorder<W: Write> {
     raw_messages: u32,
     /// Times that the host has asked for pressures.
     asked: u32,
+    marks: u32,
 }
 
 /// Numbers of the channels.
@@ -43,6 +43,8 @@ struct Channels {
     set_points: Option<u16>,
     /// Only where there is truth.
     truth: Option<u16>,
+    /// Only where there are marks.
+    marks: Option<u16>,
 }
 
 impl<W: Write> Recorder<W> {
@@ -74,9 +76,10 @@ impl<W: Write> Recorder<W> {
             diagnostics: channel(&mut mcap, DIAGNOSTICS, &schema::DIAGNOSTIC_ARRAY)?,
             set_points: None,
             truth: None,
+            marks: None,
         };
         let clock = BoardClock::default();
-        Ok(Self { mcap, channels, clock, hello: None, sample: None, flushed: at, raw_messages: 0, asked: 0 })
+        Ok(Self { mcap, channels, clock, hello: None, sample: None, flushed: at, raw_messages: 0, asked: 0, marks: 0 })
     }
 
     /// Attaches the table that the board has, as its file stands.
@@ -139,6 +142,16 @@ impl<W: Write> Recorder<W> {
         let channel = channel_once(&mut self.channels.set_points, &mut self.mcap, SET_POINTS, &schema::SET_POINTS)?;
         self.asked = self.asked.wrapping_add(1);
         self.write(channel, self.asked, at, at, &messages::set_points(at, asked))
+    }
+
+    /// Writes that a person has marked this moment, and what for.
+    ///
+    /// # Errors
+    /// Those of the sink.
+    pub fn mark(&mut self, at: HostNs, text: &str) -> io::Result<()> {
+        let channel = channel_once(&mut self.channels.marks, &mut self.mcap, MARKS, &schema::STRING)?;
+        self.marks = self.marks.wrapping_add(1);
+        self.write(channel, self.marks, at, at, &messages::mark(text))
     }
 
     /// Writes what came, where it has waited long enough.

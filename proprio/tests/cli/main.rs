@@ -16,6 +16,7 @@ mod estimates;
 mod figures;
 mod guide;
 mod missing_readings;
+mod monitor;
 mod output_files;
 mod ports;
 mod recorded_sessions;

@@ -1,4 +1,5 @@
-//! The tools as they are used: `proprio` records the firmware on the virtual Due over a pseudo-terminal, and over pipes.
+//! The tools as they are used: `proprio` records and monitors the firmware on the virtual Due over a pseudo-terminal, and
+//! over pipes.
 
 use std::fs;
 use std::io::{BufRead, BufReader};
@@ -62,4 +63,16 @@ fn status_says_how_the_virtual_due_is() {
         assert!(status.contains(line), "{status}");
     }
     assert!(status.contains("virtual Due, answers") && status.contains(" 0 damaged, 0 lost"), "{status}");
+}
+
+#[test]
+fn monitor_prints_a_line_a_second_for_a_terminal() {
+    let folder = folder("plain");
+    let mut command = proprio(&folder, &["monitor", "--plain", "--virtual", "--firmware", "firmware"]);
+    let mut monitor = Running(command.stdout(Stdio::piped()).spawn().expect("the tool starts"));
+    let lines = BufReader::new(monitor.0.stdout.take().expect("a pipe")).lines().map_while(Result::ok);
+    let line = lines.take(60).find(|line| line.starts_with("θ ")).expect("the board estimates within a minute");
+    for part in ["°  tip ", " mm  ", " samples/s  0 lost  0 damaged  load "] {
+        assert!(line.contains(part), "{line}");
+    }
 }
