@@ -30,9 +30,8 @@ impl Baked<Q> {
     pub fn to_rust(&self) -> String {
         let table = self.table();
         let (segments, anchor) = (table.segments, table.anchor);
-        let mut source = String::from(
-            "use estimator_core::{AnchorRule, BendMap, Noise, OffsetAt, Q, Segment, Table, Turns};\n\n",
-        );
+        let mut source =
+            String::from("use estimator_core::{AnchorRule, BendMap, Noise, OffsetAt, Q, Segment, Table, Turns};\n\n");
         let count = segments.len();
         let _ = writeln!(source, "/// The arm's segments, from the base.\nstatic SEGMENTS: [Segment<Q>; {count}] = [");
         for segment in segments {

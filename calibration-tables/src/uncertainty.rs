@@ -78,9 +78,7 @@ impl UncertaintyKeys {
         let measurement = measurement_deg2 * 1_f64.to_radians().powi(2);
         UncertaintyRule {
             theta: angle(self.theta_deg),
-            drift: scaled(
-                self.drift_share * measurement * FRAC_2_PI / f64::from(UncertaintyRule::<S>::DRIFT_SCALE),
-            ),
+            drift: scaled(self.drift_share * measurement * FRAC_2_PI / f64::from(UncertaintyRule::<S>::DRIFT_SCALE)),
             bend: angle(self.bend_deg),
             contact: angle(self.contact_deg),
             end: scaled((self.end_mm / 1000.0).powi(2)),

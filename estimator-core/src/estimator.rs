@@ -139,7 +139,14 @@ impl<'t, S: Scalar, const N: usize, const W: usize> Estimator<'t, S, N, W> {
     /// kilobytes are better made in place than moved over a small stack.
     #[must_use]
     pub const fn unstarted(table: &'t Table<'t, S>) -> Self {
-        Self { table, has_bend_sensors: false, is_beyond_the_paper: false, pace: Pace::new(), states: Vec::new(), fused: Vec::new() }
+        Self {
+            table,
+            has_bend_sensors: false,
+            is_beyond_the_paper: false,
+            pace: Pace::new(),
+            states: Vec::new(),
+            fused: Vec::new(),
+        }
     }
 
     /// Begins a session, whatever was before.

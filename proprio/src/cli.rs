@@ -7,6 +7,7 @@ use std::path::PathBuf;
 use clap::builder::Styles;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
+pub use link::{Convert, Drive, LinkArgs, Monitor, Ports, Record, Recover, Status};
 pub use link::{Convert, LinkArgs, Ports, Record, Recover, Status};
 use proprio::calibrate::Correct;
 use proprio::session::ImuColumns;
@@ -45,6 +46,10 @@ pub enum Command {
     Status(Status),
     /// Record what a board says
     Record(Record),
+    /// Drive the arm's pressures, and vent them at the end
+    Drive(Drive),
+    /// Show a live arm, or a session, on a page in the browser
+    Monitor(Monitor),
     /// Turn a session into CSV, a recording or raw bytes
     Convert(Convert),
     /// Save what is whole of a recording that was cut

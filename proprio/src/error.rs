@@ -3,10 +3,12 @@
 use std::io;
 use std::path::PathBuf;
 
+use board_core::FULL_SCALE_PA;
 use calibration_tables::FileError;
 
 use crate::align::AlignmentError;
 use crate::calibrate::CalibrationError;
+use crate::drive::DriveError;
 use crate::link::LinkError;
 use crate::session::SessionError;
 use crate::tune::TuningError;
@@ -36,6 +38,9 @@ pub enum Error {
     /// A board cannot be reached.
     #[error(transparent)]
     Link(#[from] LinkError),
+    /// A board is not driven, or not any more.
+    #[error(transparent)]
+    Drive(#[from] DriveError),
     /// Filters cannot be tuned on a session, or in a table.
     #[error("{}: {source}", path.display())]
     Tuning {
@@ -78,15 +83,35 @@ pub enum Error {
     /// Standard output cannot be written.
     #[error("standard output cannot be written: {0}")]
     Stdout(io::Error),
+    /// The monitor cannot have its port.
+    #[error("port {port} of 127.0.0.1 cannot be listened on: {source}")]
+    Listen {
+        /// The port.
+        port: u16,
+        /// Why not.
+        source: io::Error,
+    },
+    /// There is no token.
+    #[error("the system gives no random numbers: {0}")]
+    Random(io::Error),
+    /// The monitor is given a session and no table.
+    #[error("a session is shown by what the estimator makes of it, and that takes a table")]
+    SessionWithoutTable,
     /// `--out` with several sessions.
     #[error("--out takes the estimates of one session, found {0} sessions")]
     OneSession(usize),
     /// A rate that the twin cannot be sampled at.
     #[error("--rate {0} Hz, expected 1 to 1000")]
     Rate(f64),
-    /// A duration that cannot be simulated.
+    /// A duration that cannot be simulated, recorded or driven.
     #[error("--seconds {0}, expected more than 0 and at most 10 million")]
     Seconds(f64),
+    /// A pressure that no regulator gives.
+    #[error("--kpa {0}, expected 0 to {most}", most = FULL_SCALE_PA / 1000)]
+    Pressure(f64),
+    /// A change of pressures that is none.
+    #[error("--ramp {0} kPa/s, expected more than 0")]
+    Ramp(f64),
 }
 
 impl Error {
@@ -98,6 +123,7 @@ impl Error {
             Self::Table { source, .. } => source.remedy().to_owned(),
             Self::Calibration { source, .. } => source.remedy(),
             Self::Link(error) => error.remedy().to_owned(),
+            Self::Drive(error) => error.remedy().to_owned(),
             Self::Tuning { source, .. } => source.remedy().to_owned(),
             Self::Alignment { source, .. } => source.remedy().to_owned(),
             Self::Output { .. } => "choose a folder that exists, can be written to and has room".to_owned(),
@@ -105,8 +131,13 @@ impl Error {
             Self::OutputKind(_) => "give the output one of these endings".to_owned(),
             Self::SameKind(_) => "copy the file, or give the output another ending".to_owned(),
             Self::Stdout(_) => "write to a place that has room, or use --out".to_owned(),
+            Self::Listen { .. } => "give another with --listen; is a monitor running already?".to_owned(),
+            Self::Random(_) => "watch without --allow-control".to_owned(),
+            Self::SessionWithoutTable => "give the arm's table with --table".to_owned(),
             Self::OneSession(_) => "replay the sessions one by one".to_owned(),
-            Self::Rate(_) | Self::Seconds(_) => "give a value in this range".to_owned(),
+            Self::Rate(_) | Self::Seconds(_) | Self::Pressure(_) | Self::Ramp(_) => {
+                "give a value in this range".to_owned()
+            }
         }
     }
 }

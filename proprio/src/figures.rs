@@ -4,8 +4,8 @@ use estimator_core::Method;
 use serde::Serialize;
 use serde::ser::{SerializeMap, Serializer};
 
-use crate::recording::Comparison;
 use crate::honesty::HonestyFigures;
+use crate::recording::Comparison;
 use crate::score::{Figures, Score};
 
 /// The figures of one or more sessions, in the form of `replay --json`.

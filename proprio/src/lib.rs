@@ -1,4 +1,4 @@
-//! The host side of `proprio`: sessions, calibration, replay, reports, simulation, and the link to a board.
+//! The host side of `proprio`: sessions, calibration, replay, reports, simulation, the link to a board, and its live page.
 //!
 //! The command-line tool is a thin layer over these modules; the tests and benchmarks of the workspace use them as well.
 //!
@@ -23,12 +23,14 @@ pub mod align;
 pub mod calibrate;
 pub mod convert;
 pub mod distances;
+pub mod drive;
 pub mod error;
 pub mod estimates;
 pub mod figures;
 pub mod honesty;
 pub mod interrupt;
 pub mod link;
+pub mod monitor;
 pub mod output;
 pub mod progress;
 pub mod recording;

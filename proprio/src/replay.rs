@@ -67,7 +67,7 @@ pub struct Outcome<S> {
 }
 
 /// The extent of a session.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Extent {
     /// Number of rows.
     pub samples: u64,
@@ -80,17 +80,20 @@ pub struct Extent {
 }
 
 /// What is known of a recording, when it is replayed.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Recording {
-    /// Whether the board's table was the one of the replay; `None` where its `Hello` is not in the recording.
+    /// Version and revision of the board's firmware; `None` where its `Hello` is not in the recording.
+    pub firmware: Option<String>,
+    /// Whether the board's table was the one of the replay, likewise.
     pub table_matches: Option<bool>,
 }
 
 impl Recording {
     fn new(hello: Option<&Hello>, table: &NamedTable) -> Result<Self, Error> {
-        let Some(hello) = hello else { return Ok(Self { table_matches: None }) };
+        let Some(hello) = hello else { return Ok(Self { firmware: None, table_matches: None }) };
         let checksum = table.bake::<Q>(TICK_HZ)?.checksum();
-        Ok(Self { table_matches: Some(hello.table == checksum) })
+        let firmware = Some(format!("{} ({})", hello.firmware, hello.revision));
+        Ok(Self { firmware, table_matches: Some(hello.table == checksum) })
     }
 }
 

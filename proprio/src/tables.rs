@@ -72,7 +72,8 @@ fn honesty(all: &AllFigures) -> String {
     if all.all.uncertainty.is_none() {
         return String::new();
     }
-    let mut table = table(&["session", "tip, NEES", "in 95 % ellipse", "all ends, NEES", "in 95 % ellipse", "angles, NEES"]);
+    let mut table =
+        table(&["session", "tip, NEES", "in 95 % ellipse", "all ends, NEES", "in 95 % ellipse", "angles, NEES"]);
     let sessions = all.sessions.iter().map(|session| (session.path.as_str(), &session.figures));
     for (name, figures) in sessions.chain([("all", &all.all)]) {
         let Some(of) = &figures.uncertainty else { continue };

@@ -39,14 +39,18 @@ pub struct Counts {
     pub damaged: u32,
     /// Frames that the other side numbered and that never came whole: damaged, or not sent.
     ///
-    /// A gap of up to 32 767 frames is counted; where the number went back instead, nothing is. Numbers start anew at
-    /// each boot: a [`Hello`](crate::Hello) of another boot takes back what was counted since the `Hello` before it.
+    /// A gap of up to 32 767 frames is counted; where the number went back instead, nothing is. Where it went back by up
+    /// to 256, a piece of the stream has come twice, and what follows is counted from its end. Numbers start anew at each
+    /// boot: a [`Hello`](crate::Hello) of another boot takes back what was counted since the `Hello` before it.
     pub lost: u32,
     /// Whole frames of another version.
     pub foreign: u32,
     /// Whole frames of this version whose topic or body is not known here.
     pub unknown: u32,
 }
+
+/// Frames that the number may go back by without a restart.
+const REPEATED: u16 = 256;
 
 /// Finds frames in a stream of bytes: of [`Message`](crate::Message)s on the host, of [`Request`](crate::Request)s on the
 /// board.
@@ -120,22 +124,26 @@ impl<P: Payload> Decoder<P> {
         let sequence = frame.sequence;
         self.count_lost(sequence);
         if let Some(boot) = payload.as_ref().ok().and_then(P::boot) {
-            self.count_boot(boot);
+            self.count_boot(boot, sequence);
         }
         payload
     }
 
     fn count_lost(&mut self, sequence: u16) {
         let gap = sequence.wrapping_sub(self.next.unwrap_or(sequence));
+        if gap.wrapping_neg() <= REPEATED && gap != 0 {
+            return;
+        }
         if i16::try_from(gap).is_ok() {
             self.counts.lost = self.counts.lost.saturating_add(gap.into());
         }
         self.next = Some(sequence.wrapping_add(1));
     }
 
-    fn count_boot(&mut self, boot: u32) {
+    fn count_boot(&mut self, boot: u32, sequence: u16) {
         if self.boot.is_some_and(|before| before != boot) {
             self.counts.lost = self.lost_before_hello;
+            self.next = Some(sequence.wrapping_add(1));
         }
         self.boot = Some(boot);
         self.lost_before_hello = self.counts.lost;

@@ -107,9 +107,8 @@ fn uncertainty() -> impl Strategy<Value = UncertaintyKeys> {
 fn segments() -> impl Strategy<Value = Vec<SegmentKeys>> {
     let alike = option::of((-7.9..7.9_f64).prop_map(|ratio| AlikeKeys { segment: 1, ratio }));
     let later = (segment(), alike).prop_map(|(segment, alike)| SegmentKeys { alike, ..segment });
-    (segment(), prop::collection::vec(later, 0..16)).prop_map(|(first, later)| {
-        std::iter::once(first).chain(later).collect()
-    })
+    (segment(), prop::collection::vec(later, 0..16))
+        .prop_map(|(first, later)| std::iter::once(first).chain(later).collect())
 }
 
 fn rmse() -> impl Strategy<Value = RmseKeys> {

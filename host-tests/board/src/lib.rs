@@ -1,6 +1,8 @@
 //! The firmware on the emulated board, as a host sees it: frames out, requests in, and the arm's truth beside them.
 
 mod board;
+#[cfg(unix)]
+pub mod browser;
 mod build;
 mod replay;
 mod view;

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use proprio::link::Baud;
+use telemetry::REGULATORS;
 
 /// Which board.
 #[derive(Debug, Args)]
@@ -57,6 +58,54 @@ pub struct Record {
     /// Duration, s [default: until Ctrl-C]
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     pub seconds: Option<f64>,
+}
+
+#[derive(Debug, Args)]
+pub struct Drive {
+    /// Profile: pressures over time, columns time_s and pressure1_kpa to pressure6_kpa
+    #[arg(value_name = "PROFILE.csv", required_unless_present = "kpa", conflicts_with = "kpa")]
+    pub profile: Option<PathBuf>,
+    /// Pressures to hold instead: module 1 right, left, module 2 right, left, module 3 right, left
+    #[arg(long, value_name = "KPA,KPA,KPA,KPA,KPA,KPA", value_parser = pressures_kpa, allow_negative_numbers = true)]
+    pub kpa: Option<[f64; REGULATORS]>,
+    /// How long to hold them, s [default: until Ctrl-C]
+    #[arg(long, value_name = "S", requires = "kpa", allow_negative_numbers = true)]
+    pub seconds: Option<f64>,
+    /// The fastest that a pressure changes, kPa/s
+    #[arg(long, value_name = "KPA/S", default_value_t = 100.0, allow_negative_numbers = true)]
+    pub ramp: f64,
+    /// Recording to write meanwhile
+    #[arg(short, long, value_name = "FILE.mcap")]
+    pub output: Option<PathBuf>,
+    #[command(flatten)]
+    pub link: LinkArgs,
+}
+
+fn pressures_kpa(text: &str) -> Result<[f64; REGULATORS], String> {
+    let pressures = text.split(',').map(|part| part.trim().parse().map_err(|_| format!("\"{part}\" is not a number")));
+    let pressures = pressures.collect::<Result<Vec<f64>, _>>()?;
+    pressures.try_into().map_err(|found: Vec<f64>| format!("{} pressures, expected {REGULATORS}", found.len()))
+}
+
+#[derive(Debug, Args)]
+pub struct Monitor {
+    /// Session to show instead of a board; takes a table
+    #[arg(conflicts_with_all = ["port", "emulated", "allow_control", "plain"])]
+    pub session: Option<PathBuf>,
+    #[command(flatten)]
+    pub link: LinkArgs,
+    /// Port of 127.0.0.1 that the page is on; 0: any that is free
+    #[arg(long, value_name = "PORT", default_value_t = 8642)]
+    pub listen: u16,
+    /// Folder that recordings are written to and sessions opened from
+    #[arg(long, value_name = "FOLDER", default_value = ".")]
+    pub folder: PathBuf,
+    /// Let who has the token that is printed drive the board
+    #[arg(long)]
+    pub allow_control: bool,
+    /// Print one line a second instead
+    #[arg(long, conflicts_with_all = ["listen", "folder", "allow_control"])]
+    pub plain: bool,
 }
 
 #[derive(Debug, Args)]

@@ -4,12 +4,16 @@ mod align;
 mod calibrate;
 mod completions;
 mod convert;
+mod drive;
 mod link;
+mod monitor;
 mod ports;
 mod record;
+mod recorder;
 mod recover;
 mod replay;
 mod report;
+mod screen;
 mod simulate;
 mod status;
 mod tune;
@@ -32,6 +36,8 @@ impl Command {
             Self::Ports(args) => ports::run(&args),
             Self::Status(args) => status::run(&args),
             Self::Record(args) => record::run(&args),
+            Self::Drive(args) => drive::run(&args),
+            Self::Monitor(args) => monitor::run(&args),
             Self::Convert(args) => convert::run(&args),
             Self::Recover(args) => recover::run(&args),
             Self::Completions(args) => completions::run(&args),

@@ -42,9 +42,14 @@ pub fn run(args: &Replay) -> Result<(), Error> {
 }
 
 /// Whether the replay is what the board has estimated.
-fn tell(path: &Path, recorded: &Comparison) {
+fn tell(path: &Path, recorded: &Comparison, firmware: Option<&str>) {
     let line = format!("{}: {recorded}", path.display());
-    if recorded.is_exact() { super::say(&line) } else { super::warn(&line) }
+    if recorded.is_exact() {
+        super::say(&line);
+    } else {
+        // Another release may estimate in another way, to the last bits.
+        super::warn(&format_args!("{line}; the board ran firmware {}", firmware.unwrap_or("of an unknown version")));
+    }
 }
 
 /// Compares what the board has estimated of a row.
@@ -74,11 +79,9 @@ fn replay_all<S: Scalar>(
         }
         let recorded = recording.filter(|_| compare.is_some()).map(|recording| {
             comparison.table_matches = recording.table_matches;
+            tell(path, &comparison, recording.firmware.as_deref());
             comparison
         });
-        if let Some(recorded) = &recorded {
-            tell(path, recorded);
-        }
         all.append(&score);
         let figures = ByMethod::from(&score);
         each.push(SessionFigures { path: path.display().to_string(), samples, seconds, figures, recorded });

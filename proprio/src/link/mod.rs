@@ -28,9 +28,11 @@
 //! | `intake.rs`, `runs.rs` | bytes to messages; losses, mismatches and restarts |
 //! | `requests.rs` | ids, answers and repetitions |
 //! | `event.rs`, `queue.rs`, `clock.rs` | what the thread says, to whom, and when it came |
+//! | `board_clock.rs` | the board's time on the host's clock, and its drift |
 //! | `source.rs` | where a line comes from, and that it may come again |
 //! | `ports.rs`, `serial.rs`, `virtual_due.rs` | the sources that there are |
 
+mod board_clock;
 mod clock;
 mod error;
 mod event;
@@ -45,6 +47,7 @@ mod source;
 mod virtual_due;
 mod worker;
 
+pub use board_clock::{BoardClock, Drift};
 pub use clock::{HostClock, HostNs};
 pub use error::LinkError;
 pub use event::{Event, Mismatch, What};

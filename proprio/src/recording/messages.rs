@@ -3,7 +3,7 @@
 use std::f64::consts::FRAC_PI_2;
 
 use estimator_core::Q;
-use telemetry::{BEND_SENSORS, Estimate, Health, Hello, SEGMENTS, Sample, SensorHealth, SensorState};
+use telemetry::{BEND_SENSORS, Estimate, Health, Hello, SEGMENTS, Sample, SensorHealth, SensorState, SetPressures};
 
 use super::cdr::{CdrReader, CdrWriter};
 use crate::link::HostNs;
@@ -86,6 +86,13 @@ pub fn diagnostics(stamp: HostNs, health: &Health, hello: Option<&Hello>) -> Vec
     cdr.into_bytes()
 }
 
+/// `std_msgs/msg/String`.
+pub fn mark(text: &str) -> Vec<u8> {
+    let mut cdr = CdrWriter::new();
+    cdr.string(text);
+    cdr.into_bytes()
+}
+
 /// The chip's number in hexadecimal.
 pub fn chip_number(chip: &[u8; 16]) -> String {
     format!("{:032x}", u128::from_be_bytes(*chip))
@@ -143,6 +150,14 @@ fn status(cdr: &mut CdrWriter, level: Level, name: &str, message: &str, chip: &s
         cdr.string(key);
         cdr.string(value);
     }
+}
+
+/// `proprio_msgs/msg/SetPoints`.
+pub fn set_points(stamp: HostNs, asked: &SetPressures) -> Vec<u8> {
+    let mut cdr = header(stamp);
+    asked.pressures_pa.iter().for_each(|pressure_pa| cdr.u32(*pressure_pa));
+    cdr.u16(asked.valid_ms);
+    cdr.into_bytes()
 }
 
 /// `proprio_msgs/msg/Truth`.

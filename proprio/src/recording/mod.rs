@@ -12,9 +12,7 @@
 //! | `compare.rs` | the board's estimates against a replay's |
 //! | `recover.rs` | what is whole of a file that was cut |
 //! | `messages.rs`, `schema.rs`, `cdr.rs` | ROS 2 messages |
-//! | `board_clock.rs` | the board's time on the host's clock |
 
-mod board_clock;
 mod cdr;
 mod compare;
 mod messages;
@@ -24,7 +22,6 @@ mod rows;
 mod schema;
 mod writer;
 
-pub use board_clock::BoardClock;
 pub use compare::{Comparison, Difference, Values};
 pub use messages::chip_number;
 pub use reader::{Item, RawReader, ReadError, Reader, is_recording};
@@ -42,5 +39,9 @@ pub const JOINT_STATES: &str = "/joint_states";
 pub const SHAPE: &str = "/proprio/shape";
 /// Topic of `diagnostic_msgs/msg/DiagnosticArray`.
 pub const DIAGNOSTICS: &str = "/diagnostics";
+/// Topic of `proprio_msgs/msg/SetPoints`.
+pub const SET_POINTS: &str = "/proprio/set_points";
 /// Topic of `proprio_msgs/msg/Truth`.
 pub const TRUTH: &str = "/proprio/truth";
+/// Topic of `std_msgs/msg/String`: moments that a person has marked.
+pub const MARKS: &str = "/proprio/marks";

@@ -52,6 +52,14 @@ pub const TRUTH: Schema = Schema {
     needs: &[HEADER, TIME],
 };
 
+pub const SET_POINTS: Schema = Schema {
+    name: "proprio_msgs/msg/SetPoints",
+    definition: include_str!("definitions/SetPoints.msg"),
+    needs: &[HEADER, TIME],
+};
+pub const STRING: Schema =
+    Schema { name: "std_msgs/msg/String", definition: include_str!("definitions/String.msg"), needs: &[] };
+
 impl Schema {
     /// The definition and all that it needs, as MCAP's encoding `ros2msg` has them.
     pub fn text(&self) -> String {

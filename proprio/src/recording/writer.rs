@@ -7,19 +7,15 @@ use std::io::{self, Write};
 use mcap::records::{MessageHeader, Metadata};
 use mcap::write::NoSeek;
 use mcap::{Attachment, McapError, WriteOptions};
-use telemetry::{Estimate, Hello, Message, SCHEMA, Sample};
+use telemetry::{Estimate, Hello, Message, SCHEMA, Sample, SetPressures};
 
-use super::board_clock::BoardClock;
 use super::schema::{self, Schema};
-use super::{DIAGNOSTICS, JOINT_STATES, RAW, SAMPLES, SHAPE, TRUTH, messages};
-use crate::link::HostNs;
+use super::{DIAGNOSTICS, JOINT_STATES, MARKS, RAW, SAMPLES, SET_POINTS, SHAPE, TRUTH, messages};
+use crate::link::{BoardClock, HostNs};
 use crate::session::Truth;
 
 /// How long anything may wait to be written, ns. A file that is cut loses no more than that.
 const FLUSH_NS: u64 = 900_000_000;
-
-/// Ticks of which the times are remembered: an estimate follows its sample at once.
-const NO_SAMPLE: Option<(u32, HostNs)> = None;
 
 /// A recording that is being made. Every second it appends what came as one whole chunk; nothing is ever changed again.
 pub struct Recorder<W: Write> {
@@ -27,10 +23,13 @@ pub struct Recorder<W: Write> {
     channels: Channels,
     clock: BoardClock,
     hello: Option<Hello>,
-    /// Tick and time of the last sample.
+    /// Tick and time of the last sample, which its estimate follows at once.
     sample: Option<(u32, HostNs)>,
     flushed: HostNs,
     raw_messages: u32,
+    /// Times that the host has asked for pressures.
+    asked: u32,
+    marks: u32,
 }
 
 /// Numbers of the channels.
@@ -40,8 +39,12 @@ struct Channels {
     joint_states: u16,
     shape: u16,
     diagnostics: u16,
+    /// Only where the pressures are driven.
+    set_points: Option<u16>,
     /// Only where there is truth.
     truth: Option<u16>,
+    /// Only where there are marks.
+    marks: Option<u16>,
 }
 
 impl<W: Write> Recorder<W> {
@@ -50,8 +53,7 @@ impl<W: Write> Recorder<W> {
     /// # Errors
     /// Those of `sink`.
     pub fn new(sink: W, at: HostNs, line: &str) -> io::Result<Self> {
-        // Chunks are put together in memory, so that the file only grows. Compression would need a C compiler, and
-        // what a board reads is mostly noise.
+        // Chunks are put together in memory, so that the file only grows. Compression would need a C compiler.
         let options = WriteOptions::new()
             .compression(None)
             .library(format!("proprio {}", env!("CARGO_PKG_VERSION")))
@@ -72,10 +74,12 @@ impl<W: Write> Recorder<W> {
             joint_states: channel(&mut mcap, JOINT_STATES, &schema::JOINT_STATE)?,
             shape: channel(&mut mcap, SHAPE, &schema::POSE_ARRAY)?,
             diagnostics: channel(&mut mcap, DIAGNOSTICS, &schema::DIAGNOSTIC_ARRAY)?,
+            set_points: None,
             truth: None,
+            marks: None,
         };
         let clock = BoardClock::default();
-        Ok(Self { mcap, channels, clock, hello: None, sample: NO_SAMPLE, flushed: at, raw_messages: 0 })
+        Ok(Self { mcap, channels, clock, hello: None, sample: None, flushed: at, raw_messages: 0, asked: 0, marks: 0 })
     }
 
     /// Attaches the table that the board has, as its file stands.
@@ -125,12 +129,29 @@ impl<W: Write> Recorder<W> {
     /// # Errors
     /// Those of the sink.
     pub fn truth(&mut self, at: HostNs, tick: u32, ends: &[Option<Truth>]) -> io::Result<()> {
-        let channel = match self.channels.truth {
-            Some(channel) => channel,
-            None => *self.channels.truth.insert(channel(&mut self.mcap, TRUTH, &schema::TRUTH)?),
-        };
+        let channel = channel_once(&mut self.channels.truth, &mut self.mcap, TRUTH, &schema::TRUTH)?;
         let stamp = self.stamp(tick, at);
         self.write(channel, tick, at, stamp, &messages::truth(stamp, ends))
+    }
+
+    /// Writes what the host has asked of the pressures.
+    ///
+    /// # Errors
+    /// Those of the sink.
+    pub fn set_points(&mut self, at: HostNs, asked: &SetPressures) -> io::Result<()> {
+        let channel = channel_once(&mut self.channels.set_points, &mut self.mcap, SET_POINTS, &schema::SET_POINTS)?;
+        self.asked = self.asked.wrapping_add(1);
+        self.write(channel, self.asked, at, at, &messages::set_points(at, asked))
+    }
+
+    /// Writes that a person has marked this moment, and what for.
+    ///
+    /// # Errors
+    /// Those of the sink.
+    pub fn mark(&mut self, at: HostNs, text: &str) -> io::Result<()> {
+        let channel = channel_once(&mut self.channels.marks, &mut self.mcap, MARKS, &schema::STRING)?;
+        self.marks = self.marks.wrapping_add(1);
+        self.write(channel, self.marks, at, at, &messages::mark(text))
     }
 
     /// Writes what came, where it has waited long enough.
@@ -193,6 +214,19 @@ impl<W: Write> Recorder<W> {
 fn channel<W: Write>(mcap: &mut mcap::Writer<NoSeek<W>>, topic: &str, schema: &Schema) -> io::Result<u16> {
     let id = mcap.add_schema(schema.name, "ros2msg", schema.text().as_bytes()).map_err(io_error)?;
     mcap.add_channel(id, topic, "cdr", &BTreeMap::new()).map_err(io_error)
+}
+
+/// A channel that is there from its first message on.
+fn channel_once<W: Write>(
+    place: &mut Option<u16>,
+    mcap: &mut mcap::Writer<NoSeek<W>>,
+    topic: &str,
+    schema: &Schema,
+) -> io::Result<u16> {
+    match place {
+        Some(channel) => Ok(*channel),
+        None => Ok(*place.insert(channel(mcap, topic, schema)?)),
+    }
 }
 
 /// What a sink can say; the writer itself is used as it is meant to be.

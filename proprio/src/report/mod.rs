@@ -105,7 +105,7 @@ impl<'t> Gathering<'t> {
         })?;
         self.all.append(&score);
         let name = path.display().to_string();
-        self.sessions.push(Session { name, extent, score, drift, tip_errors, shapes });
+        self.sessions.push(Session { name, extent: extent.clone(), score, drift, tip_errors, shapes });
         Ok(extent)
     }
 

@@ -1,5 +1,6 @@
 //! One cell: text to a checked reading.
 
+use board_core::FULL_SCALE_PA;
 use estimator_core::{ImuReading, Phase};
 
 use super::Problem;
@@ -78,6 +79,16 @@ pub(super) fn heading(cell: &str, factor: f64) -> Result<Option<ImuReading>, Pro
 pub(super) fn truth(cell: &str, factor: f64) -> Result<Option<f64>, Problem> {
     let value = number(cell)?.map(|value| value * factor);
     if value.is_some_and(|value| value.abs() > MAX_TRUTH) { Err(Problem::Truth(shown(cell))) } else { Ok(value) }
+}
+
+/// A pressure in units of `factor` Pa, that a regulator can give.
+pub(super) fn pressure_pa(cell: &str, factor: f64) -> Result<f64, Problem> {
+    let pressure_pa = number(cell)?.ok_or(Problem::NoPressure)? * factor;
+    if (0.0..=f64::from(FULL_SCALE_PA)).contains(&pressure_pa) {
+        Ok(pressure_pa)
+    } else {
+        Err(Problem::Pressure(shown(cell)))
+    }
 }
 
 /// A cell's text as it can be shown: one line, not too long.

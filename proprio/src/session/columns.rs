@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 
 use estimator_core::SENSORS_PER_SEGMENT;
+use telemetry::REGULATORS;
 
 use super::{Needs, Problem};
 
@@ -64,6 +65,13 @@ pub(super) struct CameraColumns {
     pub base: Option<[Column; 3]>,
 }
 
+/// Where everything stands in a profile of pressures.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct PressureColumns {
+    pub time: usize,
+    pub regulators: [Column; REGULATORS],
+}
+
 /// Names of the sensors of a segment.
 pub(crate) const SENSOR_NAMES: [char; SENSORS_PER_SEGMENT] = ['a', 'b'];
 
@@ -107,13 +115,25 @@ impl CameraColumns {
     }
 }
 
+impl PressureColumns {
+    /// Finds the columns of all regulators.
+    pub fn find(names: &[String]) -> Result<Self, Problem> {
+        let header = Places::of(names, 0)?;
+        let time = header.required("time_s")?;
+        let regulator = |i: usize| header.in_unit(&format!("pressure{}", i + 1), [("kpa", 1e3), ("pa", 1.0)]);
+        let [a, b, c, d, e, f] = [0, 1, 2, 3, 4, 5].map(regulator);
+        Ok(Self { time, regulators: [a?, b?, c?, d?, e?, f?] })
+    }
+}
+
 impl<'h> Places<'h> {
     /// Refuses columns that are there twice and those of a segment beyond the last.
     fn of(names: &'h [String], segments: usize) -> Result<Self, Problem> {
         let mut places = HashMap::new();
         for (index, name) in names.iter().enumerate() {
             let segment = segment_of(name);
-            if places.insert(name.as_str(), index).is_some() && (segment.is_some() || is_base(name)) {
+            let is_known = segment.is_some() || is_base(name) || is_pressure(name);
+            if places.insert(name.as_str(), index).is_some() && is_known {
                 return Err(Problem::DuplicateColumn(name.clone()));
             }
             if let Some(segment) = segment.filter(|segment| *segment > segments) {
@@ -217,4 +237,10 @@ pub(super) fn is_truth(name: &str) -> bool {
 /// Whether a column is of the base's marker.
 fn is_base(name: &str) -> bool {
     name.strip_prefix("base_").is_some_and(|part| POSE_PARTS.contains(&part))
+}
+
+/// Whether a column is of a regulator's pressure.
+fn is_pressure(name: &str) -> bool {
+    let part = name.strip_prefix("pressure").and_then(|part| part.split_once('_'));
+    part.is_some_and(|(digits, unit)| digits.parse::<usize>().is_ok() && ["kpa", "pa"].contains(&unit))
 }

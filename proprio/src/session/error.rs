@@ -3,6 +3,7 @@
 use std::fmt;
 use std::path::PathBuf;
 
+use board_core::FULL_SCALE_PA;
 use telemetry::SEGMENTS;
 
 use crate::recording::ReadError;
@@ -98,6 +99,15 @@ pub enum Problem {
     /// A camera's time that does not fit.
     #[error("time {0} s, expected one within 100 years of 0")]
     Clock(String),
+    /// A pressure is missing.
+    #[error("the cell is empty, expected a pressure")]
+    NoPressure,
+    /// A pressure that no regulator gives.
+    #[error("pressure {0}, expected 0 to {most} kPa", most = FULL_SCALE_PA / 1000)]
+    Pressure(String),
+    /// A profile has a header and no more.
+    #[error("has no pressures, expected a row a moment below the header")]
+    NoMoments,
     /// Time goes backwards.
     #[error("time goes backwards, from {from_s} s to {to_s} s")]
     Backwards {
@@ -154,6 +164,9 @@ impl Problem {
             Self::NotCsv => "make a CSV of it with `proprio convert`",
             Self::HasTruth(_) => "take the session as it was recorded, or use it as it is: it is aligned",
             Self::NoTime | Self::Time(_) | Self::Clock(_) => "give every row its time in seconds",
+            Self::NoPressure => "give every regulator its pressure in every row; 0 is vented",
+            Self::Pressure(_) => "write pressures over the atmosphere's: in kPa in _kpa, in Pa in _pa",
+            Self::NoMoments => "give at least one row",
             Self::NotANumber(_) => "write numbers with a decimal point, and leave the cell of a missing reading empty",
             Self::NotFinite(_) => "leave the cell empty",
             Self::Counts(_) => "write raw ADC counts, and leave the cell of a missing reading empty",

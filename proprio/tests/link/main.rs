@@ -1,7 +1,12 @@
-//! The link to a board, over a line in memory: noise, losses, restarts, requests, and cables that come and go.
+//! The link to a board, over a line in memory: noise, losses, restarts, requests, and cables that come and go; and the
+//! live page of it.
 
+mod access;
+mod http;
 mod line;
 mod mismatches;
 mod noise;
+mod page;
 mod reconnect;
 mod requests;
+mod sessions;

@@ -12,12 +12,23 @@ const SEEDS: u64 = 200;
 
 /// A Hello, and samples with a Hello now and then; each frame by itself.
 fn frames() -> (Vec<Message>, Vec<Vec<u8>>) {
-    let mut encoder = Encoder::new();
     let mut messages = vec![Message::Hello(hello(1))];
     for tick in 0..SAMPLES {
         messages.push(Message::Sample(sample(tick)));
         messages.extend((tick % 100 == 99).then(|| Message::Hello(hello(1))));
     }
+    encoded(messages)
+}
+
+/// A Hello and samples: no message is there twice.
+fn distinct_frames() -> (Vec<Message>, Vec<Vec<u8>>) {
+    encoded(
+        [Message::Hello(hello(1))].into_iter().chain((0..SAMPLES).map(|tick| Message::Sample(sample(tick)))).collect(),
+    )
+}
+
+fn encoded(messages: Vec<Message>) -> (Vec<Message>, Vec<Vec<u8>>) {
+    let mut encoder = Encoder::new();
     let mut buffer = [0; MAX_FRAME];
     let frames = messages.iter().map(|message| encoder.encode(message, &mut buffer).expect("it fits").to_vec());
     let frames = frames.collect();
@@ -88,6 +99,16 @@ fn what_flips_and_cuts_destroy_is_counted_to_the_frame() {
         let lost = messages.len() - heard.messages.len();
         assert_eq!(heard.intake.counts().lost as usize, lost, "seed {seed}");
         assert_eq!(heard.intake.restarts(), 0);
+    }
+}
+
+#[test]
+fn pieces_that_come_twice_are_no_loss_and_hide_none() {
+    let (messages, frames) = distinct_frames();
+    for seed in 0..SEEDS {
+        let heard = hear(&disturb(&frames, &mut ChaCha8Rng::seed_from_u64(seed), 3));
+        let lost = messages.iter().filter(|message| !heard.messages.contains(message)).count();
+        assert_eq!(heard.intake.counts().lost as usize, lost, "seed {seed}");
     }
 }
 

@@ -87,6 +87,31 @@ fn a_frame_that_comes_twice_is_no_loss() {
 }
 
 #[test]
+fn what_is_lost_behind_a_piece_that_came_twice_is_counted_once() {
+    let (mut encoder, mut decoder) = (Encoder::new(), Decoder::<Message>::new());
+    let frames: Vec<_> = (0..10).map(|_| encode(&mut encoder, &TICK)).collect();
+    // 0 to 4, then 2 and 3 again, and 7 is the next.
+    for i in [0, 1, 2, 3, 4, 2, 3, 7, 8] {
+        decode(&mut decoder, &frames[i]);
+    }
+    assert_eq!(decoder.counts().lost, 2);
+}
+
+#[test]
+fn a_reboot_after_a_few_frames_is_counted_anew() {
+    let (mut encoder, mut decoder) = (Encoder::new(), Decoder::new());
+    send(&mut encoder, &mut decoder, &hello(1));
+    for _ in 0..100 {
+        send(&mut encoder, &mut decoder, &TICK);
+    }
+    let mut rebooted = Encoder::new();
+    send(&mut rebooted, &mut decoder, &hello(2));
+    lose(&mut rebooted, 3);
+    send(&mut rebooted, &mut decoder, &TICK);
+    assert_eq!(decoder.counts().lost, 3);
+}
+
+#[test]
 fn a_reboot_is_no_loss_whatever_the_number_before_it() {
     for before in [100, 40_000, 65_000] {
         let (mut encoder, mut decoder) = (Encoder::new(), Decoder::new());

@@ -1,6 +1,8 @@
 //! What the command line says, and the run it asks for.
 
 #[cfg(unix)]
+mod breakage;
+#[cfg(unix)]
 mod pty;
 mod run;
 mod stdio;
@@ -66,7 +68,8 @@ enum Speed {
 enum Serial {
     /// This process' input and output. A file is read at the port's baud rate in virtual time.
     Stdio,
-    /// A pseudo-terminal, whose path is printed. Opening it resets the board, as it does on a Due.
+    /// A pseudo-terminal, whose path is printed. Opening it resets the board, as it does on a Due. Lines on the standard
+    /// input break sensors: `unplug imu3`, `plug imu3`, `unplug bend2a`.
     #[cfg(unix)]
     Pty,
 }
@@ -107,12 +110,13 @@ impl Cli {
         let paced = arguments.speed == Speed::Real;
         let mut run = Run::new(machine, arguments.seconds, paced);
         match arguments.serial {
-            Serial::Stdio => run.execute(&mut stdio::Stdio::new()?)?,
+            Serial::Stdio => run.execute(&mut stdio::Stdio::new()?, |_| ())?,
             #[cfg(unix)]
             Serial::Pty => {
                 let mut pty = pty::Pty::new()?;
                 eprintln!("serial port: {}", pty.path());
-                run.execute(&mut pty)?;
+                let breakage = breakage::Breakage::new();
+                run.execute(&mut pty, |rig| breakage.apply(&mut rig.faults))?;
             }
         }
         Ok(run.summary())

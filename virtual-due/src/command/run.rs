@@ -49,8 +49,8 @@ impl Run {
         Self { machine, end, paced, began: Instant::now(), resets_told: 0, locked_up: None }
     }
 
-    /// Runs to the end, or until Ctrl-C or until nobody listens.
-    pub fn execute(&mut self, line: &mut dyn Line) -> std::io::Result<()> {
+    /// Runs to the end, or until Ctrl-C or until nobody listens, with a `hand` on the rig before every slice.
+    pub fn execute(&mut self, line: &mut dyn Line, mut hand: impl FnMut(&mut Rig)) -> std::io::Result<()> {
         let stop = Arc::new(AtomicBool::new(false));
         let flag = Arc::clone(&stop);
         ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed)).map_err(std::io::Error::other)?;
@@ -64,6 +64,7 @@ impl Run {
             if !bytes.is_empty() {
                 self.machine.world_mut().send(PORT, &bytes, now);
             }
+            hand(self.machine.world_mut());
             now = end.min(now + SLICE);
             self.machine.run_until(now);
             self.tell();

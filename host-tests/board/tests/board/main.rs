@@ -1,6 +1,8 @@
 //! What users rely on of the firmware, on the emulated board.
 
 mod boot;
+#[cfg(unix)]
+mod drive;
 mod engine;
 mod faults;
 mod last_words;
@@ -10,3 +12,7 @@ mod recording;
 mod replay;
 mod requests;
 mod sensors;
+#[cfg(unix)]
+mod terminal;
+#[cfg(unix)]
+mod tools;

@@ -1,58 +1,16 @@
-//! The tools as they are used: `proprio` records the firmware on the virtual Due over a pseudo-terminal, and over pipes.
+//! The tools as they are used: `proprio` records and monitors the firmware on the virtual Due over a pseudo-terminal, and
+//! over pipes.
 
+use std::fs;
 use std::io::{BufRead, BufReader};
-use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Stdio};
+use std::path::Path;
+use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
-use std::{env, fs};
 
-use board_tests::firmware;
+use crate::tools::{Running, done, folder, proprio, replayed, table, tool};
 
 /// Size of a recording of 20 s, bytes: at most 150 kB a second.
 const LONG: u64 = 2_400_000;
-
-/// A folder below cargo's own, with the firmware in it.
-fn folder(name: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
-    // Left by a run before.
-    let _ = fs::remove_dir_all(&folder);
-    fs::create_dir_all(&folder).expect("cargo's folder can be written to");
-    fs::write(folder.join("firmware"), firmware()).expect("there is room");
-    folder
-}
-
-/// A tool of this workspace, beside the tests.
-fn tool(name: &str) -> PathBuf {
-    let tests = env::current_exe().expect("the system tells");
-    let built = tests.parent().and_then(Path::parent).expect("cargo builds tests in deps");
-    let tool = built.join(format!("{name}{}", env::consts::EXE_SUFFIX));
-    assert!(tool.is_file(), "{} is not built; `cargo verify` does", tool.display());
-    tool
-}
-
-fn proprio(folder: &Path, arguments: &[&str]) -> Command {
-    let mut command = Command::new(tool("proprio"));
-    command.current_dir(folder).args(arguments).stdin(Stdio::null()).env("PROPRIO_VIRTUAL_DUE", tool("virtual-due"));
-    command
-}
-
-/// Runs it to its end, which must be a good one, and gives what it printed.
-fn done(folder: &Path, arguments: &[&str]) -> String {
-    let output = proprio(folder, arguments).output().expect("the tool starts");
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{arguments:?}: {said}");
-    String::from_utf8(output.stdout).expect("the tool writes UTF-8")
-}
-
-/// A process that ends with the test.
-struct Running(Child);
-
-impl Drop for Running {
-    fn drop(&mut self) {
-        let _ = self.0.kill();
-        let _ = self.0.wait();
-    }
-}
 
 /// The virtual Due with the firmware, and the path of its serial port.
 fn virtual_due(folder: &Path) -> (Running, String) {
@@ -65,24 +23,6 @@ fn virtual_due(folder: &Path) -> (Running, String) {
     std::thread::spawn(move || lines.for_each(drop));
     let port = first.strip_prefix("serial port: ").expect("the path of its port").to_owned();
     (Running(child), port)
-}
-
-fn table() -> String {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../calibration-tables/planar-6.toml").display().to_string()
-}
-
-/// Replays a recording; every estimate that can be compared must be the board's. Gives their number and the report.
-fn replayed(folder: &Path, name: &str) -> (u64, String) {
-    let report = done(folder, &["replay", name, "--table", &table(), "--json"]);
-    let count = |key: &str| {
-        let value = report.split_once(&format!("\"{key}\":")).expect("the key is there").1;
-        let digits: String = value.chars().take_while(char::is_ascii_digit).collect();
-        digits.parse::<u64>().expect("a count")
-    };
-    // What an earlier run of the board has left on the line has no begin.
-    assert_eq!(count("equal"), count("estimates") - count("not_compared"), "{report}");
-    assert!(report.contains("\"first_difference\":null"), "{report}");
-    (count("equal"), report)
 }
 
 #[test]
@@ -123,4 +63,16 @@ fn status_says_how_the_virtual_due_is() {
         assert!(status.contains(line), "{status}");
     }
     assert!(status.contains("virtual Due, answers") && status.contains(" 0 damaged, 0 lost"), "{status}");
+}
+
+#[test]
+fn monitor_prints_a_line_a_second_for_a_terminal() {
+    let folder = folder("plain");
+    let mut command = proprio(&folder, &["monitor", "--plain", "--virtual", "--firmware", "firmware"]);
+    let mut monitor = Running(command.stdout(Stdio::piped()).spawn().expect("the tool starts"));
+    let lines = BufReader::new(monitor.0.stdout.take().expect("a pipe")).lines().map_while(Result::ok);
+    let line = lines.take(60).find(|line| line.starts_with("θ ")).expect("the board estimates within a minute");
+    for part in ["°  tip ", " mm  ", " samples/s  0 lost  0 damaged  load "] {
+        assert!(line.contains(part), "{line}");
+    }
 }

@@ -1,0 +1,179 @@
+//! Chromium without a window, over its DevTools protocol (<https://chromedevtools.github.io/devtools-protocol>).
+
+use std::io::{BufRead, BufReader};
+use std::net::TcpStream;
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+use std::{env, fs};
+
+use base64::Engine;
+use base64::prelude::BASE64_STANDARD;
+use serde_json::{Value, json};
+use tempfile::TempDir;
+use tungstenite::stream::MaybeTlsStream;
+use tungstenite::{Message, WebSocket};
+
+/// Longest time for anything to be so.
+const PATIENCE: Duration = Duration::from_mins(1);
+
+/// A browser with one page.
+pub struct Browser {
+    process: Child,
+    socket: WebSocket<MaybeTlsStream<TcpStream>>,
+    last_id: u64,
+    session: String,
+    /// Errors of scripts, and what the console was told.
+    pub complaints: Vec<String>,
+    /// Its profile, and what it downloads.
+    pub folder: TempDir,
+}
+
+impl Browser {
+    /// Starts it, with nothing in its page.
+    ///
+    /// # Panics
+    /// If there is no Chromium.
+    #[must_use]
+    pub fn start() -> Self {
+        let folder = tempfile::tempdir().expect("there is room for a temporary folder");
+        let program = env::var_os("CHROMIUM").unwrap_or_else(|| "chromium".into());
+        let mut command = Command::new(&program);
+        // A container has neither users nor much shared memory for it.
+        command.args(["--headless=new", "--no-sandbox", "--disable-dev-shm-usage", "--remote-debugging-port=0"]);
+        command.arg(format!("--user-data-dir={}", folder.path().display())).arg("about:blank");
+        let mut process = command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::piped()).spawn();
+        let process_ref = process.as_mut().unwrap_or_else(|error| panic!("{}: {error}", program.display()));
+        let mut lines = BufReader::new(process_ref.stderr.take().expect("a pipe")).lines().map_while(Result::ok);
+        let address = lines.find_map(|line| line.strip_prefix("DevTools listening on ").map(str::to_owned));
+        let address = address.expect("it says where it listens");
+        std::thread::spawn(move || lines.for_each(drop));
+        let (socket, _) = tungstenite::connect(&address).expect("it listens");
+        if let MaybeTlsStream::Plain(stream) = socket.get_ref() {
+            stream.set_read_timeout(Some(PATIENCE)).expect("a timeout");
+        }
+        let process = process.expect("it was looked at");
+        let mut browser = Self { process, socket, last_id: 0, session: String::new(), complaints: Vec::new(), folder };
+        let target = browser.call("Target.createTarget", &json!({"url": "about:blank"}))["targetId"].clone();
+        let attached = browser.call("Target.attachToTarget", &json!({"targetId": target, "flatten": true}));
+        attached["sessionId"].as_str().expect("a session").clone_into(&mut browser.session);
+        for domain in ["Page", "Runtime", "Log"] {
+            browser.call(&format!("{domain}.enable"), &json!({}));
+        }
+        let downloads = browser.folder.path().join("downloads").display().to_string();
+        browser.call("Browser.setDownloadBehavior", &json!({"behavior": "allow", "downloadPath": downloads}));
+        browser
+    }
+
+    /// Calls a method, and gives its result.
+    ///
+    /// # Panics
+    /// If the browser has ended, or refuses.
+    pub fn call(&mut self, method: &str, params: &Value) -> Value {
+        self.last_id += 1;
+        let mut call = json!({"id": self.last_id, "method": method, "params": params});
+        if !self.session.is_empty() {
+            call["sessionId"] = self.session.clone().into();
+        }
+        self.socket.send(Message::from(call.to_string())).expect("it runs");
+        loop {
+            let Message::Text(text) = self.socket.read().expect("it runs") else { continue };
+            let mut message: Value = serde_json::from_str(&text).expect("it says JSON");
+            if message["id"] == self.last_id {
+                assert!(message["error"].is_null(), "{method}: {}", message["error"]);
+                return message["result"].take();
+            }
+            if let Some("Runtime.exceptionThrown" | "Log.entryAdded") = message["method"].as_str() {
+                self.complaints.push(message["params"].to_string());
+            }
+        }
+    }
+
+    /// As wide and high as a screen, light or dark.
+    pub fn screen(&mut self, [width, height]: [u32; 2], scheme: &str) {
+        let metrics = json!({"width": width, "height": height, "deviceScaleFactor": 1, "mobile": width < 600});
+        self.call("Emulation.setDeviceMetricsOverride", &metrics);
+        let features = json!([{"name": "prefers-color-scheme", "value": scheme}]);
+        self.call("Emulation.setEmulatedMedia", &json!({"features": features}));
+    }
+
+    /// Opens a page, and waits until all of it is there.
+    pub fn open(&mut self, address: &str) {
+        self.call("Page.navigate", &json!({"url": address}));
+        let page = address.split('#').next().unwrap_or_default();
+        self.wait_for(&format!("document.readyState === 'complete' && document.URL.startsWith('{page}')"));
+    }
+
+    /// What an expression of JavaScript comes to; a promise, when it is kept.
+    ///
+    /// # Panics
+    /// If the expression throws.
+    pub fn value(&mut self, expression: &str) -> Value {
+        let params = json!({"expression": expression, "returnByValue": true, "awaitPromise": true});
+        let mut result = self.call("Runtime.evaluate", &params);
+        assert!(result["exceptionDetails"].is_null(), "{expression}: {result}");
+        result["result"]["value"].take()
+    }
+
+    /// The text of the element with this id.
+    pub fn text(&mut self, id: &str) -> String {
+        let text = self.value(&format!("document.getElementById('{id}')?.textContent ?? ''"));
+        text.as_str().unwrap_or_default().to_owned()
+    }
+
+    /// Waits until an expression is true, and says how long it took.
+    ///
+    /// # Panics
+    /// If it is not so within a minute.
+    pub fn wait_for(&mut self, expression: &str) -> Duration {
+        let start = Instant::now();
+        while self.value(expression) != true {
+            assert!(start.elapsed() < PATIENCE, "{expression} never came; {:?}", self.complaints);
+            std::thread::sleep(Duration::from_millis(10));
+        }
+        start.elapsed()
+    }
+
+    /// Presses and lets go of a key.
+    pub fn press(&mut self, key: &str) {
+        for kind in ["keyDown", "keyUp"] {
+            let text = if kind == "keyDown" && key.chars().count() == 1 { key } else { "" };
+            self.call("Input.dispatchKeyEvent", &json!({"type": kind, "key": key, "text": text}));
+        }
+    }
+
+    /// Waits for a download, and gives what is in it.
+    ///
+    /// # Panics
+    /// If there is none within a minute.
+    pub fn download(&mut self, name: &str) -> String {
+        let path = self.folder.path().join("downloads").join(name);
+        let start = Instant::now();
+        while !path.is_file() {
+            assert!(start.elapsed() < PATIENCE, "{name} was never downloaded; {:?}", self.complaints);
+            std::thread::sleep(Duration::from_millis(20));
+        }
+        fs::read_to_string(path).expect("it is text")
+    }
+
+    /// Leaves a picture of the whole page in `target/browser`.
+    ///
+    /// # Panics
+    /// If it cannot be written.
+    pub fn picture(&mut self, name: &str) {
+        let picture = self.call("Page.captureScreenshot", &json!({"format": "png", "captureBeyondViewport": true}));
+        // target/debug/deps/browser-…
+        let own = env::current_exe().expect("the system tells");
+        let target = own.ancestors().nth(3).expect("cargo's folder").join("browser");
+        fs::create_dir_all(&target).expect("cargo's folder can be written to");
+        let picture = BASE64_STANDARD.decode(picture["data"].as_str().expect("a picture")).expect("a picture");
+        fs::write(target.join(name), picture).expect("there is room");
+    }
+}
+
+impl Drop for Browser {
+    fn drop(&mut self) {
+        // Its helpers end with it.
+        let _ = self.process.kill();
+        let _ = self.process.wait();
+    }
+}

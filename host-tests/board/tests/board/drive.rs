@@ -1,0 +1,150 @@
+//! `proprio drive`: the pressures follow a profile, and end vented, however the drive ends.
+
+use std::fs;
+use std::io::Read;
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+
+use crate::terminal::Terminal;
+use crate::tools::{Running, folder, proprio, replayed, table};
+use virtual_due::rig::{Held, Rail};
+
+/// Half a second up to 60 kPa on module 1's right, a second of that, and a step down to 20 kPa on module 2's left.
+const PROFILE: &str = "time_s,pressure1_kpa,pressure2_kpa,pressure3_kpa,pressure4_kpa,pressure5_kpa,pressure6_kpa\n\
+    0,0,0,0,0,0,0\n1,60,0,0,0,0,0\n2,60,0,0,0,0,0\n2,0,0,0,20,0,0\n3,0,0,0,20,0,0\n";
+
+/// A step of the PWM, Pa.
+const STEP_PA: f64 = 67.0;
+
+fn start(folder: &Path, terminal: &Terminal, arguments: &[&str]) -> Running {
+    fs::write(folder.join("profile.csv"), PROFILE).expect("there is room");
+    let arguments = [&["drive", "--port", terminal.port()], arguments].concat();
+    Running(proprio(folder, &arguments).stderr(Stdio::piped()).spawn().expect("the tool starts"))
+}
+
+/// Lets the board run until the drive has ended; the set-points of every slice go to `see`.
+fn run(terminal: &mut Terminal, child: &mut Child, mut see: impl FnMut([f64; 6])) {
+    terminal.run_until(|machine| {
+        see(machine.world().set_points_pa());
+        child.try_wait().expect("it can be asked").is_some()
+    });
+}
+
+/// Its exit status, and what it said.
+fn ended(mut drive: Running) -> (Option<i32>, String) {
+    let mut said = String::new();
+    drive.0.stderr.take().expect("a pipe").read_to_string(&mut said).expect("the tool writes UTF-8");
+    (drive.0.wait().expect("it has ended").code(), said)
+}
+
+fn is_vented(terminal: &Terminal) -> bool {
+    terminal.machine.world().set_points_pa().iter().all(|pressure_pa| *pressure_pa < 1.0)
+}
+
+/// Drives 80 kPa, and does `end` to the tool once the board has them.
+fn drive_and(name: &str, end: impl FnOnce(&mut Child)) -> (Terminal, Running) {
+    let folder = folder(name);
+    let mut terminal = Terminal::new();
+    let mut drive = start(&folder, &terminal, &["--kpa", "80,0,0,0,0,80"]);
+    terminal.run_until(|machine| machine.world().set_points_pa()[5] > 79_000.0);
+    end(&mut drive.0);
+    (terminal, drive)
+}
+
+#[test]
+fn a_profile_is_followed_and_recorded_and_ends_vented() {
+    let folder = folder("profile");
+    let mut terminal = Terminal::new();
+    let mut drive =
+        start(&folder, &terminal, &["profile.csv", "--ramp", "150", "-o", "drive.mcap", "--table", &table()]);
+    let (mut highest, mut before, mut longest_step) = ([0.0; 6], [0.0; 6], 0.0_f64);
+    run(&mut terminal, &mut drive.0, |set_points| {
+        for i in 0..6 {
+            highest[i] = f64::max(highest[i], set_points[i]);
+            longest_step = longest_step.max((set_points[i] - before[i]).abs());
+        }
+        before = set_points;
+    });
+    assert!(is_vented(&terminal));
+    let (code, said) = ended(drive);
+    assert_eq!(code, Some(0), "{said}");
+    for (found, asked) in highest.into_iter().zip([60e3, 0.0, 0.0, 20e3, 0.0, 0.0]) {
+        assert!((found - asked).abs() <= STEP_PA, "{highest:?}");
+    }
+    // Set-points come every 50 ms, and may be late by as much.
+    assert!(longest_step <= 15e3 + STEP_PA, "{longest_step} Pa at once");
+    assert!(said.contains("in a step before row 4") && said.contains(", vented"), "{said}");
+    let (equal, report) = replayed(&folder, "drive.mcap");
+    assert!(equal > 300 && report.contains("\"not_compared\":0"), "{report}");
+}
+
+#[test]
+fn a_drive_that_is_killed_leaves_the_arm_vented_within_one_and_a_half_seconds() {
+    let (mut terminal, mut drive) = drive_and("drive killed", |drive| drive.kill().expect("it runs"));
+    drive.0.wait().expect("it ends");
+    let killed_s = terminal.machine.seconds();
+    terminal.run_until(|machine| machine.seconds() > killed_s + 0.25);
+    assert!(!is_vented(&terminal), "nothing but the deadline vents");
+    terminal.run_until(|machine| machine.seconds() > killed_s + 1.5);
+    assert!(is_vented(&terminal));
+}
+
+#[test]
+fn an_interrupt_vents_at_once() {
+    let (mut terminal, mut drive) = drive_and("drive interrupted", |drive| {
+        assert!(Command::new("kill").args(["-INT", &drive.id().to_string()]).status().expect("kill starts").success());
+    });
+    let interrupted_s = terminal.machine.seconds();
+    terminal.run_until(|machine| machine.world().set_points_pa()[0] < 1.0);
+    // It would be held for longer if the board had done it.
+    assert!(terminal.machine.seconds() < interrupted_s + 0.5);
+    run(&mut terminal, &mut drive.0, |_| {});
+    let (code, said) = ended(drive);
+    assert_eq!(code, Some(0), "{said}");
+    assert!(said.contains(", vented") && !said.contains("before the end"), "{said}");
+}
+
+#[test]
+fn a_board_that_restarts_is_driven_no_more() {
+    let (mut terminal, mut drive) = drive_and("drive restarted", |_| {});
+    terminal.machine.press_reset();
+    run(&mut terminal, &mut drive.0, |_| {});
+    let (code, said) = ended(drive);
+    assert_eq!(code, Some(2), "{said}");
+    assert!(said.contains("restarted") && is_vented(&terminal), "{said}");
+}
+
+/// Starts a drive on a board that must not be armed, and gives what it says of that.
+fn refused(name: &str, terminal: &mut Terminal, arguments: &[&str]) -> String {
+    let folder = folder(name);
+    let mut drive = start(&folder, terminal, arguments);
+    run(terminal, &mut drive.0, |set_points| assert!(set_points.iter().all(|pressure_pa| *pressure_pa < 1.0)));
+    let (code, said) = ended(drive);
+    assert_eq!(code, Some(2), "{said}");
+    assert!(!folder.join("drive.mcap").exists());
+    said
+}
+
+#[test]
+fn a_board_with_another_table_is_not_armed() {
+    let other = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tables/trunk-planar.toml").display().to_string();
+    let said = refused("drive table", &mut Terminal::new(), &["profile.csv", "--table", &other, "-o", "drive.mcap"]);
+    assert!(said.contains("the pressures stay vented") && said.contains("another table"), "{said}");
+}
+
+#[test]
+fn a_board_without_any_imu_is_not_armed() {
+    let mut terminal = Terminal::new();
+    terminal.machine.world_mut().faults.sda = Some(Held::Forever);
+    let said = refused("drive blind", &mut terminal, &["profile.csv"]);
+    assert!(said.contains("no IMU reads well"), "{said}");
+}
+
+#[test]
+fn a_board_that_holds_the_pressures_back_is_driven_no_more() {
+    let mut terminal = Terminal::new();
+    terminal.machine.world_mut().faults.bend[2] = Some(Rail::High);
+    terminal.machine.world_mut().faults.bend[3] = Some(Rail::Low);
+    let said = refused("drive held back", &mut terminal, &["--kpa", "80,0,80,0,80,0"]);
+    assert!(said.contains("the board keeps pressure 1 at 0.0 kPa"), "{said}");
+}

@@ -1,0 +1,77 @@
+//! The board on a pseudo-terminal, at the pace of the wall clock, with the test's hands on both the rig and the line.
+
+use std::collections::VecDeque;
+use std::io::{Read, Write};
+use std::time::{Duration, Instant};
+
+use board_tests::{UART, firmware};
+use rig_twin::Scenario;
+use serialport::{SerialPort, TTYPort};
+use virtual_due::{CYCLES_PER_SECOND, Machine, Rig};
+
+/// How long the board runs at a stretch, ms.
+const SLICE_MS: u64 = 2;
+
+/// Bytes that wait for who reads; what comes beyond is lost, as the USB bridge loses it.
+const ROOM: usize = 1 << 16;
+
+/// The board, and our end of its line.
+pub struct Terminal {
+    /// The emulated board.
+    pub machine: Machine<Rig>,
+    line: TTYPort,
+    port: String,
+    /// What the line does to the board's bytes.
+    pub disturb: Box<dyn FnMut(Vec<u8>) -> Vec<u8>>,
+    to_host: VecDeque<u8>,
+}
+
+impl Terminal {
+    /// A board whose power comes up with the first byte from the host: the port is open by then.
+    pub fn new() -> Self {
+        let (mut line, theirs) = TTYPort::pair().expect("the system has pseudo-terminals");
+        let port = theirs.name().expect("it has a name");
+        line.set_timeout(Duration::from_millis(1)).expect("it is set");
+        let machine = Machine::new(firmware(), Rig::new(Scenario::One, 1)).expect("cargo built an ELF for the board");
+        Self { machine, line, port, disturb: Box::new(|bytes| bytes), to_host: VecDeque::new() }
+    }
+
+    /// Where programs find the other end.
+    pub fn port(&self) -> &str {
+        &self.port
+    }
+
+    /// Waits for the first byte, then lets the board run until `is_done`, which is asked every two milliseconds.
+    ///
+    /// # Panics
+    /// After five minutes.
+    pub fn run_until(&mut self, mut is_done: impl FnMut(&mut Machine<Rig>) -> bool) {
+        let patience = Instant::now() + Duration::from_mins(5);
+        let (mut begin, start) = (None, self.machine.now());
+        while !is_done(&mut self.machine) {
+            assert!(Instant::now() < patience, "it is not done within five minutes");
+            let mut bytes = [0; 4096];
+            let count = self.line.read(&mut bytes).unwrap_or(0);
+            let now = self.machine.now();
+            if count == 0 && now == 0 {
+                std::thread::sleep(Duration::from_millis(1));
+                continue;
+            }
+            self.machine.world_mut().send(UART, &bytes[..count], now);
+            self.machine.run_until(now + SLICE_MS * CYCLES_PER_SECOND / 1000);
+            self.send();
+            let passed = (self.machine.now() - start) as f64 / CYCLES_PER_SECOND as f64;
+            let due = *begin.get_or_insert_with(Instant::now) + Duration::from_secs_f64(passed);
+            std::thread::sleep(due.saturating_duration_since(Instant::now()));
+        }
+    }
+
+    fn send(&mut self) {
+        let sent = self.machine.world_mut().take_transmitted(UART).into_iter().map(|(_, byte)| byte).collect();
+        self.to_host.extend((self.disturb)(sent));
+        // Nobody may be there.
+        let written = self.line.write(self.to_host.make_contiguous()).unwrap_or(0);
+        self.to_host.drain(..written);
+        self.to_host.truncate(ROOM);
+    }
+}

@@ -1,0 +1,30 @@
+//! A session on the page.
+
+use std::path::Path;
+
+use board_tests::browser::{Browser, MonitorRun};
+
+#[test]
+#[ignore = "needs Chromium: .ci/browser runs it"]
+fn a_session_is_opened_scrubbed_and_played_with_its_truth() {
+    let rig = MonitorRun::session(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../sessions/scenario-2.csv"));
+    let mut browser = Browser::start();
+    browser.screen([1400, 1000], "light");
+    browser.open(&rig.address);
+    browser.wait_for("document.getElementById('arm-name').textContent === 'scenario-2.csv'");
+    browser.wait_for("document.getElementById('scrub').max > 59");
+    let scrub =
+        "const scrub = document.getElementById('scrub'); scrub.value = 40; scrub.dispatchEvent(new Event('input'))";
+    browser.value(&format!("{{ {scrub} }}"));
+    browser.wait_for("document.getElementById('time').textContent === '40.00 s'");
+    let values = browser.text("arm-values");
+    assert!(values.ends_with("mm from truth"), "{values}");
+    browser.picture("session.png");
+
+    browser.press(" ");
+    browser.wait_for("parseFloat(document.getElementById('time').textContent) > 41");
+    assert_ne!(browser.text("arm-values"), values);
+    browser.press(" ");
+    browser.wait_for("document.getElementById('pause').textContent === 'Play'");
+    assert!(browser.complaints.is_empty(), "{:?}", browser.complaints);
+}

@@ -1,0 +1,58 @@
+//! One line on a terminal that says how a live arm is doing, with warnings above it.
+
+use std::fmt::Display;
+use std::io::IsTerminal;
+use std::time::Duration;
+
+use indicatif::{ProgressBar, ProgressStyle};
+use proprio::link::What;
+
+/// The line; there is none where standard error is no terminal.
+pub struct Screen {
+    bar: ProgressBar,
+}
+
+impl Screen {
+    pub fn new() -> Self {
+        let bar = if std::io::stderr().is_terminal() { ProgressBar::no_length() } else { ProgressBar::hidden() };
+        bar.set_style(ProgressStyle::with_template("{msg}").unwrap_or_else(|_| ProgressStyle::default_bar()));
+        Self { bar }
+    }
+
+    /// Shows another line.
+    pub fn show(&self, line: String) {
+        self.bar.set_message(line);
+    }
+
+    /// Warns of what has happened on the link, where that deserves it.
+    pub fn warn_of(&self, what: &What) {
+        match what {
+            What::Lost(reason) => self.warn(&format_args!("{reason}; waiting for it to come back")),
+            What::Restarted => self.warn(&"the board has restarted"),
+            What::Mismatch(mismatch) => self.warn(mismatch),
+            _ => {}
+        }
+    }
+
+    fn warn(&self, warning: &impl Display) {
+        self.bar.suspend(|| super::warn(warning));
+    }
+
+    /// Ends with a line that stays.
+    pub fn end(self, line: &impl Display) {
+        drop(self);
+        super::say(line);
+    }
+}
+
+/// Hours, minutes and seconds.
+pub fn time(passed: Duration) -> String {
+    let seconds = passed.as_secs();
+    format!("{}:{:02}:{:02}", seconds / 3600, seconds / 60 % 60, seconds % 60)
+}
+
+impl Drop for Screen {
+    fn drop(&mut self) {
+        self.bar.finish_and_clear();
+    }
+}

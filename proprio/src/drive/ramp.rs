@@ -1,0 +1,47 @@
+//! Pressures that change no faster than they may.
+
+use telemetry::REGULATORS;
+
+/// Set-points on their way to what is wanted.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Ramp {
+    most_pa_per_s: f64,
+    now_pa: [f64; REGULATORS],
+}
+
+impl Ramp {
+    /// Vented, and changing by `most_pa_per_s` at most.
+    #[must_use]
+    pub fn new(most_pa_per_s: f64) -> Self {
+        Self { most_pa_per_s, now_pa: [0.0; REGULATORS] }
+    }
+
+    /// The set-points `step_s` after the last ones, Pa: as near to those wanted as they may be by then.
+    pub fn step(&mut self, wanted_pa: [f64; REGULATORS], step_s: f64) -> [u32; REGULATORS] {
+        let most_pa = self.most_pa_per_s * step_s;
+        for (now_pa, wanted_pa) in self.now_pa.iter_mut().zip(wanted_pa) {
+            *now_pa += (wanted_pa - *now_pa).clamp(-most_pa, most_pa);
+        }
+        self.now_pa.map(|now_pa| now_pa.round() as u32)
+    }
+
+    /// Whether no pressure is left.
+    #[must_use]
+    pub fn is_vented(&self) -> bool {
+        self.now_pa.iter().all(|now_pa| *now_pa <= 0.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Ramp;
+
+    #[test]
+    fn pressures_rise_and_fall_at_the_ramp_and_arrive() {
+        let mut ramp = Ramp::new(100e3);
+        let up = [1, 2, 3].map(|_| ramp.step([12e3, 0.0, 0.0, 0.0, 0.0, 4e3], 0.05));
+        assert_eq!(up.map(|pa| [pa[0], pa[5]]), [[5_000, 4_000], [10_000, 4_000], [12_000, 4_000]]);
+        let down = [1, 2, 3].map(|_| ramp.step([0.0; 6], 0.05)[0]);
+        assert_eq!((down, ramp.is_vented()), ([7_000, 2_000, 0], true));
+    }
+}

@@ -1,0 +1,69 @@
+//! The last minutes, for a page that is opened later, and a session's rows, for one that shows it.
+
+use std::collections::VecDeque;
+
+use serde::Serialize;
+
+use super::row::Row;
+
+/// Rows that a page holds: ten minutes at 100 Hz.
+pub(super) const ROOM: usize = 60_000;
+
+/// Rows in columns, the oldest dropped.
+#[derive(Debug)]
+pub(super) struct History {
+    times_s: VecDeque<f64>,
+    columns: Vec<VecDeque<f32>>,
+}
+
+/// What is said in front of the rows of a [`History`].
+#[derive(Debug, Serialize)]
+struct Head<'a, T> {
+    rows: usize,
+    columns: usize,
+    #[serde(flatten)]
+    about: &'a T,
+}
+
+impl History {
+    pub fn new(columns: usize) -> Self {
+        Self { times_s: VecDeque::new(), columns: vec![VecDeque::new(); columns] }
+    }
+
+    pub fn push(&mut self, row: &Row) {
+        if self.times_s.len() == ROOM {
+            self.times_s.pop_front();
+            for column in &mut self.columns {
+                column.pop_front();
+            }
+        }
+        self.times_s.push_back(row.time_s);
+        self.columns.iter_mut().zip(&row.values).for_each(|(column, value)| column.push_back(*value));
+    }
+
+    pub fn is_full(&self) -> bool {
+        self.times_s.len() == ROOM
+    }
+
+    /// Leaves out every second row.
+    pub fn halve(&mut self) {
+        self.times_s = self.times_s.iter().copied().step_by(2).collect();
+        for column in &mut self.columns {
+            *column = column.iter().copied().step_by(2).collect();
+        }
+    }
+
+    /// One line of JSON that says how much there is and what it is of, padded to eight bytes; then the times as f64, then each
+    /// column as f32, little-endian.
+    pub fn to_bytes(&self, about: &impl Serialize) -> Vec<u8> {
+        let (rows, columns) = (self.times_s.len(), self.columns.len());
+        let head = Head { rows, columns, about };
+        let mut bytes = serde_json::to_vec(&head).expect("numbers and names have a form in JSON");
+        bytes.resize((bytes.len() + 1).next_multiple_of(8) - 1, b' ');
+        bytes.push(b'\n');
+        bytes.reserve(rows * (8 + 4 * columns));
+        self.times_s.iter().for_each(|time_s| bytes.extend(time_s.to_le_bytes()));
+        self.columns.iter().flatten().for_each(|value| bytes.extend(value.to_le_bytes()));
+        bytes
+    }
+}

@@ -1,0 +1,383 @@
+// The page: what there is, drawn as often as it changes.
+
+import { Store } from './store.js';
+import { Feed, ask } from './feed.js';
+import { armValues, drawArm } from './arm.js';
+import { PLOTS, Range, clock, drawPlot, extent, innerWidth, visible } from './plot.js';
+import { View, handle } from './view.js';
+import { Strips, text } from './sensors.js';
+import { Facts } from './facts.js';
+import { Chooser, load } from './sessions.js';
+import { Control } from './control.js';
+import { SvgContext, csv, save } from './export.js';
+
+const $ = (id) => document.getElementById(id);
+
+/** Time from one look at what need not be drawn with every row to the next, ms. */
+const SLOWLY = 100;
+
+const app = {
+  arm: null, status: null, live: null, session: null,
+  view: new View(), isFixed: false, isPlaying: false, hidden: new Set(), marks: [],
+  uncertainty: null, contact: null,
+  /** Something was changed by hand; rows have come. */
+  isDirty: true, isNew: false, newest_us: 0, drawn: 0, skipped: 0,
+  /** What is shown: a session, or what comes. */
+  get store() { return this.session?.store ?? this.live; },
+  changed() { this.isDirty = true; },
+  fix(isFixed) {
+    this.isFixed = isFixed;
+    $('fixed').checked = isFixed;
+    this.changed();
+  },
+};
+
+const strips = new Strips($('strips'));
+const facts = new Facts($('facts'), $('notes'));
+const control = new Control($('control'), complain);
+const chooser = new Chooser($('sessions'), () => app.arm?.opens_sessions, openSession);
+const plots = PLOTS.map(figure);
+
+const feed = new Feed({
+  arm(arm) {
+    app.arm = arm;
+    if (app.live?.names.join() !== arm.columns.join()) {
+      app.live = new Store(arm.columns);
+      build();
+    }
+    for (const id of ['record', 'mark', 'board']) $(id).hidden = !arm.is_live;
+    linkState(arm.is_live ? 'wait' : 'ok', arm.is_live ? 'waiting for the board' : 'sessions only');
+    if (arm.session && !app.session) load(arm.session, {}).then(openSession, (error) => complain(error.message));
+  },
+  history(buffer) {
+    app.live.load(buffer);
+    app.changed();
+  },
+  rows({ rows, newest_us, uncertainty, contact }) {
+    for (const [time, values] of rows) {
+      // The history may have it.
+      if (!(time <= app.live.last)) app.live.push(time, values);
+    }
+    Object.assign(app, { newest_us, uncertainty: uncertainty ?? app.uncertainty, contact: contact ?? app.contact });
+    if (!app.session && app.view.isFollowing) app.isNew = true;
+  },
+  status(status) {
+    app.status = status;
+    const name = status.board ? status.board.arm : '';
+    if (!app.session) text($('arm-name'), name);
+    if (!status.port) linkState('bad', 'line gone, waiting');
+    else if (status.samples_hz > 0) linkState('ok', 'live');
+    else linkState('wait', 'no samples');
+    const load = status.health ? `, load ${status.health.load_percent.toFixed(1)} %` : '';
+    text($('glance'), `${status.samples_hz.toFixed(0)} samples/s, ${status.lost} lost${load}`);
+    recordState(Boolean(status.recording && !status.recording.failed), true);
+    control.status(app.arm, status.health);
+  },
+  skipped(messages) { app.skipped += messages; },
+  gone() {
+    app.status = null;
+    linkState('bad', 'monitor is not running');
+    text($('glance'), '');
+    recordState(false, false);
+    if (app.arm) control.status(app.arm, null);
+  },
+});
+
+function linkState(state, what) {
+  $('link').dataset.state = state;
+  document.body.toggleAttribute('data-stale', state === 'bad' && !app.session);
+  text($('link'), what);
+}
+
+function recordState(isRecording, isPossible) {
+  $('record').setAttribute('aria-pressed', isRecording);
+  $('record').disabled = !isPossible;
+  text($('record'), isRecording ? 'Stop recording' : 'Record');
+  $('mark').disabled = !isRecording;
+}
+
+/** What went wrong, until the next thing is done or some seconds have passed. */
+function complain(message) {
+  text($('notice'), message);
+  $('notice').hidden = !message;
+  clearTimeout(complain.timer);
+  if (message) complain.timer = setTimeout(() => complain(''), 8000);
+}
+
+/** For another arm: strips, and the legend that shows and hides segments. */
+function build() {
+  strips.build(app.store.names);
+  const segments = app.store.series('theta', '_deg').length;
+  app.hidden.clear();
+  $('segments').replaceChildren(...Array.from({ length: segments }, (_, i) => {
+    const button = Object.assign(document.createElement('button'), { textContent: `segment ${i + 1}` });
+    button.dataset.series = (i % 6) + 1;
+    button.setAttribute('aria-pressed', 'true');
+    button.addEventListener('click', () => {
+      if (!app.hidden.delete(i)) app.hidden.add(i);
+      button.setAttribute('aria-pressed', !app.hidden.has(i));
+      app.changed();
+    });
+    return button;
+  }));
+  app.changed();
+}
+
+function figure(spec) {
+  const element = document.createElement('figure');
+  const canvas = Object.assign(document.createElement('canvas'), { tabIndex: 0 });
+  canvas.setAttribute('role', 'img');
+  canvas.setAttribute('aria-label', `${spec.title}, ${spec.unit}, over time`);
+  element.append(Object.assign(document.createElement('figcaption'), { textContent: `${spec.title}, ${spec.unit}` }), canvas);
+  $('figures').append(element);
+  const range = new Range(spec.least);
+  handle(canvas, app, range);
+  return { ...spec, canvas, range };
+}
+
+// Sessions
+
+function openSession(session) {
+  app.session = session;
+  Object.assign(app, { isPlaying: false, uncertainty: null, contact: null });
+  app.view.span = 0;
+  app.view.follow();
+  app.view.seek(session.store, session.store.first);
+  app.view.end = session.store.last;
+  plots.forEach(({ range }) => range.reset());
+  $('span').value = '0';
+  $('close-session').hidden = !app.arm?.is_live;
+  text($('arm-name'), session.name);
+  $('thinned').hidden = session.every === 1;
+  text($('thinned').firstElementChild, `Every ${session.every}th of ${session.samples} samples is shown.`);
+  build();
+}
+
+function closeSession() {
+  app.session = null;
+  app.view.span = 30;
+  app.view.follow();
+  $('span').value = '30';
+  $('close-session').hidden = true;
+  $('thinned').hidden = true;
+  plots.forEach(({ range }) => range.reset());
+  build();
+}
+
+async function inFull() {
+  const [from_s, to_s] = app.view.window(app.store);
+  try {
+    openSession(await load(app.session.name, { from_s, to_s }));
+  } catch (error) {
+    complain(error.message);
+  }
+}
+
+/** Pauses and goes on; in a session, plays. */
+function pause() {
+  if (!app.store?.count) return;
+  if (app.session) {
+    app.isPlaying = !app.isPlaying;
+    if (app.view.cursor >= app.store.last) app.view.seek(app.store, app.store.first);
+  } else if (app.view.isFollowing) {
+    app.view.hold(app.store);
+  } else {
+    app.view.follow();
+  }
+  app.changed();
+}
+
+function reset() {
+  plots.forEach(({ range }) => range.reset());
+  app.fix(false);
+  app.view.span = Number($('span').value) || 0;
+  if (app.session) app.view.end = app.session.store.last;
+  else app.view.follow();
+  app.changed();
+}
+
+// Drawing
+
+function colours() {
+  const style = getComputedStyle(document.documentElement);
+  const get = (name) => style.getPropertyValue(name).trim();
+  const series = [1, 2, 3, 4, 5, 6].map((i) => get(`--s${i}`));
+  return { series, ink: get('--ink'), faint: get('--faint'), grid: get('--grid'), paper: get('--card'), bad: get('--bad'), trail: get('--trail'), font: 'system-ui, sans-serif' };
+}
+
+let palette = colours();
+matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => {
+  palette = colours();
+  app.changed();
+});
+new ResizeObserver(() => app.changed()).observe(document.body);
+
+/** The canvas as large as it is seen, and its size in CSS pixels. */
+function fit(canvas) {
+  const { clientWidth: width, clientHeight: height } = canvas;
+  const ratio = devicePixelRatio;
+  const [w, h] = [Math.round(width * ratio), Math.round(height * ratio)];
+  if (canvas.width !== w || canvas.height !== h) Object.assign(canvas, { width: w, height: h });
+  const c = canvas.getContext('2d');
+  c.setTransform(ratio, 0, 0, ratio, 0, 0);
+  c.clearRect(0, 0, width, height);
+  return [c, width, height];
+}
+
+function armSpec() {
+  const { store } = app;
+  const row = store?.count ? store.rowAt(app.view.cursor ?? store.last) : 0;
+  const geometry = (app.session ? app.session.arm : app.arm)?.geometry;
+  const isNow = !app.session && app.view.isFollowing;
+  return { store, row, geometry, colours: palette, uncertainty: isNow && app.uncertainty, contact: isNow && app.contact };
+}
+
+function plotSpec({ before, range, canvas }) {
+  const { store, view, hidden, marks } = app;
+  const [from, to] = wholePixels(view.window(store), innerWidth(canvas));
+  const columns = store?.series(before, '_deg') ?? [];
+  const seen = columns.filter((_, i) => !hidden.has(i));
+  const [low, high] = store?.count ? extent(seen, ...visible(store, from, to, view.limit)) : [NaN, NaN];
+  if (!app.isFixed) range.follow(low, high);
+  const hasTable = Boolean(app.session || app.arm?.opens_sessions);
+  const unknown = !store?.count ? 'nothing has come yet' : !hasTable ? 'takes a table: --table TABLE.toml'
+    : app.session || before === 'theta' ? 'not known here' : 'known from the next tare on';
+  const empty = low <= high ? '' : unknown;
+  return { store, columns, range, from, to, limit: view.limit, cursor: view.cursor, marks: app.session ? [] : marks, hidden, colours: palette, empty };
+}
+
+/** The window moved on by whole pixels only: rows stay in their columns, and what would look the same is not drawn again. */
+function wholePixels([from, to], width) {
+  const pixel = (to - from) / width;
+  const end = Math.ceil(to / pixel) * pixel;
+  return [end - (to - from), end];
+}
+
+/** Draws the arm, and the plots where they have changed or the newest row is in another column of pixels. */
+function draw(isAll) {
+  const spec = armSpec();
+  drawArm(...fit($('arm-canvas')), spec);
+  const [from, to] = app.view.window(app.store);
+  const column = Math.ceil(((app.store?.last ?? 0) / (to - from)) * innerWidth(plots[0].canvas));
+  if (isAll || column !== drawnTo) for (const plot of plots) drawPlot(...fit(plot.canvas), plotSpec(plot));
+  drawnTo = column;
+  if (spec.store?.count) text($('arm-values'), armValues(spec.store, spec.row));
+  app.drawn++;
+}
+
+function drawSlowly() {
+  const { store, view } = app;
+  if (!store) return;
+  const isSession = Boolean(app.session);
+  const row = isSession ? store.rowAt(view.cursor ?? store.last) : Math.max(store.begin, store.end - 1);
+  strips.show(store, row, isSession ? null : app.status?.sensors ?? []);
+  const isRunning = isSession ? app.isPlaying : view.isFollowing;
+  text($('pause'), isRunning ? 'Pause' : isSession ? 'Play' : 'Go on');
+  $('pause').setAttribute('aria-pressed', !isRunning);
+  const scrub = $('scrub');
+  scrub.disabled = !store.count;
+  if (store.count) {
+    [scrub.min, scrub.max] = [store.first, view.last(store)];
+    const time = view.cursor ?? store.last;
+    if (document.activeElement !== scrub || isRunning) scrub.value = time;
+    text($('time'), clock(time));
+  }
+  const at = (name) => store.count && store.column(name) && Number.isFinite(store.column(name)[row]);
+  $('key-truth').hidden = !store.names.some((name) => /^truth\d+_x_mm$/.test(name) && at(name));
+  $('key-ellipse').hidden = !app.uncertainty;
+  $('key-contact').hidden = !app.contact;
+  facts.show(app.status);
+}
+
+let drawnTo = NaN, seen_us = 0, shown_us = 0, played = performance.now();
+function frame(now) {
+  requestAnimationFrame(frame);
+  // What was drawn in the frame before is on the screen now.
+  if (shown_us) feed.shown(shown_us);
+  shown_us = 0;
+  if (app.isPlaying && app.session) {
+    const { store } = app;
+    app.view.seek(store, app.view.cursor + (now - played) / 1000);
+    if (app.view.cursor >= store.last) app.isPlaying = false;
+    app.isDirty = true;
+  }
+  played = now;
+  if (!app.isDirty && !app.isNew) return;
+  draw(app.isDirty);
+  Object.assign(app, { isDirty: false, isNew: false });
+  if (!app.session && app.view.isFollowing && app.newest_us !== seen_us) shown_us = seen_us = app.newest_us;
+}
+requestAnimationFrame(frame);
+setInterval(drawSlowly, SLOWLY);
+setInterval(() => {
+  facts.showPage(app.drawn, app.store?.count ?? 0, app.skipped);
+  app.drawn = 0;
+}, 1000);
+
+// Hands
+
+function exportCsv() {
+  if (app.store?.count) save('proprio.csv', 'text/csv', csv(app.store, ...app.view.window(app.store), app.view.limit));
+}
+
+/** The arm and all plots, one below the other, as they are seen. */
+function exportSvg() {
+  const c = new SvgContext();
+  let y = 0, width = 0;
+  const add = (canvas, title, drawIt) => {
+    c.group(0, y);
+    c.fillStyle = palette.ink;
+    Object.assign(c, { font: '13px system-ui, sans-serif', textAlign: 'left', textBaseline: 'top' });
+    c.fillText(title, 8, 6);
+    c.endGroup();
+    c.group(0, y + 24);
+    drawIt(canvas.clientWidth, canvas.clientHeight);
+    c.endGroup();
+    y += canvas.clientHeight + 32;
+    width = Math.max(width, canvas.clientWidth);
+  };
+  add($('arm-canvas'), `Arm, ${$('arm-values').textContent}`, (w, h) => drawArm(c, w, h, armSpec()));
+  for (const plot of plots) add(plot.canvas, `${plot.title}, ${plot.unit}`, (w, h) => drawPlot(c, w, h, plotSpec(plot)));
+  save('proprio.svg', 'image/svg+xml', c.text(width, y, palette.paper));
+}
+
+async function attempt(work) {
+  complain('');
+  try {
+    await work();
+  } catch (error) {
+    complain(error.message);
+  }
+}
+
+const record = () => attempt(() => ask('/record', { on: $('record').getAttribute('aria-pressed') !== 'true' }));
+const mark = () => attempt(async () => {
+  await ask('/mark', { text: `mark ${app.marks.length + 1}` });
+  app.marks.push(app.live.last);
+  app.changed();
+});
+
+const BUTTONS = { pause, record, mark, open: () => attempt(() => chooser.show()), 'close-session': closeSession, reset, csv: exportCsv, svg: exportSvg, 'in-full': inFull };
+for (const [id, act] of Object.entries(BUTTONS)) $(id).addEventListener('click', act);
+$('fixed').addEventListener('change', ({ target }) => app.fix(target.checked));
+$('span').addEventListener('change', ({ target }) => {
+  app.view.setSpan(app.store, Number(target.value));
+  app.changed();
+});
+$('scrub').addEventListener('input', ({ target }) => {
+  app.isPlaying = false;
+  app.view.seek(app.store, Number(target.value));
+  app.changed();
+});
+
+const KEYS = { ' ': 'pause', r: 'record', m: 'mark', o: 'open', 0: 'reset', c: 'csv', s: 'svg', f: 'fixed' };
+document.addEventListener('keydown', (event) => {
+  if (event.key === 'Escape' && app.arm?.allows_control) control.vent();
+  const isTyping = event.target.closest('input:not([type=checkbox], [type=range]), select, dialog');
+  const isPressing = event.key === ' ' && event.target.closest('button, input');
+  if (isTyping || isPressing || event.ctrlKey || event.metaKey || event.altKey || event.repeat) return;
+  const button = $(KEYS[event.key.toLowerCase()]);
+  if (!button || button.hidden || button.disabled) return;
+  event.preventDefault();
+  button.click();
+});

@@ -1,0 +1,221 @@
+// Plots over time, of any number of rows.
+
+export const PLOTS = [
+  { title: 'Bend angle θ', unit: '°', before: 'theta', least: 20 },
+  { title: 'Drift taken from the IMUs', unit: '°', before: 'drift', least: 2 },
+  { title: 'Innovation by the corrected IMUs', unit: '°', before: 'innovation_imu', least: 1 },
+  { title: 'Innovation by the bend sensors', unit: '°', before: 'innovation_bend', least: 4 },
+];
+
+const LEFT = 48, RIGHT = 10, TOP = 8, BOTTOM = 20;
+
+/** One plot's range of values. */
+export class Range {
+  constructor(least) {
+    this.least = least;
+    this.reset();
+  }
+
+  reset() { [this.low, this.high] = [-this.least / 2, this.least / 2]; }
+
+  /** Follows what is seen: grows at once, and shrinks where much of it is empty, so that it does not flicker. */
+  follow(low, high) {
+    if (!(low <= high)) return;
+    const pad = Math.max(0.06 * (high - low), (this.least - (high - low)) / 2, 0);
+    const [wantLow, wantHigh] = [low - pad, high + pad];
+    if (low < this.low || high > this.high || wantHigh - wantLow < 0.6 * (this.high - this.low)) {
+      [this.low, this.high] = [wantLow, wantHigh];
+    }
+  }
+
+  /** Makes the range smaller by a factor, around a share of its height. */
+  zoom(factor, share = 0.5) {
+    const at = this.low + share * (this.high - this.low), height = (this.high - this.low) * factor;
+    [this.low, this.high] = [at - share * height, at + (1 - share) * height];
+  }
+
+  move(share) {
+    const by = share * (this.high - this.low);
+    this.low += by;
+    this.high += by;
+  }
+}
+
+/** Rows between two times, and one on each side, so that lines go on to the edge; none after the limit. */
+export function visible(store, from, to, limit) {
+  return [store.rowAt(from), Math.min(store.end, store.rowAt(to) + 2, store.rowAt(limit) + 1)];
+}
+
+/** Least and largest of the columns in these rows. */
+export function extent(columns, first, last) {
+  let low = Infinity, high = -Infinity;
+  for (const column of columns) {
+    for (let i = first; i < last; i++) {
+      const value = column[i];
+      if (value < low) low = value;
+      if (value > high) high = value;
+    }
+  }
+  return [low, high];
+}
+
+/**
+ * Points of one line: all of them, or of each pixel's column the first, least, largest and last, so that no spike is lost.
+ * A gap, NaN or half a second without a row, ends a piece.
+ */
+export function pieces(times, column, first, last, toX, toY) {
+  const found = [];
+  let piece = null, pixel = NaN, low = 0, high = 0, end = 0, before = NaN;
+  const close = () => {
+    if (!piece) return;
+    if (low !== high) piece.push(pixel, toY(low), pixel, toY(high));
+    piece.push(pixel, toY(end));
+  };
+  for (let i = first; i < last; i++) {
+    const value = column[i], time = times[i];
+    if (Number.isNaN(value) || time - before > 0.5 + 3 * gap(times, i, first)) {
+      close();
+      piece = null;
+    }
+    before = time;
+    if (Number.isNaN(value)) continue;
+    const x = Math.round(toX(time));
+    if (!piece) {
+      piece = [x, toY(value)];
+      found.push(piece);
+    } else if (x !== pixel) {
+      close();
+      piece.push(x, toY(value));
+    } else {
+      if (value < low) low = value;
+      if (value > high) high = value;
+      end = value;
+      continue;
+    }
+    [pixel, low, high, end] = [x, value, value, value];
+  }
+  close();
+  return found;
+}
+
+/** Time between rows at the start of what is seen: a slow session is no gap. */
+function gap(times, i, first) {
+  return i > first + 1 ? times[first + 1] - times[first] : 0;
+}
+
+/** Steps of 1, 2 or 5 times a power of ten, about so many of them. */
+export function ticks(low, high, about) {
+  const rough = (high - low) / about, power = 10 ** Math.floor(Math.log10(rough));
+  const step = [1, 2, 5, 10].map((times) => times * power).find((candidate) => candidate >= rough);
+  const found = [];
+  for (let i = Math.ceil(low / step); i * step <= high + 1e-9 * step; i++) found.push(i * step);
+  return { step, found };
+}
+
+const shown = (value, step) => minus(value.toFixed(Math.max(0, -Math.floor(Math.log10(step) + 1e-9))));
+
+/** With a minus instead of a hyphen, and no minus in front of nothing. */
+export const minus = (digits) => (/^-[0.]*$/.test(digits) ? digits.slice(1) : digits.replace('-', '−'));
+
+/** Minutes and seconds where there are minutes. */
+export function clock(seconds, step = 0.01) {
+  const digits = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
+  if (Math.abs(seconds) < 60) return `${seconds.toFixed(digits)} s`;
+  const minutes = Math.floor(seconds / 60), rest = (seconds - 60 * minutes).toFixed(digits);
+  return `${minutes}:${rest.padStart(digits ? digits + 3 : 2, '0')}`;
+}
+
+/** Draws one plot onto a canvas or an SVG of this size. */
+export function drawPlot(c, width, height, spec) {
+  const { store, columns, range, from, to, limit, cursor, marks, hidden, colours, empty } = spec;
+  const inner = { x: LEFT, y: TOP, w: width - LEFT - RIGHT, h: height - TOP - BOTTOM };
+  const toX = (time) => inner.x + ((time - from) / (to - from)) * inner.w;
+  const toY = (value) => inner.y + (1 - (value - range.low) / (range.high - range.low)) * inner.h;
+  axes(c, inner, { from, to, range, toX, toY, colours, width });
+  if (empty) {
+    c.fillStyle = colours.faint;
+    c.textAlign = 'center';
+    c.textBaseline = 'middle';
+    c.fillText(empty, inner.x + inner.w / 2, inner.y + 0.4 * inner.h);
+    return;
+  }
+  c.save();
+  c.beginPath();
+  c.rect(inner.x, inner.y, inner.w, inner.h);
+  c.clip();
+  for (const mark of marks ?? []) vertical(c, toX(mark), inner, colours.faint, [2, 3]);
+  if (store?.count) {
+    const [first, last] = visible(store, from, to, limit);
+    // Where rows are dense, lines of one pixel: browsers draw them twenty times as fast as wider ones.
+    c.lineWidth = last - first > inner.w ? 1 : 1.6;
+    c.lineJoin = 'bevel';
+    columns.forEach((column, i) => {
+      if (hidden.has(i)) return;
+      c.strokeStyle = colours.series[i % colours.series.length];
+      c.beginPath();
+      for (const piece of pieces(store.times, column, first, last, toX, toY)) {
+        c.moveTo(piece[0], piece[1]);
+        if (piece.length === 4 && piece[0] === piece[2]) c.lineTo(piece[0] + 1, piece[1]);
+        for (let k = 2; k < piece.length; k += 2) c.lineTo(piece[k], piece[k + 1]);
+      }
+      c.stroke();
+    });
+  }
+  if (Number.isFinite(cursor)) vertical(c, toX(cursor), inner, colours.ink, []);
+  c.restore();
+}
+
+function vertical(c, x, inner, colour, dash) {
+  c.strokeStyle = colour;
+  c.lineWidth = 1;
+  c.setLineDash(dash);
+  c.beginPath();
+  c.moveTo(x, inner.y);
+  c.lineTo(x, inner.y + inner.h);
+  c.stroke();
+  c.setLineDash([]);
+}
+
+function axes(c, inner, { from, to, range, toX, toY, colours, width }) {
+  c.font = `11px ${colours.font}`;
+  c.lineWidth = 1;
+  c.textBaseline = 'middle';
+  c.textAlign = 'right';
+  const vertical = ticks(range.low, range.high, 6);
+  for (const value of vertical.found) {
+    const y = Math.round(toY(value)) + 0.5;
+    c.strokeStyle = colours.grid;
+    c.beginPath();
+    c.moveTo(inner.x, y);
+    c.lineTo(inner.x + inner.w, y);
+    c.stroke();
+    c.fillStyle = colours.faint;
+    c.fillText(shown(value, vertical.step), inner.x - 6, y);
+  }
+  c.textBaseline = 'top';
+  const horizontal = ticks(from, to, Math.max(2, width / 110));
+  // There is nothing before the begin.
+  for (const time of horizontal.found.filter((found) => found >= 0)) {
+    const x = Math.round(toX(time)) + 0.5;
+    c.strokeStyle = colours.grid;
+    c.beginPath();
+    c.moveTo(x, inner.y);
+    c.lineTo(x, inner.y + inner.h);
+    c.stroke();
+    c.fillStyle = colours.faint;
+    // Text stays inside at both ends.
+    c.textAlign = x < inner.x + 16 ? 'left' : x > inner.x + inner.w - 16 ? 'right' : 'center';
+    c.fillText(clock(time, horizontal.step), x, inner.y + inner.h + 5);
+  }
+}
+
+/** Where a pointer is in a plot, as shares of its width and height. */
+export function shares(canvas, event) {
+  const box = canvas.getBoundingClientRect();
+  const x = (event.clientX - box.left - LEFT) / (box.width - LEFT - RIGHT);
+  const y = 1 - (event.clientY - box.top - TOP) / (box.height - TOP - BOTTOM);
+  return [Math.min(1, Math.max(0, x)), Math.min(1, Math.max(0, y))];
+}
+
+/** Width of a plot's inside. */
+export const innerWidth = (canvas) => canvas.clientWidth - LEFT - RIGHT;
