@@ -8,7 +8,6 @@ use clap::builder::Styles;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 pub use link::{Convert, Drive, LinkArgs, Monitor, Ports, Record, Recover, Status};
-pub use link::{Convert, LinkArgs, Ports, Record, Recover, Status};
 use proprio::calibrate::Correct;
 use proprio::session::ImuColumns;
 
