@@ -62,7 +62,7 @@ impl Baked<Q> {
     }
 }
 
-fn option<T>(value: Option<&T>, source: impl FnOnce(&T) -> String) -> String {
+fn option<T>(value: Option<T>, source: impl FnOnce(T) -> String) -> String {
     value.map_or_else(|| "None".to_owned(), source)
 }
 
@@ -82,7 +82,7 @@ fn uncertainty_source(rule: &UncertaintyRule<Q>) -> String {
     )
 }
 
-fn alike_source(Alike { segment, ratio }: &Alike) -> String {
+fn alike_source(Alike { segment, ratio }: Alike) -> String {
     format!("Some(estimator_core::Alike {{ segment: {segment}, ratio: {ratio} }})")
 }
 
@@ -108,7 +108,7 @@ fn segment_source(segment: &Segment<Q>) -> String {
         q(segment.offset),
         maps.join(", "),
         option(segment.hysteresis.as_ref(), hysteresis_source),
-        option(segment.alike.as_ref(), alike_source),
+        option(segment.alike, alike_source),
         segment.reference.bits(),
         noise(&segment.orient),
         noise(&segment.coord)

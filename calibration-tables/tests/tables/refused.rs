@@ -259,3 +259,20 @@ fn drift_keys_are_checked() {
     let kind = error("[[segment]]", "[drift]\nkind = \"average\"\n[[segment]]");
     assert!(kind.to_string().contains("average"), "{kind}");
 }
+
+#[test]
+fn keys_of_contact_and_uncertainty_are_checked() {
+    let keys = |section: &str, line: &str| format!("[{section}]\n{line}\n[[segment]]");
+    refuses("[[segment]]", &keys("contact", "alike_deg = 0.0"), "contact.alike_deg", "0.0");
+    let rest = "drift_share = 0.1\nbend_deg = 3.0\ncontact_deg = 1.0\nend_mm = 0.5";
+    let line = format!("theta_deg = 10.0\n{rest}");
+    refuses("[[segment]]", &keys("uncertainty", &line), "uncertainty.theta_deg", "10.0");
+}
+
+#[test]
+fn only_an_earlier_segment_is_alike() {
+    for number in [0, 1, 2] {
+        let alike = format!("length_mm = 80.0\nalike = {{ segment = {number}, ratio = 1.0 }}");
+        refuses("length_mm = 80.0", &alike, "segment[1].alike.segment", &number.to_string());
+    }
+}

@@ -234,6 +234,8 @@ pub fn segments<S: Scalar>(arm: &literal::Arm) -> Vec<Segment<S>> {
             offset: S::from_f64(segment.offset),
             offset_at: if segment.offset_at_end { OffsetAt::End } else { OffsetAt::Start },
             bend: [map(0), map(1)],
+            hysteresis: None,
+            alike: None,
             reference: Turns::from_rad(segment.reference),
             orient: noise(&segment.orient),
             coord: noise(&segment.coord),

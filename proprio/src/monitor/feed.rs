@@ -87,9 +87,9 @@ pub(super) struct Batch {
     pub rows: Vec<(f64, Vec<f32>)>,
     /// When the last one was sampled, µs by this program's clock: the page sends it back once it has drawn it.
     pub newest_us: u64,
-    /// How well the newest row is known, where the board tells.
+    /// How well the newest row is known, where the table says what errors come from.
     pub uncertainty: Option<Uncertainty>,
-    /// Which segments touch something, where the board tells.
+    /// Which segments touch something, where the table says how to tell.
     pub contact: Option<Vec<bool>>,
 }
 

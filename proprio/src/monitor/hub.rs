@@ -80,8 +80,11 @@ impl<'t> Hub<'t> {
     }
 
     fn send_rows(&mut self) {
-        let batch = std::mem::take(&mut self.batch);
+        let mut batch = std::mem::take(&mut self.batch);
         if !batch.rows.is_empty() {
+            let observer = self.live.observer();
+            batch.uncertainty = observer.and_then(Observer::uncertainty);
+            batch.contact = observer.and_then(Observer::contact);
             self.shared.tell(&Feed::Rows(batch));
         }
     }

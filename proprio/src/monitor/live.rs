@@ -100,6 +100,11 @@ impl<'t> Live<'t> {
         None
     }
 
+    /// The estimator beside the board's, while it has seen all that the board's has.
+    pub fn observer(&self) -> Option<&Observer<'t>> {
+        self.observer.as_ref().filter(|_| self.is_observed)
+    }
+
     fn message(&mut self, at: HostNs, message: &Message) -> Option<Taken> {
         match message {
             Message::Sample(sample) => {

@@ -9,7 +9,7 @@ use estimator_core::Method;
 use proprio::score::{Figures, Score};
 use rig_twin::Scenario;
 
-use crate::runs::{calibrated, score, session, tuned};
+use crate::runs::{calibrated, observed, score, session, tuned};
 
 /// Seeds of the sweep and of the training session.
 const SWEEP_SEED: u64 = 1;
@@ -39,8 +39,8 @@ pub struct Results {
     runs: Vec<Run>,
     /// All, I, II, III, after tuning.
     scenarios: [[Figures; 4]; 4],
-    /// First and last hour of a day.
-    day: [[f64; 4]; 2],
+    /// First and last hour of a day, and the fusion of each with the observer.
+    day: [([f64; 4], f64); 2],
     /// Of the real recording, imu_o, where it is there; mm and %.
     real: Option<[f64; 2]>,
 }
@@ -50,6 +50,8 @@ struct Run {
     seed: u64,
     fusion_before: f64,
     after: [f64; 4],
+    /// Fusion with the observer in the anchor's place.
+    observer: f64,
 }
 
 fn rmse(score: &Score) -> [f64; 4] {
@@ -59,7 +61,8 @@ fn rmse(score: &Score) -> [f64; 4] {
 impl Results {
     /// Runs everything, in `folder`.
     pub fn measure(root: &Path, folder: &Path) -> Result<Self, Box<dyn Error>> {
-        let [calibrated_toml, tuned_toml] = ["calibrated.toml", "tuned.toml"].map(|name| folder.join(name));
+        let [calibrated_toml, tuned_toml, observed_toml] =
+            ["calibrated.toml", "tuned.toml", "observed.toml"].map(|name| folder.join(name));
         let sweep = session(folder, Scenario::Sweep, SWEEP_SEED, VALIDATION_S)?;
         let arm = root.join("calibration-tables/arms/planar-6.toml");
         let maps_rmse_deg = calibrated(&arm, &sweep, &calibrated_toml)?;
@@ -67,6 +70,7 @@ impl Results {
         let training = session(folder, Scenario::One, TRAINING_SEED, TRAINING_S)?;
         let tuning = tuned(&calibrated_toml, training, &tuned_toml)?;
 
+        observed(&tuned_toml, &observed_toml)?;
         let length_mm = proprio::replay::NamedTable::load(&tuned_toml)?.file.length_mm();
         let mut sums = [(); 4].map(|()| Score::new(length_mm));
         let mut runs = Vec::new();
@@ -75,15 +79,18 @@ impl Results {
                 eprintln!("scenario {name}, seed {seed}");
                 let path = session(folder, scenario, seed, VALIDATION_S)?;
                 let [before, after] = [score(&path, &calibrated_toml)?.0, score(&path, &tuned_toml)?.0];
+                let [.., observer] = rmse(&score(&path, &observed_toml)?.0);
                 sums[0].append(&after);
                 sums[k + 1].append(&after);
                 let [.., fusion_before] = rmse(&before);
-                runs.push(Run { scenario: name, seed, fusion_before, after: rmse(&after) });
+                runs.push(Run { scenario: name, seed, fusion_before, after: rmse(&after), observer });
             }
         }
         eprintln!("a day of scenario I");
-        let (_, hours) = score(&session(folder, Scenario::One, DAY_SEED, DAY_S)?, &tuned_toml)?;
-        let day = [hours.first(), hours.last()].map(|hour| hour.map_or([f64::NAN; 4], rmse));
+        let day = session(folder, Scenario::One, DAY_SEED, DAY_S)?;
+        let [(_, anchor), (_, observer)] = [score(&day, &tuned_toml)?, score(&day, &observed_toml)?];
+        let of = |hours: &[Score], hour: usize| hours.get(hour).map_or([f64::NAN; 4], rmse);
+        let day = [0, anchor.len() - 1].map(|hour| (of(&anchor, hour), of(&observer, hour)[3]));
         Ok(Self { maps_rmse_deg, tuning, runs, scenarios: sums.each_ref().map(Score::figures), day, real: real(root)? })
     }
 
@@ -131,12 +138,15 @@ impl Results {
 
     fn write_runs(&self, page: &mut String) -> std::fmt::Result {
         writeln!(page, "## Run by run\n\nRMSE of the tip in mm.\n")?;
-        writeln!(page, "| scenario | seed | bend | imu_o | imu_c | fusion, calibrated | fusion, tuned |")?;
-        writeln!(page, "|---|---|---|---|---|---|---|")?;
-        for Run { scenario, seed, fusion_before, after: [bend, imu_o, imu_c, fusion] } in &self.runs {
+        writeln!(
+            page,
+            "| scenario | seed | bend | imu_o | imu_c | fusion, calibrated | fusion, tuned | the same, observer |"
+        )?;
+        writeln!(page, "|---|---|---|---|---|---|---|---|")?;
+        for Run { scenario, seed, fusion_before, after: [bend, imu_o, imu_c, fusion], observer } in &self.runs {
             writeln!(
                 page,
-                "| {scenario} | {seed} | {bend:.2} | {imu_o:.2} | {imu_c:.2} | {fusion_before:.2} | {fusion:.2} |"
+                "| {scenario} | {seed} | {bend:.2} | {imu_o:.2} | {imu_c:.2} | {fusion_before:.2} | {fusion:.2} | {observer:.2} |"
             )?;
         }
         let worse = |run: &&Run| run.after[..3].iter().any(|other| *other < run.after[3]);
@@ -180,9 +190,9 @@ impl Results {
             page,
             "## A day\n\n24 h of scenario I, seed {DAY_SEED}, at the paper's drift. RMSE of the tip in mm.\n"
         )?;
-        writeln!(page, "| | bend | imu_o | imu_c | fusion |\n|---|---|---|---|---|")?;
-        for (name, [bend, imu_o, imu_c, fusion]) in ["first hour", "last hour"].iter().zip(self.day) {
-            writeln!(page, "| {name} | {bend:.2} | {imu_o:.2} | {imu_c:.2} | {fusion:.2} |")?;
+        writeln!(page, "| | bend | imu_o | imu_c | fusion | fusion, observer |\n|---|---|---|---|---|---|")?;
+        for (name, ([bend, imu_o, imu_c, fusion], observer)) in ["first hour", "last hour"].iter().zip(self.day) {
+            writeln!(page, "| {name} | {bend:.2} | {imu_o:.2} | {imu_c:.2} | {fusion:.2} | {observer:.2} |")?;
         }
         writeln!(page)
     }

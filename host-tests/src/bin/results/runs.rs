@@ -4,9 +4,9 @@ use std::error::Error;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use calibration_tables::TuningKeys;
+use calibration_tables::{DriftKeys, TuningKeys};
 use estimator_core::Q;
-use proprio::calibrate::{Calibration, calibrate};
+use proprio::calibrate::{Calibration, Correct, calibrate};
 use proprio::output::OutputFile;
 use proprio::replay::{NamedTable, replay};
 use proprio::score::Score;
@@ -32,7 +32,7 @@ pub fn session(folder: &Path, scenario: Scenario, seed: u64, seconds: f64) -> Re
 
 /// A table made of a sweep, and the mean RMSE of its V–Orient maps in degrees.
 pub fn calibrated(arm: &Path, sweep: &Path, table: &Path) -> Result<f64, Box<dyn Error>> {
-    let Calibration { table: file, sensors, .. } = calibrate(sweep, &NamedTable::load(arm)?)?;
+    let Calibration { table: file, sensors, .. } = calibrate(sweep, &NamedTable::load(arm)?, Correct::Auto)?;
     fs::write(table, file.to_toml())?;
     Ok(sensors.iter().map(|sensor| sensor.rmse_deg).sum::<f64>() / sensors.len() as f64)
 }
@@ -43,6 +43,14 @@ pub fn tuned(table: &Path, training: PathBuf, to: &Path) -> Result<TuningKeys, B
     let Tuning { table, record } = Tuner::new(&[training], &table)?.tune(|| false)?;
     fs::write(to, table.to_toml())?;
     Ok(record)
+}
+
+/// The same table with the observer in the anchor's place.
+pub fn observed(table: &Path, to: &Path) -> Result<(), Box<dyn Error>> {
+    let mut file = NamedTable::load(table)?.file;
+    file.drift = Some(DriftKeys::observer());
+    fs::write(to, file.to_toml())?;
+    Ok(())
 }
 
 /// Errors of a session, all of it and hour by hour.
