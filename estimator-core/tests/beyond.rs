@@ -1,0 +1,153 @@
+//! Contact and uncertainty, from samples to what the estimator says of them.
+
+use estimator_core::{
+    Alike, BendMap, ContactRule, Estimator, ImuReading, ObserverRule, Phase, SCALE, Sample, Segment, Table, Turns,
+    Uncertainty, UncertaintyRule,
+};
+
+/// Deviations: of θ, of θ by bend sensors alone, and while something touches the segment, degrees.
+const THETA_DEG: f64 = 0.5;
+const BEND_DEG: f64 = 3.0;
+const CONTACT_DEG: f64 = 2.0;
+
+fn turns(degrees: f64) -> Turns {
+    Turns::from_rad(degrees.to_radians())
+}
+
+/// The second segment bends like the first.
+fn segments() -> [Segment<f64>; 2] {
+    // θ = V − 1.5 rad.
+    let map = Some(BendMap::from_volts(0.0, 1.0, -1.5, [0.5, 2.5]));
+    let first = Segment { bend: [map, map], ..Segment::bare(0.08, 0.017) };
+    [first, Segment { alike: Some(Alike { segment: 0, ratio: Alike::ONE as i32 }), ..first }]
+}
+
+fn table(segments: &[Segment<f64>]) -> Table<'_, f64> {
+    let variance = |degrees: f64| degrees.to_radians().powi(2) * SCALE;
+    let rule = UncertaintyRule {
+        theta: variance(THETA_DEG),
+        drift: 0.0,
+        bend: variance(BEND_DEG),
+        contact: variance(CONTACT_DEG),
+        end: 1e-8 * SCALE,
+    };
+    let contact = ContactRule { bend: turns(5.0), alike: turns(4.0) };
+    Table { contact: Some(contact), uncertainty: Some(rule), ..Table::bare(segments) }
+}
+
+/// Both sensors and IMUs of two segments at these angles, degrees.
+fn sample([first, second]: [f64; 2]) -> Sample<2> {
+    let counts = |degrees: f64| Some(((degrees.to_radians() + 1.5) / 3.3 * 4095.0).round() as u16);
+    let heading = |degrees: f64| Some(ImuReading::Heading(Phase::from_degrees(degrees)));
+    let mut sample = Sample::missing(0);
+    sample.bend = [[counts(first); 2], [counts(second); 2]];
+    sample.imu = [heading(first), heading(first + second)];
+    sample
+}
+
+/// Standard deviation of each angle, degrees, where it is known.
+fn deviations_deg(estimator: &Estimator<f64, 2, 100>) -> Vec<Option<f64>> {
+    let known = estimator.uncertainties();
+    known.iter().map(|Uncertainty { theta, .. }| theta.map(|theta| (theta / SCALE).sqrt().to_degrees())).collect()
+}
+
+fn near(found: Option<f64>, expected: f64) {
+    let found = found.expect("it is known");
+    assert!((found - expected).abs() < 1e-9, "{found} instead of {expected}");
+}
+
+#[test]
+fn a_push_on_one_of_two_alike_is_contact_of_both_within_half_a_second() {
+    let segments = segments();
+    let table = table(&segments);
+    let mut estimator = Estimator::<_, 2, 100>::new(&table).expect("it fits");
+    for k in 0..50 {
+        // Free: both swing.
+        estimator.step(&sample([f64::from(k % 20); 2]));
+        assert!(estimator.contacts().iter().all(|contact| !contact.is_touched), "value {k}");
+    }
+    let pushed = |k: u32| [9.0, 9.0 + 2.0 * f64::from(k)];
+    let found = (1..=5).find(|k| {
+        estimator.step(&sample(pushed(*k)));
+        estimator.contacts().iter().all(|contact| contact.is_touched)
+    });
+    assert!(found.is_some(), "10 degrees of push are none");
+}
+
+#[test]
+fn contact_widens_the_variance() {
+    let segments = segments();
+    let table = table(&segments);
+    let mut estimator = Estimator::<_, 2, 100>::new(&table).expect("it fits");
+    for _ in 0..10 {
+        estimator.step(&sample([5.0; 2]));
+    }
+    near(deviations_deg(&estimator)[1], THETA_DEG);
+    estimator.step(&sample([5.0, 15.0]));
+    near(deviations_deg(&estimator)[1], THETA_DEG.hypot(CONTACT_DEG));
+}
+
+#[test]
+fn without_imu_the_variance_is_that_of_the_bend_sensors() {
+    let segments = segments();
+    let table = table(&segments);
+    let mut estimator = Estimator::<_, 2, 100>::new(&table).expect("it fits");
+    estimator.step(&sample([5.0; 2]));
+    estimator.step(&Sample { imu: [sample([5.0; 2]).imu[0], None], ..sample([5.0; 2]) });
+    near(deviations_deg(&estimator)[0], THETA_DEG);
+    near(deviations_deg(&estimator)[1], BEND_DEG);
+}
+
+#[test]
+fn where_nothing_is_read_no_point_is_known_from_there_on() {
+    let segments = segments();
+    let table = table(&segments);
+    let mut estimator = Estimator::<_, 2, 100>::new(&table).expect("it fits");
+    estimator.step(&sample([5.0; 2]));
+    let whole = sample([5.0; 2]);
+    estimator.step(&Sample { bend: [[None; 2], whole.bend[1]], imu: [None, whole.imu[1]], ..whole });
+    let known = estimator.uncertainties();
+    assert!(known.iter().all(|segment| segment.end.is_none()), "{known:?}");
+    assert!(known[0].theta.is_none() && known[1].theta.is_some(), "{known:?}");
+}
+
+#[test]
+fn the_variance_grows_while_saturated_bend_sensors_leave_the_observer_alone() {
+    let segments = segments();
+    let one = f64::from(1 << 30);
+    let observer = ObserverRule {
+        step: (4_294_967_296.0 / (10.0 * ObserverRule::RATE_S)) as u32,
+        prior: [(1e-3 * one) as i32, (1e-2 * one) as i32, 1],
+        growth: [0, 35, 1],
+        gate: turns(8.0),
+        patience: 300,
+        jump: turns(12.0),
+        still: turns(1.0),
+        doubt: 1 << 23,
+    };
+    let rule = UncertaintyRule { drift: 1.0, ..table(&segments).uncertainty.expect("it has one") };
+    let table = Table { observer: Some(observer), uncertainty: Some(rule), ..table(&segments) };
+    let mut estimator = Estimator::<_, 2, 100>::new(&table).expect("it fits");
+    for k in 0..600 {
+        estimator.step(&sample([30.0 * (f64::from(k) / 12.0).sin(); 2]));
+    }
+    let before = deviations_deg(&estimator)[0].expect("it is known");
+    for k in 0..600 {
+        let whole = sample([30.0 * (f64::from(k) / 12.0).sin(); 2]);
+        estimator.step(&Sample { bend: [[None; 2]; 2], ..whole });
+    }
+    let after = deviations_deg(&estimator)[0].expect("it is known");
+    assert!(after > 1.2 * before, "{before} and then {after} degrees");
+}
+
+#[test]
+fn a_table_that_does_not_ask_gets_neither() {
+    let segments = segments();
+    let table = Table { contact: None, uncertainty: None, ..table(&segments) };
+    let mut estimator = Estimator::<_, 2, 100>::new(&table).expect("it fits");
+    for k in 0..10 {
+        estimator.step(&sample([5.0, 5.0 * f64::from(k)]));
+    }
+    assert!(estimator.uncertainties().is_empty());
+    assert!(estimator.contacts().iter().all(|contact| !contact.is_touched));
+}
