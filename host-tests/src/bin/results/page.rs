@@ -61,16 +61,17 @@ fn rmse(score: &Score) -> [f64; 4] {
 impl Results {
     /// Runs everything, in `folder`.
     pub fn measure(root: &Path, folder: &Path) -> Result<Self, Box<dyn Error>> {
-        let [calibrated_toml, tuned_toml, observed_toml] =
-            ["calibrated.toml", "tuned.toml", "observed.toml"].map(|name| folder.join(name));
+        let [calibrated_toml, tuned_toml, untuned_toml, observed_toml] =
+            ["calibrated.toml", "tuned.toml", "untuned.toml", "observed.toml"].map(|name| folder.join(name));
         let sweep = session(folder, Scenario::Sweep, SWEEP_SEED, VALIDATION_S)?;
         let arm = root.join("calibration-tables/arms/planar-6.toml");
         let maps_rmse_deg = calibrated(&arm, &sweep, &calibrated_toml)?;
         eprintln!("calibrated; training");
         let training = session(folder, Scenario::One, TRAINING_SEED, TRAINING_S)?;
-        let tuning = tuned(&calibrated_toml, training, &tuned_toml)?;
+        let tuning = tuned(&calibrated_toml, training.clone(), &tuned_toml)?;
+        observed(&calibrated_toml, &untuned_toml)?;
+        tuned(&untuned_toml, training, &observed_toml)?;
 
-        observed(&tuned_toml, &observed_toml)?;
         let length_mm = proprio::replay::NamedTable::load(&tuned_toml)?.file.length_mm();
         let mut sums = [(); 4].map(|()| Score::new(length_mm));
         let mut runs = Vec::new();
@@ -140,7 +141,7 @@ impl Results {
         writeln!(page, "## Run by run\n\nRMSE of the tip in mm.\n")?;
         writeln!(
             page,
-            "| scenario | seed | bend | imu_o | imu_c | fusion, calibrated | fusion, tuned | the same, observer |"
+            "| scenario | seed | bend | imu_o | imu_c | fusion, calibrated | fusion, tuned | observer, tuned |"
         )?;
         writeln!(page, "|---|---|---|---|---|---|---|---|")?;
         for Run { scenario, seed, fusion_before, after: [bend, imu_o, imu_c, fusion], observer } in &self.runs {
@@ -153,7 +154,7 @@ impl Results {
         let lost: Vec<&Run> = self.runs.iter().filter(worse).collect();
         writeln!(
             page,
-            "\nAfter tuning, fusion is the best of the four in {} of {} runs.",
+            "\nThe last column has the drift observer in the anchor's place. After tuning, fusion with the anchor is the best of the four in {} of {} runs.",
             self.runs.len() - lost.len(),
             self.runs.len()
         )?;
