@@ -12,6 +12,15 @@ use super::FlashError;
 const TARGET: &str = "thumbv7m-none-eabi";
 const CHIP: &str = "ATSAM3X8E";
 
+/// Names the folders of libraries, where a program finds them by that.
+const LIBRARY_PATH: Option<&str> = if cfg!(target_os = "macos") {
+    Some("DYLD_LIBRARY_PATH")
+} else if cfg!(unix) {
+    Some("LD_LIBRARY_PATH")
+} else {
+    None
+};
+
 /// A command.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Step {
@@ -54,7 +63,7 @@ impl Flashing {
             let image = text(image);
             // bossac puts the folder in front by itself.
             let port = port.strip_prefix("/dev/").unwrap_or(port);
-            steps.push(Step::new(&objcopy(&source)?, &["-O", "binary", &elf, &image]));
+            steps.push(objcopy(&source, &elf, &image)?);
             steps.push(Step::new("bossac", &["-a", "-p", port, "-U0", "-e", "-w", "-v", "-b", "-R", &image]));
         }
         Ok(Self { source, steps })
@@ -170,10 +179,13 @@ fn is_probe_found() -> Result<bool, FlashError> {
 }
 
 /// That of the pinned toolchain, which is the one of the source's folder.
-fn objcopy(source: &Path) -> Result<String, FlashError> {
+fn objcopy(source: &Path, elf: &str, image: &str) -> Result<Step, FlashError> {
     let printed = |what| output("rustc", &["--print", what], source).map(|line| line.trim().to_owned());
     let (sysroot, host) = (printed("sysroot")?, printed("host-tuple")?);
-    Ok(format!("{sysroot}/lib/rustlib/{host}/bin/rust-objcopy{}", env::consts::EXE_SUFFIX))
+    let program = format!("{sysroot}/lib/rustlib/{host}/bin/rust-objcopy{}", env::consts::EXE_SUFFIX);
+    // It looks for the toolchain's LLVM in another folder than it is in.
+    let variable = LIBRARY_PATH.map(|name| (name, format!("{sysroot}/lib")));
+    Ok(Step { variable, ..Step::new(&program, &["-O", "binary", elf, image]) })
 }
 
 fn is_on_path(program: &str) -> bool {

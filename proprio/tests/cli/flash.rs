@@ -60,6 +60,12 @@ impl Bench {
         self.0.path("source").display().to_string()
     }
 
+    /// Where rust-objcopy finds the toolchain's LLVM.
+    fn libraries(&self) -> String {
+        let name = if cfg!(target_os = "macos") { "DYLD_LIBRARY_PATH" } else { "LD_LIBRARY_PATH" };
+        format!("{name}={}/lib", self.0.path("sysroot").display())
+    }
+
     /// Programs that ran, in their order, with their arguments.
     fn called(&self) -> Vec<String> {
         let log = fs::read_to_string(self.0.path("called")).unwrap_or_default();
@@ -85,9 +91,9 @@ fn a_dry_run_without_a_probe_prints_the_commands_of_the_programming_port() {
     let (source, table) = (bench.source(), table());
     let objcopy = bench.0.path("sysroot/lib/rustlib/host/bin/rust-objcopy");
     let image = bench.0.path("tmp/firmware.bin");
-    let (objcopy, image) = (objcopy.display(), image.display());
+    let (libraries, objcopy, image) = (bench.libraries(), objcopy.display(), image.display());
     let expected = format!(
-        "cd {source}\nPROPRIO_TABLE={table} {BUILD}\n{objcopy} -O binary {ELF} {image}\n\
+        "cd {source}\nPROPRIO_TABLE={table} {BUILD}\n{libraries} {objcopy} -O binary {ELF} {image}\n\
          bossac -a -p no-such-port -U0 -e -w -v -b -R {image}\n"
     );
     assert_eq!((run.stdout, run.code), (expected, Some(0)), "{}", run.stderr);
@@ -178,4 +184,14 @@ fn a_table_that_cannot_be_used_is_refused_before_anything_runs() {
     let run = command.env("PATH", bench.0.path("bin")).output().expect("the tool starts").into();
     assert!(error(&run).starts_with("bad.toml: "), "{}", run.stderr);
     assert!(bench.called().is_empty());
+}
+
+#[test]
+fn an_interrupt_ends_it_after_the_command_that_runs_and_leaves_nothing() {
+    let bench = Bench::new();
+    // As Ctrl-C in a terminal, which both hear.
+    bench.logged("bin/cargo", "kill -INT $PPID; /bin/sleep 1");
+    let run = bench.flash(&["--source", "source"]);
+    assert_eq!((run.code, run.stdout.as_str()), (Some(130), ""), "{}", run.stderr);
+    assert_eq!((bench.called().len(), bench.left_over()), (1, 0), "{:?}", bench.called());
 }
