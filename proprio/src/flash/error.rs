@@ -53,7 +53,17 @@ pub enum FlashError {
     /// The line is gone.
     #[error("flashed, but not heard: {0}")]
     Unheard(LinkError),
-    /// The board says that it has another firmware or table.
+    /// The board says that it has another table.
+    #[error("flashed, but the board has another table (of arm \"{arm}\", checksum {board:08x}) than {given:08x}")]
+    OtherTable {
+        /// Name of the arm that the board's table is for.
+        arm: String,
+        /// Its checksum.
+        board: u32,
+        /// Checksum of the table that was flashed.
+        given: u32,
+    },
+    /// The board says that it has another firmware.
     #[error("flashed, but {0}")]
     Other(Mismatch),
 }
@@ -73,8 +83,9 @@ impl FlashError {
             Self::Failed { program, .. } => look(program),
             Self::Temporary(_) => "make room, or let TMPDIR name a folder that can be written to",
             Self::Silent { .. } => "press RESET, then `proprio status`; docs/FLASHING.md, Trouble",
+            Self::OtherTable { .. } => "see that the probe and the port are of one board, and flash again",
             Self::Other(_) => {
-                "see that the probe and the port are of one board, and that --source is this release's (`git status`)"
+                "give this release's source with --source, and see that the probe and the port are of one board"
             }
         }
     }

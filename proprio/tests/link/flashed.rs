@@ -24,8 +24,8 @@ fn version_and_table_that_were_flashed_are_a_success() {
 #[test]
 fn another_table_is_told_with_both_checksums() {
     let error = judged(hello(1), 8).expect_err("it is another");
-    assert!(matches!(&error, FlashError::Other(Mismatch::Table { board: 7, given: 8, .. })), "{error}");
-    assert!(error.to_string().starts_with("flashed, but the board estimates with another table"), "{error}");
+    assert!(matches!(&error, FlashError::OtherTable { board: 7, given: 8, .. }), "{error}");
+    assert!(error.to_string().starts_with("flashed, but the board has another table"), "{error}");
 }
 
 #[test]
