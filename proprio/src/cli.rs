@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use clap::builder::Styles;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
-pub use link::{Convert, Drive, LinkArgs, Monitor, Ports, Record, Recover, Status};
+pub use link::{Convert, Drive, Flash, LinkArgs, Monitor, Ports, Record, Recover, Status};
 use proprio::calibrate::Correct;
 use proprio::session::ImuColumns;
 
@@ -39,6 +39,8 @@ pub enum Command {
     Report(Report),
     /// Record a session of the simulated arm
     Simulate(Simulate),
+    /// Build the firmware with a table, write it onto a board, and hear that it runs
+    Flash(Flash),
     /// List the serial ports, and which of them a Due is on
     Ports(Ports),
     /// Say how a board is: versions, sensors, rates, losses

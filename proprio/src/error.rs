@@ -9,6 +9,7 @@ use calibration_tables::FileError;
 use crate::align::AlignmentError;
 use crate::calibrate::CalibrationError;
 use crate::drive::DriveError;
+use crate::flash::FlashError;
 use crate::link::LinkError;
 use crate::session::SessionError;
 use crate::tune::TuningError;
@@ -41,6 +42,9 @@ pub enum Error {
     /// A board is not driven, or not any more.
     #[error(transparent)]
     Drive(#[from] DriveError),
+    /// A board is not flashed.
+    #[error(transparent)]
+    Flash(#[from] FlashError),
     /// Filters cannot be tuned on a session, or in a table.
     #[error("{}: {source}", path.display())]
     Tuning {
@@ -124,6 +128,7 @@ impl Error {
             Self::Calibration { source, .. } => source.remedy(),
             Self::Link(error) => error.remedy().to_owned(),
             Self::Drive(error) => error.remedy().to_owned(),
+            Self::Flash(error) => error.remedy().to_owned(),
             Self::Tuning { source, .. } => source.remedy().to_owned(),
             Self::Alignment { source, .. } => source.remedy().to_owned(),
             Self::Output { .. } => "choose a folder that exists, can be written to and has room".to_owned(),

@@ -16,10 +16,15 @@ pub fn install() {
     let _ = ctrlc::set_handler(|| {
         // Who asks twice does not want to wait.
         if !IS_HEEDED.load(Ordering::SeqCst) || IS_REQUESTED.swap(true, Ordering::SeqCst) {
-            discard_unfinished();
-            std::process::exit(INTERRUPTED);
+            end();
         }
     });
+}
+
+/// Ends the program as an interrupt does.
+pub fn end() -> ! {
+    discard_unfinished();
+    std::process::exit(INTERRUPTED);
 }
 
 /// While this lives, the first interrupt asks its owner to come to an end, and only a second one ends the program.

@@ -27,6 +27,7 @@ pub mod drive;
 pub mod error;
 pub mod estimates;
 pub mod figures;
+pub mod flash;
 pub mod honesty;
 pub mod interrupt;
 pub mod link;

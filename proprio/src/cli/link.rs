@@ -33,6 +33,22 @@ pub struct LinkArgs {
 }
 
 #[derive(Debug, Args)]
+pub struct Flash {
+    /// Table of the arm
+    #[arg(long, value_name = "TABLE.toml")]
+    pub table: PathBuf,
+    /// The board's programming port [default: that of the one Due that is plugged in]
+    #[arg(long, value_name = "PORT")]
+    pub port: Option<String>,
+    /// Print the commands, and run none that builds or writes
+    #[arg(long)]
+    pub dry_run: bool,
+    /// Folder of the firmware's source, which is this project's
+    #[arg(long, value_name = "FOLDER", default_value = ".")]
+    pub source: PathBuf,
+}
+
+#[derive(Debug, Args)]
 pub struct Ports {
     /// Print the list as JSON
     #[arg(long)]

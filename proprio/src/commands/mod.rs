@@ -5,6 +5,7 @@ mod calibrate;
 mod completions;
 mod convert;
 mod drive;
+mod flash;
 mod link;
 mod monitor;
 mod ports;
@@ -33,6 +34,7 @@ impl Command {
             Self::Replay(args) => replay::run(&args),
             Self::Report(args) => report::run(&args),
             Self::Simulate(args) => simulate::run(&args),
+            Self::Flash(args) => flash::run(&args),
             Self::Ports(args) => ports::run(&args),
             Self::Status(args) => status::run(&args),
             Self::Record(args) => record::run(&args),

@@ -42,9 +42,7 @@ impl DriveError {
     #[must_use]
     pub fn remedy(&self) -> &'static str {
         match self {
-            Self::OtherTable(_) => {
-                "build and flash the firmware with this table (docs/FLASHING.md), or give the board's"
-            }
+            Self::OtherTable(_) => "put this table onto the board with `proprio flash --table`, or give the board's",
             Self::Crashed(_) => "air off until it is understood; a second `proprio drive` takes it for understood",
             Self::Blind => "`proprio status` tells how each of them is",
             Self::HeldBack { .. } => {

@@ -86,7 +86,7 @@ impl fmt::Display for Mismatch {
             Self::Table { arm, board, given } => write!(
                 f,
                 "the board estimates with another table (of arm \"{arm}\", checksum {board:08x}) than the one given \
-                 ({given:08x}): build and flash the firmware with PROPRIO_TABLE, or give the board's table"
+                 ({given:08x}): `proprio flash --table` puts that onto it, or give the board's table"
             ),
         }
     }

@@ -14,6 +14,8 @@ mod convert;
 mod drive;
 mod estimates;
 mod figures;
+#[cfg(unix)]
+mod flash;
 mod guide;
 mod missing_readings;
 mod monitor;

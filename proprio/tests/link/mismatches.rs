@@ -38,7 +38,7 @@ fn another_table_is_told_once_with_both_checksums() {
     let told = told(Some(8), &hello(1));
     let expected = Mismatch::Table { arm: "planar-6".to_owned(), board: 7, given: 8 };
     assert_eq!(mismatches(&told), [&expected]);
-    assert!(expected.to_string().contains("00000007") && expected.to_string().contains("PROPRIO_TABLE"));
+    assert!(expected.to_string().contains("00000007") && expected.to_string().contains("proprio flash"));
 }
 
 #[test]
