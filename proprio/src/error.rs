@@ -118,6 +118,14 @@ pub enum Error {
     Ramp(f64),
 }
 
+/// A duration that can be simulated, recorded or driven, s.
+///
+/// # Errors
+/// [`Error::Seconds`].
+pub fn check_seconds(seconds: f64) -> Result<(), Error> {
+    if seconds > 0.0 && seconds <= 1e7 { Ok(()) } else { Err(Error::Seconds(seconds)) }
+}
+
 impl Error {
     /// What to do about it.
     #[must_use]

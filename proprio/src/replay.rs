@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use calibration_tables::{ArmFile, Baked, FileError, MAX_SEGMENTS, MAX_WINDOW};
-use estimator_core::{Contacts, Estimate, Estimator, Method, Q, Scalar, Shape, Uncertainties};
+use estimator_core::{Estimate, Estimator, Method, Q, Scalar, Shape, Uncertainties};
 use telemetry::{Hello, TICK_HZ};
 
 use crate::error::Error;
@@ -30,6 +30,14 @@ impl<'p> NamedTable<'p> {
     pub fn load(path: &'p Path) -> Result<Self, Error> {
         let file = ArmFile::load(path).map_err(|source| Error::Table { path: path.to_owned(), source })?;
         Ok(Self { file, path })
+    }
+
+    /// The file's text as it stands.
+    ///
+    /// # Errors
+    /// [`Error::Table`].
+    pub fn toml(&self) -> Result<Vec<u8>, Error> {
+        std::fs::read(self.path).map_err(|source| self.error(source.into()))
     }
 
     /// The columns that it needs of a session.
@@ -62,8 +70,6 @@ pub struct Outcome<S> {
     pub shapes: [Shape<S, MAX_SEGMENTS>; Method::ALL.len()],
     /// How far the fused shape may be off; empty where the table does not say what errors come from.
     pub uncertainties: Uncertainties<S, MAX_SEGMENTS>,
-    /// What touches each segment.
-    pub contacts: Contacts<MAX_SEGMENTS>,
 }
 
 /// The extent of a session.
@@ -122,8 +128,8 @@ pub fn replay<S: Scalar>(
         }
         let estimate = estimator.step(&row.sample);
         let shapes = Method::ALL.map(|method| estimator.shape(&estimate, method));
-        let (uncertainties, contacts) = (estimator.uncertainties(), estimator.contacts());
-        visit(&row, &Outcome { estimate, shapes, uncertainties, contacts })?;
+        let uncertainties = estimator.uncertainties();
+        visit(&row, &Outcome { estimate, shapes, uncertainties })?;
         last_us = row.sample.time_us;
         first_us.get_or_insert(last_us);
         samples += 1;

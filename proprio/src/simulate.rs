@@ -2,7 +2,7 @@
 
 use rig_twin::{BEND_SENSORS, Camera, EndPose, Frame, Program, REGULATORS, Rig, SEGMENTS, Scenario};
 
-use crate::error::Error;
+use crate::error::{Error, check_seconds};
 
 /// The regulators get a new duty at least this often, s: the firmware's tick.
 const TICK_S: f64 = 0.01;
@@ -41,9 +41,7 @@ impl Simulation {
         if !(1.0..=1000.0).contains(&rate_hz) {
             return Err(Error::Rate(rate_hz));
         }
-        if !(seconds > 0.0 && seconds <= 1e7) {
-            return Err(Error::Seconds(seconds));
-        }
+        check_seconds(seconds)?;
         let samples = (seconds * rate_hz).round().max(1.0) as u64;
         let (rig, program) = (Rig::new(scenario, seed), Program::new(scenario, seed));
         Ok(Self { rig, program, rate_hz, samples, next: 0, camera: None, frames: Vec::new() })

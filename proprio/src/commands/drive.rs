@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use board_core::FULL_SCALE_PA;
 use proprio::drive::{DriveError, Driver, PERIOD, Profile, Ramp};
-use proprio::error::Error;
+use proprio::error::{Error, check_seconds};
 use proprio::interrupt::Heed;
 use proprio::link::{Subscription, What};
 use proprio::status::Status;
@@ -51,9 +51,7 @@ pub fn run(args: &Drive) -> Result<(), Error> {
 }
 
 fn profile(args: &Drive) -> Result<Profile, Error> {
-    if let Some(seconds) = args.seconds.filter(|seconds| !(*seconds > 0.0 && *seconds <= 1e7)) {
-        return Err(Error::Seconds(seconds));
-    }
+    args.seconds.map_or(Ok(()), check_seconds)?;
     match (&args.profile, args.kpa) {
         (Some(path), _) => Ok(Profile::read(path)?),
         (None, kpa) => {

@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use proprio::error::Error;
 use proprio::interrupt::Heed;
-use proprio::link::{Event, HostClock, Link, LinkError, Subscription, What};
+use proprio::link::{HostClock, Link, LinkError, Subscription, What};
 use proprio::monitor::{Monitor, Options, Plain, Token};
 use proprio::replay::NamedTable;
 use proprio::session::SessionReader;
@@ -30,14 +30,8 @@ pub fn run(args: &cli::Monitor) -> Result<(), Error> {
     let monitor = start(args, Some((link, events)), table)?;
     // Nothing follows an end, but what came until then can still be looked at.
     while !heed.is_requested() {
-        if let Some(Event { what, .. }) = told.next(LOOK) {
-            match what {
-                What::Ended(reason) => super::warn(&reason),
-                What::Lost(reason) => super::warn(&format_args!("{reason}; waiting for it to come back")),
-                What::Restarted => super::warn(&"the board has restarted"),
-                What::Mismatch(mismatch) => super::warn(&mismatch),
-                What::Opened(_) | What::Bytes(_) | What::Message(_) | What::Undecoded(_) => {}
-            }
+        if let Some(warning) = told.next(LOOK).and_then(|event| event.what.warning()) {
+            super::warn(&warning);
         }
     }
     if let Some(file) = monitor.finish()? {

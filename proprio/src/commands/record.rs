@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use proprio::error::Error;
+use proprio::error::{Error, check_seconds};
 use proprio::interrupt::Heed;
 use proprio::link::{Link, LinkError, Subscription, What};
 use telemetry::Counts;
@@ -16,9 +16,7 @@ use crate::cli::Record;
 const LOOK: Duration = Duration::from_millis(500);
 
 pub fn run(args: &Record) -> Result<(), Error> {
-    if let Some(seconds) = args.seconds.filter(|seconds| !(*seconds > 0.0 && *seconds <= 1e7)) {
-        return Err(Error::Seconds(seconds));
-    }
+    args.seconds.map_or(Ok(()), check_seconds)?;
     let (table, link, events) = link::open(&args.link)?;
     let heed = Heed::interrupts();
     let mut session = Session::new(FileRecorder::create(&args.output, &link, table.as_ref())?);

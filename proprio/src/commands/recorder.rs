@@ -1,15 +1,14 @@
 //! A recording under way: its file, and what goes into it.
 
 use std::fs::{self, File, OpenOptions};
-use std::io::{self, BufWriter, Write};
+use std::io::{self, BufWriter};
 use std::path::Path;
-use std::time::Duration;
 
 use proprio::error::Error;
-use proprio::link::{Event, HostClock, HostNs, Link, Subscription, What};
+use proprio::link::{Event, HostClock, HostNs, Link, Subscription};
 use proprio::recording::Recorder;
 use proprio::replay::NamedTable;
-use telemetry::{Message, SetPressures};
+use telemetry::SetPressures;
 
 type Output = Recorder<BufWriter<File>>;
 
@@ -18,7 +17,6 @@ pub struct FileRecorder<'p> {
     recorder: Output,
     path: &'p Path,
     clock: HostClock,
-    samples: u64,
 }
 
 impl<'p> FileRecorder<'p> {
@@ -28,11 +26,9 @@ impl<'p> FileRecorder<'p> {
         let line = link.state().port.unwrap_or_default();
         let mut recorder = Recorder::new(BufWriter::new(create(path)?), clock.now(), &line).map_err(failed)?;
         if let Some(table) = table {
-            let toml = fs::read(table.path)
-                .map_err(|source| Error::Table { path: table.path.to_owned(), source: source.into() })?;
-            recorder.attach_table(clock.now(), &toml).map_err(failed)?;
+            recorder.attach_table(clock.now(), &table.toml()?).map_err(failed)?;
         }
-        Ok(Self { recorder, path, clock, samples: 0 })
+        Ok(Self { recorder, path, clock })
     }
 
     /// Its file.
@@ -42,20 +38,12 @@ impl<'p> FileRecorder<'p> {
 
     /// Samples so far.
     pub fn samples(&self) -> u64 {
-        self.samples
+        self.recorder.samples()
     }
 
     /// Writes what came, if it is of those that are recorded.
     pub fn take(&mut self, event: &Event) -> Result<(), Error> {
-        let at = event.at;
-        match &event.what {
-            What::Bytes(bytes) => self.written(|recorder, _| recorder.bytes(at, bytes)),
-            What::Message(message) => {
-                self.samples += u64::from(matches!(message, Message::Sample(_)));
-                self.written(|recorder, _| recorder.message(at, message))
-            }
-            _ => Ok(()),
-        }
+        self.written(|recorder, _| recorder.event(event))
     }
 
     /// Writes what was asked of the pressures.
@@ -75,16 +63,13 @@ impl<'p> FileRecorder<'p> {
 
     /// Takes what has come until now.
     pub fn take_rest(&mut self, events: &Subscription) -> Result<(), Error> {
-        while let Some(event) = events.next(Duration::ZERO) {
-            self.take(&event)?;
-        }
-        Ok(())
+        self.written(|recorder, _| recorder.rest(events))
     }
 
     /// Completes the file.
     pub fn finish(self) -> Result<(), Error> {
         let failed = |source| Error::Output { path: self.path.to_owned(), source };
-        self.recorder.finish().and_then(|mut sink| sink.flush()).map_err(failed)
+        self.recorder.finish().map(drop).map_err(failed)
     }
 }
 

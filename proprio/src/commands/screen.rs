@@ -26,16 +26,9 @@ impl Screen {
 
     /// Warns of what has happened on the link, where that deserves it.
     pub fn warn_of(&self, what: &What) {
-        match what {
-            What::Lost(reason) => self.warn(&format_args!("{reason}; waiting for it to come back")),
-            What::Restarted => self.warn(&"the board has restarted"),
-            What::Mismatch(mismatch) => self.warn(mismatch),
-            _ => {}
+        if let Some(warning) = what.warning() {
+            self.bar.suspend(|| super::warn(&warning));
         }
-    }
-
-    fn warn(&self, warning: &impl Display) {
-        self.bar.suspend(|| super::warn(warning));
     }
 
     /// Ends with a line that stays.

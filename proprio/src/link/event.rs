@@ -37,6 +37,20 @@ pub enum What {
     Mismatch(Mismatch),
 }
 
+impl What {
+    /// What a person should be told of it, where it is out of the ordinary.
+    #[must_use]
+    pub fn warning(&self) -> Option<String> {
+        match self {
+            Self::Lost(reason) => Some(format!("{reason}; waiting for it to come back")),
+            Self::Ended(reason) => Some(reason.clone()),
+            Self::Restarted => Some("the board has restarted".to_owned()),
+            Self::Mismatch(mismatch) => Some(mismatch.to_string()),
+            Self::Opened(_) | Self::Bytes(_) | Self::Message(_) | Self::Undecoded(_) => None,
+        }
+    }
+}
+
 /// In what board and host differ.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Mismatch {

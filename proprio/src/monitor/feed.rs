@@ -5,10 +5,10 @@ use serde::Serialize;
 use telemetry::{Actuation, Health, SensorHealth, SensorState};
 
 use super::latency::Percentiles;
-use super::live::Rates;
 use super::recording::Progress;
 use super::row;
 use crate::link::{Drift, LinkState};
+use crate::status::Rates;
 
 /// A message to the page.
 #[derive(Debug, Serialize)]
@@ -109,9 +109,8 @@ pub(super) struct Status {
     pub board: Option<Board>,
     pub health: Option<BoardHealth>,
     pub sensors: Vec<Sensor>,
-    pub samples_hz: f64,
-    pub estimates_hz: f64,
-    pub bytes_per_s: f64,
+    #[serde(flatten)]
+    pub rates: Rates,
     pub frames: u32,
     pub damaged: u32,
     pub lost: u32,
@@ -227,9 +226,7 @@ impl Status {
             board,
             health: None,
             sensors: Vec::new(),
-            samples_hz: rates.samples_hz,
-            estimates_hz: rates.estimates_hz,
-            bytes_per_s: rates.bytes_per_s,
+            rates,
             frames: link.counts.received,
             damaged: link.counts.damaged,
             lost: link.counts.lost,

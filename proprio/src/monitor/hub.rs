@@ -56,12 +56,11 @@ impl<'t> Hub<'t> {
     }
 
     fn take(&mut self, event: &Event) {
-        match &event.what {
-            What::Lost(reason) => self.note(event.at, &format_args!("{reason}; waiting for it to come back")),
-            What::Ended(reason) => self.note(event.at, reason),
-            What::Restarted => self.note(event.at, &"the board has restarted"),
-            // The status has them.
-            What::Mismatch(_) | What::Opened(_) | What::Bytes(_) | What::Message(_) | What::Undecoded(_) => {}
+        // The status has what stays.
+        if !matches!(event.what, What::Mismatch(_))
+            && let Some(warning) = event.what.warning()
+        {
+            self.note(event.at, &warning);
         }
         if let Some(Taken { row, sampled }) = self.live.take(event) {
             self.shared.history().push(&row);
@@ -70,7 +69,7 @@ impl<'t> Hub<'t> {
         }
     }
 
-    fn note(&mut self, at: HostNs, what: &impl std::fmt::Display) {
+    fn note(&mut self, at: HostNs, what: &str) {
         let of_day = at.0 / 1_000_000_000 % 86_400;
         let (hour, minute, second) = (of_day / 3600, of_day / 60 % 60, of_day % 60);
         if self.notes.len() == NOTES {

@@ -9,6 +9,7 @@ use super::feed::BoardTime;
 use super::observer::Observer;
 use super::row::Row;
 use crate::link::{BoardClock, Event, HostNs, What};
+use crate::status::Rates;
 
 /// Time that rates are of, ns.
 const RATES_NS: u64 = 2_000_000_000;
@@ -23,14 +24,6 @@ pub(super) struct Taken {
     pub row: Row,
     /// By the shortest delay of the last samples, and what is known of that delay.
     pub sampled: HostNs,
-}
-
-/// What came a second.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub(super) struct Rates {
-    pub samples_hz: f64,
-    pub estimates_hz: f64,
-    pub bytes_per_s: f64,
 }
 
 /// What came until a time.

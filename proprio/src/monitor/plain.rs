@@ -7,6 +7,7 @@ use telemetry::{Actuation, BEND_SENSORS, Estimate, Message, SensorState};
 
 use super::live::Live;
 use crate::link::{Event, HostNs, LinkState, What};
+use crate::session::SENSOR_NAMES;
 
 /// What the lines are made of.
 pub struct Plain {
@@ -63,7 +64,7 @@ impl Plain {
         {
             let _ = match i.checked_sub(BEND_SENSORS) {
                 Some(imu) => write!(line, "  IMU {} {:?}", imu + 1, sensor.state),
-                None => write!(line, "  bend {}{} {:?}", i / 2 + 1, ['a', 'b'][i % 2], sensor.state),
+                None => write!(line, "  bend {}{} {:?}", i / 2 + 1, SENSOR_NAMES[i % 2], sensor.state),
             };
         }
         line

@@ -10,10 +10,9 @@ use std::thread::JoinHandle;
 use std::time::Duration;
 
 use serde::Serialize;
-use telemetry::Message;
 
 use crate::error::Error;
-use crate::link::{Event, HostClock, HostNs, Link, Subscription, What};
+use crate::link::{HostClock, HostNs, Link, Subscription};
 use crate::recording::Recorder;
 
 /// Longest time from one look at what is asked to the next.
@@ -126,9 +125,10 @@ impl Work {
     fn work(&mut self) -> io::Result<()> {
         loop {
             match self.events.next(LOOK) {
-                Some(event) => self.take(&event)?,
+                Some(event) => self.recorder.event(&event)?,
                 None => self.recorder.flush_if_due(self.clock.now())?,
             }
+            self.shared.samples.store(self.recorder.samples(), Ordering::Relaxed);
             self.shared.dropped.store(self.events.dropped(), Ordering::Relaxed);
             match self.asked.try_recv() {
                 Ok(Mark { at, text }) => {
@@ -136,28 +136,8 @@ impl Work {
                     self.shared.marks.fetch_add(1, Ordering::Relaxed);
                 }
                 Err(TryRecvError::Empty) => {}
-                Err(TryRecvError::Disconnected) => return self.take_the_rest(),
+                Err(TryRecvError::Disconnected) => return self.recorder.rest(&self.events),
             }
-        }
-    }
-
-    /// What has come until now.
-    fn take_the_rest(&mut self) -> io::Result<()> {
-        while let Some(event) = self.events.next(Duration::ZERO) {
-            self.take(&event)?;
-        }
-        Ok(())
-    }
-
-    fn take(&mut self, Event { at, what }: &Event) -> io::Result<()> {
-        match what {
-            What::Bytes(bytes) => self.recorder.bytes(*at, bytes),
-            What::Message(message) => {
-                let is_sample = matches!(message, Message::Sample(_));
-                self.shared.samples.fetch_add(u64::from(is_sample), Ordering::Relaxed);
-                self.recorder.message(*at, message)
-            }
-            _ => Ok(()),
         }
     }
 }

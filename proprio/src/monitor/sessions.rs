@@ -60,10 +60,11 @@ impl Sessions {
 
     /// The table's file as it stands.
     pub fn table_toml(&self) -> Result<Option<Vec<u8>>, Error> {
-        let read = |(path, _): &(PathBuf, ArmFile)| {
-            fs::read(path).map_err(|source| Error::Table { path: path.clone(), source: source.into() })
-        };
-        self.table.as_ref().map(read).transpose()
+        self.table().map(|table| table.toml()).transpose()
+    }
+
+    fn table(&self) -> Option<NamedTable<'_>> {
+        self.table.as_ref().map(|(path, file)| NamedTable { file: file.clone(), path })
     }
 
     /// The files of the folder, by name.
@@ -99,8 +100,8 @@ impl Sessions {
 
     /// Replays a session, and gives its rows from one time to another, as many of them as a page holds.
     pub fn rows(&self, path: &Path, from_s: f64, to_s: f64) -> Result<Vec<u8>, Error> {
-        let Some((table_path, file)) = &self.table else { return Ok(Vec::new()) };
-        let table = NamedTable { file: file.clone(), path: table_path };
+        let Some(table) = self.table() else { return Ok(Vec::new()) };
+        let file = &table.file;
         let segments = file.segments.len();
         let mut reader = SessionReader::open(path, &table.needs()?)?;
         let baked = table.bake::<Q>(reader.rate_hz(file.rate_hz))?;

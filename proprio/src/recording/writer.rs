@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::io::{self, Write};
+use std::time::Duration;
 
 use mcap::records::{MessageHeader, Metadata};
 use mcap::write::NoSeek;
@@ -11,7 +12,7 @@ use telemetry::{Estimate, Hello, Message, SCHEMA, Sample, SetPressures};
 
 use super::schema::{self, Schema};
 use super::{DIAGNOSTICS, JOINT_STATES, MARKS, RAW, SAMPLES, SET_POINTS, SHAPE, TRUTH, messages};
-use crate::link::{BoardClock, HostNs};
+use crate::link::{BoardClock, Event, HostNs, Subscription, What};
 use crate::session::Truth;
 
 /// How long anything may wait to be written, ns. A file that is cut loses no more than that.
@@ -27,6 +28,7 @@ pub struct Recorder<W: Write> {
     sample: Option<(u32, HostNs)>,
     flushed: HostNs,
     raw_messages: u32,
+    samples: u64,
     /// Times that the host has asked for pressures.
     asked: u32,
     marks: u32,
@@ -79,7 +81,18 @@ impl<W: Write> Recorder<W> {
             marks: None,
         };
         let clock = BoardClock::default();
-        Ok(Self { mcap, channels, clock, hello: None, sample: None, flushed: at, raw_messages: 0, asked: 0, marks: 0 })
+        Ok(Self {
+            mcap,
+            channels,
+            clock,
+            hello: None,
+            sample: None,
+            flushed: at,
+            raw_messages: 0,
+            samples: 0,
+            asked: 0,
+            marks: 0,
+        })
     }
 
     /// Attaches the table that the board has, as its file stands.
@@ -94,6 +107,35 @@ impl<W: Write> Recorder<W> {
         let (name, media_type) = (name.to_owned(), media_type.to_owned());
         let attachment = Attachment { log_time: at.0, create_time: at.0, name, media_type, data: Cow::Borrowed(data) };
         self.mcap.attach(&attachment).map_err(io_error)
+    }
+
+    /// Writes what came over a link, if it is of what is recorded.
+    ///
+    /// # Errors
+    /// Those of the sink.
+    pub fn event(&mut self, event: &Event) -> io::Result<()> {
+        match &event.what {
+            What::Bytes(bytes) => self.bytes(event.at, bytes),
+            What::Message(message) => self.message(event.at, message),
+            _ => Ok(()),
+        }
+    }
+
+    /// Writes what has come until now.
+    ///
+    /// # Errors
+    /// Those of the sink.
+    pub fn rest(&mut self, events: &Subscription) -> io::Result<()> {
+        while let Some(event) = events.next(Duration::ZERO) {
+            self.event(&event)?;
+        }
+        Ok(())
+    }
+
+    /// Samples so far.
+    #[must_use]
+    pub fn samples(&self) -> u64 {
+        self.samples
     }
 
     /// Writes bytes as they came.
@@ -190,6 +232,7 @@ impl<W: Write> Recorder<W> {
     fn sample(&mut self, at: HostNs, sample: &Sample) -> io::Result<()> {
         let stamp = self.clock.host_ns(at, sample.time_us);
         self.sample = Some((sample.tick, stamp));
+        self.samples += 1;
         self.write(self.channels.samples, sample.tick, at, stamp, &messages::sample(stamp, sample))
     }
 
