@@ -144,6 +144,13 @@ impl<const W: usize> Anchor<W> {
         }
     }
 
+    /// What to subtract from the untared θ_imu,i for θ_c,i: the tare's zero, or, where offset_i is over the threshold, the
+    /// offset, in whose values the tare is still.
+    #[inline]
+    pub(crate) fn zero(&self, rule: &AnchorRule, zero: Turns) -> Turns {
+        self.offset.filter(|offset| (*offset - zero).exceeds(rule.threshold)).unwrap_or(zero)
+    }
+
     /// The newest offset; `None` before the first.
     #[inline]
     #[must_use]

@@ -230,11 +230,10 @@ impl<'t, S: Scalar, const N: usize, const W: usize> Estimator<'t, S, N, W> {
                 theta_c.filter(|_| has_bend_sensors).map(Angle::<S>::from)
             } else {
                 state.anchor.push(slot, difference.zip(bend).map(|(imu, bend)| imu - bend.to_turns()));
-                // θ_imu,i = difference − zero, and offset_i = `offset` − zero: the tare is still in the anchor's values.
-                difference.zip(zero).filter(|_| has_bend_sensors).map(|(imu, zero)| {
-                    let exceeds = |offset: &Turns| (*offset - zero).exceeds(rule.threshold);
-                    Angle::<S>::from(imu - state.anchor.offset().filter(exceeds).unwrap_or(zero))
-                })
+                difference
+                    .zip(zero)
+                    .filter(|_| has_bend_sensors)
+                    .map(|(imu, zero)| Angle::<S>::from(imu - state.anchor.zero(rule, zero)))
             };
             state.fuse(imu_c.map(|theta| theta.rest), bend);
             if BEYOND {
@@ -376,8 +375,7 @@ impl<S: Scalar, const W: usize> State<S, W> {
             beyond.observer.bias()
         } else {
             anchor.push(slot, difference.zip(bend).map(|(imu, bend)| imu - bend));
-            let offset = anchor.offset().zip(zero).map(|(offset, zero)| offset - zero);
-            offset.filter(|offset| offset.exceeds(table.anchor.threshold)).unwrap_or_default()
+            zero.map(|zero| anchor.zero(&table.anchor, zero) - zero).unwrap_or_default()
         };
         if slot.is_complete()
             && let Some(rule) = &table.contact

@@ -1,6 +1,8 @@
 //! The estimator's step between two calls that a debugger can stop at, `step_begins` and `step_ends`.
 
 use crate::random::Random;
+use atsam3x8e_hal::pac::Peripherals;
+use atsam3x8e_hal::watchdog;
 use estimator_core::{
     Alike, AnchorRule, Angle, Arc, BendMap, ContactRule, Estimator, ImuReading, Noise, ObserverRule, OffsetAt, Phase,
     Play, Q, SENSORS_PER_SEGMENT, Sample, Scalar, Segment, Table, Turns, UncertaintyRule,
@@ -101,24 +103,38 @@ pub static TABLES: [Table<'static, Q>; 5] = [table(1), table(2), table(6), table
 /// All steps of one arm.
 #[inline(never)]
 pub fn steps<const N: usize>(table: &'static Table<'static, Q>) {
-    // Made where it stays: the stack has no room for a copy.
-    let mut estimator = Estimator::<Q, N, WINDOW>::unstarted(table);
-    if estimator.start().is_err() {
-        return;
-    }
-    let mut arm = Arm::<N>::new();
-    for _ in 0..STEPS {
-        let sample = arm.sample();
-        step_begins((&raw const sample).cast());
-        let shape = estimator.fuse(&sample);
-        step_ends((&raw const shape).cast());
-    }
+    run::<N>(table, |estimator, sample| {
+        core::hint::black_box(estimator.fuse(sample));
+    });
 }
 
 /// All steps of one arm, each with the covariances of its shape.
 #[inline(never)]
 pub fn steps_with_uncertainty<const N: usize>(table: &'static Table<'static, Q>) {
-    let mut estimator = Estimator::<Q, N, WINDOW>::unstarted(table);
+    run::<N>(table, |estimator, sample| {
+        estimator.fuse(sample);
+        core::hint::black_box(estimator.uncertainties());
+    });
+}
+
+/// Runs this and nothing else, without a watchdog.
+pub fn alone(run: impl FnOnce()) -> ! {
+    if let Some(device) = Peripherals::take() {
+        watchdog::disable(device.WDT);
+    }
+    run();
+    loop {
+        cortex_m::asm::wfi();
+    }
+}
+
+#[inline]
+fn run<const N: usize>(
+    table: &'static Table<'static, Q>,
+    step: impl Fn(&mut Estimator<'static, Q, N, WINDOW>, &Sample<N>),
+) {
+    // Made where it stays: the stack has no room for a copy.
+    let mut estimator = Estimator::unstarted(table);
     if estimator.start().is_err() {
         return;
     }
@@ -126,9 +142,8 @@ pub fn steps_with_uncertainty<const N: usize>(table: &'static Table<'static, Q>)
     for _ in 0..STEPS {
         let sample = arm.sample();
         step_begins((&raw const sample).cast());
-        estimator.fuse(&sample);
-        let uncertainties = estimator.uncertainties();
-        step_ends((&raw const uncertainties).cast());
+        step(&mut estimator, &sample);
+        step_ends();
     }
 }
 
@@ -142,8 +157,8 @@ extern "C" fn step_begins(sample: *const u8) {
 /// The instruction before its call was the step's last.
 #[inline(never)]
 #[unsafe(no_mangle)]
-extern "C" fn step_ends(shape: *const u8) {
-    core::hint::black_box(shape);
+extern "C" fn step_ends() {
+    core::hint::black_box(());
 }
 
 /// An arm whose segments each bend at random, slowly enough for its headings to be followed.

@@ -4,21 +4,16 @@
 #![no_std]
 #![no_main]
 
-use atsam3x8e_hal::pac::Peripherals;
-use board_probe::step::{TABLES, steps};
+use board_probe::step::{TABLES, alone, steps};
 
 #[cortex_m_rt::entry]
 fn main() -> ! {
-    if let Some(device) = Peripherals::take() {
-        atsam3x8e_hal::watchdog::disable(device.WDT);
-    }
     let [one, two, six, twelve, sixteen] = &TABLES;
-    steps::<1>(one);
-    steps::<2>(two);
-    steps::<6>(six);
-    steps::<12>(twelve);
-    steps::<16>(sixteen);
-    loop {
-        cortex_m::asm::wfi();
-    }
+    alone(|| {
+        steps::<1>(one);
+        steps::<2>(two);
+        steps::<6>(six);
+        steps::<12>(twelve);
+        steps::<16>(sixteen);
+    })
 }

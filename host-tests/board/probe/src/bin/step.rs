@@ -4,17 +4,10 @@
 #![no_std]
 #![no_main]
 
-use atsam3x8e_hal::pac::Peripherals;
-use board_probe::step::{TABLES, steps};
+use board_probe::step::{TABLES, alone, steps};
 
 #[cortex_m_rt::entry]
 fn main() -> ! {
-    if let Some(device) = Peripherals::take() {
-        atsam3x8e_hal::watchdog::disable(device.WDT);
-    }
     let [_, _, six, _, _] = &TABLES;
-    steps::<6>(six);
-    loop {
-        cortex_m::asm::wfi();
-    }
+    alone(|| steps::<6>(six))
 }
