@@ -1,5 +1,7 @@
 //! Drift anchor: the moving average of what the IMUs say beyond the bend sensors (paper, eq. 2 and 3).
 
+use core::ops::Range;
+
 use crate::angle::Turns;
 
 /// When the anchor averages and when it corrects; the same for all segments.
@@ -86,6 +88,13 @@ impl Pace {
             self.oldest = if self.oldest + 1 < rule.window { self.oldest + 1 } else { 0 };
         }
         slot
+    }
+
+    /// The phases that belong to the newest sample: those of all samples from one complete value to the next are those
+    /// from 0 to the sample rate, each once.
+    pub(crate) fn phases(&self, rule: &AnchorRule, slot: Slot) -> Range<u32> {
+        let first = if slot.is_complete() { 0 } else { self.phase };
+        first..self.phase.saturating_add(rule.rate_millihertz)
     }
 }
 
