@@ -100,21 +100,16 @@ impl Pace {
 
 /// A mean of up to 65 535 values.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Mean {
+struct Mean {
     sum: Turns,
     count: i32,
 }
 
 impl Mean {
-    pub(crate) const EMPTY: Self = Self { sum: Turns::ZERO, count: 0 };
+    const EMPTY: Self = Self { sum: Turns::ZERO, count: 0 };
 
     #[inline]
-    pub(crate) fn add(&mut self, value: Turns) {
-        *self = Self { sum: self.sum + value, count: self.count + 1 };
-    }
-
-    #[inline]
-    pub(crate) fn value(self) -> Option<Turns> {
+    fn value(self) -> Option<Turns> {
         (self.count != 0).then(|| self.sum.mean_of(self.count as u16))
     }
 }

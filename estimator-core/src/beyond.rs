@@ -5,7 +5,7 @@
 
 use core::ops::Range;
 
-use crate::anchor::{Mean, Slot};
+use crate::anchor::Slot;
 use crate::angle::Turns;
 use crate::contact::Touch;
 use crate::hysteresis::Memory;
@@ -19,10 +19,10 @@ use crate::uncertainty::lever;
 pub(crate) struct Beyond<S> {
     pub memory: Memory<S>,
     pub observer: Observer,
-    /// θ_imu and θ_bend since the newest value, over the samples that have both,
-    growing: [Mean; 2],
-    /// and those of that value.
-    complete: [Mean; 2],
+    /// Since the newest value,
+    growing: Sums,
+    /// and of that value.
+    complete: Sums,
     /// When it is worked on, as a phase of the [`Pace`](crate::Pace).
     turn: u32,
     pub touch: Touch,
@@ -30,6 +30,14 @@ pub(crate) struct Beyond<S> {
     pub seen: Seen,
     /// As [`Spread::step`](crate::Spread::step) takes it.
     pub lever: S,
+}
+
+/// θ_imu and θ_bend over the samples of a value that have both.
+#[derive(Debug, Clone, Copy, Default)]
+struct Sums {
+    imu: Turns,
+    bend: Turns,
+    count: i32,
 }
 
 /// Which of a segment's two angles a sample has.
@@ -46,8 +54,8 @@ impl<S: Scalar> Beyond<S> {
         Self {
             memory: Memory::new(segment.hysteresis),
             observer: table.observer.as_ref().map_or_else(Observer::idle, Observer::new),
-            growing: [Mean::EMPTY; 2],
-            complete: [Mean::EMPTY; 2],
+            growing: Sums::default(),
+            complete: Sums::default(),
             turn: share * place as u32,
             touch: Touch::new(),
             seen: Seen { imu: false, bend: false },
@@ -58,13 +66,12 @@ impl<S: Scalar> Beyond<S> {
     /// Takes one sample's θ_imu and θ_bend, where both are known.
     #[inline]
     pub fn add(&mut self, slot: Slot, both: Option<(Turns, Turns)>) {
-        if let Some((of_imu, of_bend)) = both {
-            let [imu, bend] = &mut self.growing;
-            imu.add(of_imu);
-            bend.add(of_bend);
+        if let Some((imu, bend)) = both {
+            let Sums { imu: of_imu, bend: of_bend, count } = self.growing;
+            self.growing = Sums { imu: of_imu + imu, bend: of_bend + bend, count: count + 1 };
         }
         if slot.is_complete() {
-            self.complete = core::mem::replace(&mut self.growing, [Mean::EMPTY; 2]);
+            self.complete = core::mem::take(&mut self.growing);
         }
     }
 
@@ -75,7 +82,8 @@ impl<S: Scalar> Beyond<S> {
 
     /// The newest value, where there is one.
     pub fn value(&self) -> Option<Disagreement> {
-        let [Some(imu), Some(bend)] = self.complete.map(Mean::value) else { return None };
-        Some(Disagreement { imu, bend })
+        let Sums { imu, bend, count } = self.complete;
+        let mean = |sum: Turns| sum.mean_of(count as u16);
+        (count != 0).then(|| Disagreement { imu: mean(imu), bend: mean(bend) })
     }
 }

@@ -56,14 +56,6 @@ pub struct Contact {
 /// What touches the segments, from the base to the tip.
 pub type Contacts<const N: usize> = heapless::Vec<Contact, N>;
 
-impl Contact {
-    /// The same segment's, seen another way.
-    pub(crate) fn join(&mut self, other: Self) {
-        self.score_percent = self.score_percent.max(other.score_percent);
-        self.is_touched |= other.is_touched;
-    }
-}
-
 /// What is watched of one segment.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Touch {
@@ -95,12 +87,12 @@ impl Touch {
     }
 
     /// What the segment's own sensors tell.
-    pub fn of_bend(&self) -> Contact {
+    pub const fn bend(&self) -> Contact {
         self.bend.contact
     }
 
-    /// What tells of the segment or of its like.
-    pub fn of_either(&self) -> Contact {
+    /// What the segment and its like tell, of either.
+    pub const fn alike(&self) -> Contact {
         self.alike.contact
     }
 }

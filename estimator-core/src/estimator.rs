@@ -9,7 +9,7 @@ use crate::anchor::{Anchor, Pace, Slot};
 use crate::angle::{Angle, Turns};
 use crate::bend::BendMap;
 use crate::beyond::{Beyond, Seen};
-use crate::contact::{ContactRule, Contacts};
+use crate::contact::{Contact, ContactRule, Contacts};
 use crate::filter::{Block, Gains};
 use crate::imu::{Heading, Tangent};
 use crate::pcc::{Link, Pcc, SegmentShape, chain};
@@ -261,22 +261,32 @@ impl<'t, S: Scalar, const N: usize, const W: usize> Estimator<'t, S, N, W> {
     #[must_use]
     pub fn contacts(&self) -> Contacts<N> {
         let Self { table, states, .. } = self;
-        let mut contacts = Contacts::new();
-        // None is there before the first sample.
-        let _ = contacts.resize_default(if table.contact.is_some() { states.len() } else { 0 });
+        let touched = self.touched();
+        let count = if table.contact.is_some() { states.len() } else { 0 };
+        all((0..count).map(|i| {
+            let watches = states.iter().zip(table.segments).enumerate();
+            let scores = watches.flat_map(|(k, (State { beyond: Beyond { touch, .. }, .. }, segment))| {
+                let is_like = k == i || segment.alike.is_some_and(|alike| usize::from(alike.segment) == i);
+                [(k == i).then_some(touch.bend()), is_like.then_some(touch.alike())]
+            });
+            let score_percent = scores.flatten().map(|contact| contact.score_percent).max().unwrap_or_default();
+            Contact { score_percent, is_touched: touched >> i & 1 != 0 }
+        }))
+    }
+
+    /// A bit for each segment that something touches, the first in the lowest place.
+    fn touched(&self) -> u32 {
+        let Self { table, states, .. } = self;
+        let mut touched = 0;
         for (i, (state, segment)) in states.iter().zip(table.segments).enumerate() {
-            let touch = &state.beyond.touch;
-            let of_either = [Some(i), segment.alike.map(|alike| usize::from(alike.segment))];
-            for place in of_either.into_iter().flatten() {
-                if let Some(contact) = contacts.get_mut(place) {
-                    contact.join(touch.of_either());
-                }
-            }
-            if let Some(contact) = contacts.get_mut(i) {
-                contact.join(touch.of_bend());
+            let Beyond { touch, .. } = &state.beyond;
+            touched |= u32::from(touch.bend().is_touched) << i;
+            if touch.alike().is_touched {
+                let other = segment.alike.map_or(0, |alike| 1_u32.wrapping_shl(alike.segment.into()));
+                touched |= 1 << i | other;
             }
         }
-        contacts
+        touched
     }
 
     /// How far the fused shape of the newest sample may be off; empty where the table does not say what errors come from.
@@ -284,19 +294,22 @@ impl<'t, S: Scalar, const N: usize, const W: usize> Estimator<'t, S, N, W> {
     pub fn uncertainties(&self) -> Uncertainties<S, N> {
         let Self { table, states, fused, .. } = self;
         let Some(rule) = &table.uncertainty else { return Vec::new() };
-        let contacts = self.contacts();
-        let mut spread = Some((Spread::base(), Vector2::zeros()));
-        all(states.iter().zip(fused).enumerate().map(|(i, (state, shape))| {
+        let touched = self.touched();
+        let (mut spread, mut before, mut is_known) = (Spread::base(), Vector2::zeros(), true);
+        let mut uncertainties = Vec::new();
+        for (i, (state, shape)) in states.iter().zip(fused).enumerate() {
             let Beyond { observer, seen, lever, .. } = &state.beyond;
-            let is_touched = contacts.get(i).is_some_and(|contact| contact.is_touched);
-            let sources = Sources { seen: *seen, drift: observer.variance(), is_touched };
-            let theta = rule.theta(&sources).filter(|_| shape.end.is_some());
-            spread = spread.zip(theta.zip(shape.end)).map(|((mut spread, before), (theta, end))| {
+            let sources = Sources { seen: *seen, drift: observer.variance(), is_touched: touched >> i & 1 != 0 };
+            let theta = rule.theta(&sources);
+            let end = theta.zip(shape.end).filter(|_| is_known).map(|(theta, end)| {
                 spread.step(end - before, *lever, theta, rule.end);
-                (spread, end)
+                before = end;
+                spread.end()
             });
-            Uncertainty { theta, end: spread.map(|(spread, _)| spread.end()) }
-        }))
+            is_known = end.is_some();
+            let _ = uncertainties.push(Uncertainty { theta, end });
+        }
+        uncertainties
     }
 
     /// The arm's shape by `method` at one of this estimator's estimates: bend angles, and the chain of the segments.
@@ -333,7 +346,9 @@ fn compare<S: Scalar, const W: usize>(
     for (i, segment) in segments.iter().enumerate() {
         let Some(alike) = segment.alike else { continue };
         let there = states.get(usize::from(alike.segment)).and_then(|state| state.beyond.touch.theta);
-        let Some(State { beyond, .. }) = states.get_mut(i).filter(|state| state.beyond.is_due(phases)) else { continue };
+        let Some(State { beyond, .. }) = states.get_mut(i).filter(|state| state.beyond.is_due(phases)) else {
+            continue;
+        };
         let difference = beyond.touch.theta.zip(there).map(|(here, there)| alike.difference(here, there));
         beyond.touch.compare(rule, difference);
     }

@@ -12,9 +12,9 @@ const OBSERVED_DEG: f64 = 0.1;
 /// which is this share of it.
 const ANCHORED_SHARE: f64 = 0.4;
 /// Share of the observer's variance that its bias is off by: it counts as noise what hysteresis takes back.
-const DRIFT_SHARE: f64 = 0.15;
+const DRIFT_SHARE: f64 = 0.12;
 /// Deviation of θ that a touch adds.
-const CONTACT_DEG: f64 = 1.0;
+const CONTACT_DEG: f64 = 0.5;
 
 /// Sets what the arm description leaves open. `misfit_m` is the distance of the true tip from constant curvature.
 pub(super) fn set(sweep: &Sweep, misfit_m: f64, table: &mut ArmFile) {
