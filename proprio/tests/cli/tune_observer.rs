@@ -6,7 +6,7 @@ use super::common::{Csv, Folder, figure, json, simulate, table};
 use super::tune::{TUNE, load, training};
 
 /// The reference table with an observer, and with what errors come from.
-fn observing(drift: DriftKeys, uncertainty: Option<UncertaintyKeys>) -> String {
+pub fn observing(drift: DriftKeys, uncertainty: Option<UncertaintyKeys>) -> String {
     let mut file = load(table());
     (file.drift, file.uncertainty) = (Some(drift), uncertainty);
     file.to_toml()
