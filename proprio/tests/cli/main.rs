@@ -33,4 +33,5 @@ mod simulate;
 mod streams;
 mod tune;
 mod tune_interrupted;
+mod tune_observer;
 mod tune_refused;

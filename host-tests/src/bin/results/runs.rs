@@ -48,7 +48,7 @@ pub fn calibrated(
 /// A table whose filters were tuned on a session.
 pub fn tuned(table: &Path, training: PathBuf, to: &Path) -> Result<TuningKeys, Box<dyn Error>> {
     let table = NamedTable::load(table)?;
-    let Tuning { table, record } = Tuner::new(&[training], &table)?.tune(|| false)?;
+    let Tuning { table, record, .. } = Tuner::new(&[training], &table)?.tune(|| false)?;
     fs::write(to, table.to_toml())?;
     Ok(record)
 }
