@@ -98,6 +98,7 @@ pub struct Estimator<'t, S, const N: usize, const W: usize> {
     has_bend_sensors: bool,
     is_beyond_the_paper: bool,
     pace: Pace,
+    has_value: bool,
     states: Vec<State<S, W>, N>,
     fused: Shape<S, N>,
 }
@@ -146,6 +147,7 @@ impl<'t, S: Scalar, const N: usize, const W: usize> Estimator<'t, S, N, W> {
             has_bend_sensors: false,
             is_beyond_the_paper: false,
             pace: Pace::new(),
+            has_value: false,
             states: Vec::new(),
             fused: Vec::new(),
         }
@@ -160,6 +162,7 @@ impl<'t, S: Scalar, const N: usize, const W: usize> Estimator<'t, S, N, W> {
         self.states.clear();
         self.fused.clear();
         self.pace = Pace::new();
+        self.has_value = false;
         let window = table.anchor.window;
         if window == 0 || usize::from(window) > W {
             return Err(TableError::Window { found: window, room: W });
@@ -221,11 +224,12 @@ impl<'t, S: Scalar, const N: usize, const W: usize> Estimator<'t, S, N, W> {
     /// Takes one sample, segment by segment from the base to the tip, and tells `then` of each.
     #[inline]
     fn take_by<const BEYOND: bool>(&mut self, sample: &Sample<N>, mut then: impl FnMut(&State<S, W>, Thetas<S>)) {
-        let Self { table, has_bend_sensors, pace, states, .. } = self;
+        let Self { table, has_bend_sensors, pace, has_value, states, .. } = self;
         let Table { anchor: rule, .. } = table;
         let has_bend_sensors = *has_bend_sensors;
         let slot = pace.tick(rule);
-        let phases = if BEYOND { pace.phases(rule, slot) } else { 0..0 };
+        *has_value |= BEYOND && slot.is_complete();
+        let phases = if BEYOND && *has_value { pace.phases(rule, slot) } else { 0..0 };
         let mut before = &Tangent::BASE;
         let readings = sample.bend.iter().zip(&sample.imu);
         for (state, (counts, imu)) in states.iter_mut().zip(readings) {
