@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 
 use calibration_tables::MAX_SEGMENTS;
-use telemetry::{Decoder, Event, Hello, Message, SCHEMA, Sample};
+use telemetry::{DecodeError, Decoder, Event, Hello, Message, SCHEMA, Sample};
 
 use super::{Item, ReadError};
 use crate::link::{HostNs, Place, Runs};
@@ -74,8 +74,11 @@ impl<I: Iterator<Item = Result<Item, ReadError>>> RecordedRows<I> {
             match self.items.next().transpose()? {
                 Some(Item::Bytes(at, bytes)) => {
                     for byte in bytes {
-                        if let Some(Ok(message)) = self.decoder.push(byte) {
-                            self.take(at, message)?;
+                        match self.decoder.push(byte) {
+                            Some(Ok(message)) => self.take(at, message)?,
+                            Some(Err(DecodeError::Version(version))) => return Err(ReadError::OtherProtocol(version)),
+                            // What was damaged on the line is lost.
+                            Some(Err(_)) | None => {}
                         }
                     }
                 }

@@ -290,6 +290,15 @@ fn a_flipped_bit_costs_what_follows_and_is_never_read() {
 }
 
 #[test]
+fn a_recording_of_a_board_of_another_protocol_is_refused_and_says_so() {
+    // COBS( 1 | CRC-32 ): a frame of version 1 without anything in it.
+    let frame = [[6, 1].as_slice(), &0xa505_df1b_u32.to_le_bytes(), &[0]].concat();
+    let folder = Folder::with("old.mcap", record([frame]));
+    let error = folder.refused(&["replay", "old.mcap", "--table", table()]);
+    assert!(error.contains("its board spoke protocol version 1, and this proprio reads version 2"), "{error}");
+}
+
+#[test]
 fn what_is_no_recording_is_not_recovered() {
     let folder = Folder::with("session.csv", "time_s\n0\n");
     let error = folder.refused(&["recover", "session.csv", "-o", "whole.mcap"]);
