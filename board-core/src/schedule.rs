@@ -2,8 +2,9 @@
 
 use telemetry::Rates;
 
-/// What is sent until the host asks for something else: samples and estimates every tick, health at 5 Hz.
-pub const DEFAULT_RATES: Rates = Rates { sample: 1, estimate: 1, health: 20 };
+/// What is sent until the host asks for something else: samples and estimates every tick, health at 5 Hz, uncertainty at 4 Hz,
+/// which the line has just room for.
+pub const DEFAULT_RATES: Rates = Rates { sample: 1, estimate: 1, health: 20, uncertainty: 25 };
 
 /// Ticks of 10 ms from one hello to the next: it comes once a second whatever the rates are.
 pub const HELLO_TICKS: u16 = 100;
@@ -14,11 +15,12 @@ pub const HELLO_TICKS: u16 = 100;
 /// rate belong to the same ticks, and the same rates give the same stream.
 ///
 /// ```
-/// use board_core::{Due, Schedule};
+/// use board_core::Schedule;
 /// use telemetry::Rates;
 ///
-/// let schedule = Schedule::new(Rates { sample: 2, estimate: 1, health: 0 });
-/// assert_eq!(schedule.due(3), Due { sample: false, estimate: true, health: false, hello: false });
+/// let schedule = Schedule::new(Rates { sample: 2, estimate: 1, health: 0, uncertainty: 0 });
+/// let due = schedule.due(3);
+/// assert!(!due.sample && due.estimate && !due.health && !due.uncertainty && !due.hello);
 /// ```
 #[derive(Debug, Clone, Copy)]
 pub struct Schedule {
@@ -35,6 +37,8 @@ pub struct Due {
     pub estimate: bool,
     /// A health message.
     pub health: bool,
+    /// An uncertainty.
+    pub uncertainty: bool,
     /// A hello.
     pub hello: bool,
 }
@@ -52,6 +56,7 @@ impl Schedule {
             sample: every(self.rates.sample),
             estimate: every(self.rates.estimate),
             health: every(self.rates.health),
+            uncertainty: every(self.rates.uncertainty),
             hello: every(HELLO_TICKS),
         }
     }

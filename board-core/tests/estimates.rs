@@ -1,8 +1,8 @@
-//! When the estimator starts, and that it starts anew.
+//! When the estimator starts, that it starts anew, and what is told beside the estimates.
 
 use board_core::{Arm, TARE_TICKS};
-use estimator_core::{Q, Segment, Table};
-use telemetry::{BEND_SENSORS, SEGMENTS, Sample};
+use estimator_core::{BendMap, ContactRule, Q, SCALE, Segment, Table, Turns, UncertaintyRule};
+use telemetry::{BEND_SENSORS, Event, SEGMENTS, Sample};
 
 /// Six segments without bend sensors, whose headings are absolute.
 fn table() -> &'static Table<'static, Q> {
@@ -56,4 +56,56 @@ fn an_estimate_carries_the_tick_of_its_sample() {
     let mut arm = Arm::new(table());
     arm.start();
     assert_eq!(arm.step(&sample(77)).tick, 77);
+}
+
+/// Six segments with bend sensors, straight at 1.5 V, and a table that tells of contact and of errors.
+fn feeling_table() -> &'static Table<'static, Q> {
+    let map = Some(BendMap::from_volts(0.0, 1.0, -1.5, [0.5, 2.5]));
+    let segment = Segment { bend: [map; 2], ..Segment::bare(0.08, 0.017) };
+    let segments: &'static [Segment<Q>] = Box::leak(Box::new([segment; SEGMENTS]));
+    let turns = |degrees: f64| Turns::from_rad(degrees.to_radians());
+    let of = |value: f64| Q::from_f64(value * SCALE);
+    let errors = UncertaintyRule { theta: of(1e-4), drift: of(0.0), bend: of(1e-3), contact: of(1e-3), end: of(1e-6) };
+    let contact = Some(ContactRule { bend: turns(5.0), alike: turns(4.0) });
+    Box::leak(Box::new(Table { contact, uncertainty: Some(errors), ..Table::bare(segments) }))
+}
+
+/// All bend sensors straight, and all IMUs turned by this.
+fn turned(tick: u32, degrees: f64) -> Sample {
+    let half = degrees.to_radians() / 2.0;
+    let imu = [half.cos(), 0.0, 0.0, half.sin()].map(|component| (component * 16384.0).round() as i16);
+    Sample { bend: [Some(1861); BEND_SENSORS], imu: [Some(imu); SEGMENTS], ..sample(tick) }
+}
+
+#[test]
+fn contact_is_told_once_when_it_begins_and_once_when_a_tare_ends_it() {
+    let mut arm = Arm::new(feeling_table());
+    arm.start();
+    let tell = |arm: &mut Arm, tick, degrees| {
+        arm.step(&turned(tick, degrees));
+        arm.contact(tick)
+    };
+    assert!((0..20).all(|tick| tell(&mut arm, tick, 0.0).is_none()));
+    // The IMUs turn and the bend sensors do not: the first segment is bent where they do not feel it.
+    let first_alone = [true, false, false, false, false, false];
+    assert_eq!(tell(&mut arm, 20, 20.0), Some(Event::Contact(20, first_alone)));
+    assert!((21..30).all(|tick| tell(&mut arm, tick, 20.0).is_none()));
+    arm.tare();
+    assert_eq!(tell(&mut arm, 30, 20.0), Some(Event::Contact(30, [false; SEGMENTS])));
+}
+
+#[test]
+fn an_uncertainty_is_of_the_newest_estimate() {
+    let mut arm = Arm::new(feeling_table());
+    arm.start();
+    for tick in 0..20 {
+        arm.step(&turned(tick, 0.0));
+    }
+    let free = arm.uncertainty(19);
+    arm.step(&turned(20, 20.0));
+    let touched = arm.uncertainty(20);
+    assert_eq!((free.tick, touched.tick), (19, 20));
+    assert!(!free.segments[0].is_touched && touched.segments[0].is_touched);
+    assert!(touched.segments[0].theta > free.segments[0].theta && free.segments[0].theta.is_some());
+    assert!(touched.segments[5].end.is_some());
 }

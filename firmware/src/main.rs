@@ -5,11 +5,11 @@
 //!
 //! | task | priority | period | bound, µs | longest measured, µs | what |
 //! |---|---|---|---|---|---|
-//! | `twi1` | 4 | a byte on the I²C bus | 5 | 1.4 | wakes the bus |
-//! | `time` | 4 | a timer's alarm | 5 | 2.3 | wakes who waited |
-//! | `tick` | 3 | 10 ms | 100 | 44 | scan, pressures, watchdog |
-//! | `requests` | 2 | 10 ms | 1000 | 332 | what the host asks |
-//! | `shape` | 1 | 10 ms | 6000 | 4215 | IMUs (4 ms at most), estimator, messages |
+//! | `twi1` | 4 | a byte on the I²C bus | 5 | 1.5 | wakes the bus |
+//! | `time` | 4 | a timer's alarm | 5 | 2.4 | wakes who waited |
+//! | `tick` | 3 | 10 ms | 100 | 53 | scan, pressures, watchdog |
+//! | `requests` | 2 | 10 ms | 1000 | 385 | what the host asks |
+//! | `shape` | 1 | 10 ms | 6000 | 4471 | IMUs (4 ms at most), estimator, messages |
 //! | `idle` | 0 | | | | sleeps |
 //!
 //! From a task's interrupt to its end, with what preempts it, and for `shape` from the tick. `cargo xtask bench` measures it

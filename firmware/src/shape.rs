@@ -98,8 +98,12 @@ impl Shape {
         });
         due.hello |= self.last_tick.is_none();
         self.last_tick = Some(tick.number);
+        let uncertainty = due.uncertainty.then(|| self.arm.uncertainty(tick.number));
         voice.lock(|voice| {
             self.say(voice, &round, due);
+            if let Some(uncertainty) = uncertainty {
+                voice.say(&Message::Uncertainty(uncertainty));
+            }
             if due.health {
                 let health = self.health(tick.number, voice.dropped(), damaged_frames, actuation, pressures_pa);
                 voice.say(&Message::Health(health));
@@ -132,6 +136,9 @@ impl Shape {
         }
         let sample = Sample { tick: tick.number, time_us: tick.time_us, tare: self.arm.tares(), bend, imu: judged.imu };
         let estimate = self.arm.step(&sample);
+        if let Some(event) = self.arm.contact(tick.number) {
+            let _ = events.push(event);
+        }
         Round { sample, estimate, events }
     }
 

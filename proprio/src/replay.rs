@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use calibration_tables::{ArmFile, Baked, FileError, MAX_SEGMENTS, MAX_WINDOW};
-use estimator_core::{Estimate, Estimator, Method, Q, Scalar, Shape, Uncertainties};
+use estimator_core::{Contacts, Estimate, Estimator, Method, Q, Scalar, Shape, Uncertainties};
 use telemetry::{Hello, TICK_HZ};
 
 use crate::error::Error;
@@ -70,6 +70,8 @@ pub struct Outcome<S> {
     pub shapes: [Shape<S, MAX_SEGMENTS>; Method::ALL.len()],
     /// How far the fused shape may be off; empty where the table does not say what errors come from.
     pub uncertainties: Uncertainties<S, MAX_SEGMENTS>,
+    /// What touches the segments.
+    pub contacts: Contacts<MAX_SEGMENTS>,
 }
 
 /// The extent of a session.
@@ -128,8 +130,8 @@ pub fn replay<S: Scalar>(
         }
         let estimate = estimator.step(&row.sample);
         let shapes = Method::ALL.map(|method| estimator.shape(&estimate, method));
-        let uncertainties = estimator.uncertainties();
-        visit(&row, &Outcome { estimate, shapes, uncertainties })?;
+        let (uncertainties, contacts) = (estimator.uncertainties(), estimator.contacts());
+        visit(&row, &Outcome { estimate, shapes, uncertainties, contacts })?;
         last_us = row.sample.time_us;
         first_us.get_or_insert(last_us);
         samples += 1;

@@ -3,8 +3,9 @@
 use std::time::{Duration, Instant};
 
 use serde::Serialize;
-use telemetry::{Health, Hello, Message, TICK_HZ};
+use telemetry::{Event, Health, Hello, Message, SEGMENTS, TICK_HZ, Uncertainty};
 
+use crate::honesty::Ellipse;
 use crate::link::{Link, LinkError, Mismatch, Subscription, What};
 
 /// How long a board may be silent, s.
@@ -25,6 +26,8 @@ pub struct Status {
     pub hello: Hello,
     /// Its counters and its sensors' states.
     pub health: Health,
+    /// How well it knows the arm's shape, where it has said so.
+    pub shape: Option<KnownShape>,
     /// What came a second.
     pub rates: Rates,
     /// What was received.
@@ -35,6 +38,28 @@ pub struct Status {
     pub table_matches: Option<bool>,
     /// In what board and host differ.
     pub mismatches: Vec<String>,
+}
+
+/// How well a board knows the arm's shape.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub struct KnownShape {
+    /// Standard deviation of each bend angle, degrees, from the base; `None`: not known.
+    pub theta_sd_deg: [Option<f64>; SEGMENTS],
+    /// Where the tip is about its estimate; `None`: not known.
+    pub tip: Option<Ellipse>,
+    /// Whether something touches each segment.
+    pub touched: [bool; SEGMENTS],
+}
+
+impl From<&Uncertainty> for KnownShape {
+    fn from(Uncertainty { segments, .. }: &Uncertainty) -> Self {
+        let [.., tip] = segments;
+        Self {
+            theta_sd_deg: segments.map(|segment| segment.theta_rad2().map(|variance| variance.sqrt().to_degrees())),
+            tip: tip.end_m2().map(Ellipse::of),
+            touched: segments.map(|segment| segment.is_touched),
+        }
+    }
 }
 
 /// What came a second.
@@ -63,6 +88,7 @@ pub struct Received {
 #[derive(Default)]
 struct Seen {
     health: Option<Health>,
+    shape: Option<KnownShape>,
     healthy_since: Option<Instant>,
     tared: bool,
     samples: u32,
@@ -95,6 +121,7 @@ impl Status {
                     proprio: env!("CARGO_PKG_VERSION"),
                     hello,
                     health,
+                    shape: seen.shape,
                     rates,
                     received: Received {
                         frames: state.counts.received,
@@ -144,6 +171,10 @@ impl Seen {
                 self.pass(sample.tick);
             }
             Message::Estimate(_) => self.estimates += u32::from(self.ticks.is_some()),
+            Message::Uncertainty(uncertainty) => self.shape = Some(uncertainty.into()),
+            Message::Event(Event::Contact(_, touched)) => {
+                self.shape = self.shape.map(|shape| KnownShape { touched: *touched, ..shape });
+            }
             _ => {}
         }
     }

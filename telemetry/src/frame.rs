@@ -9,7 +9,7 @@ use crate::decoder::DecodeError;
 use crate::payload::Payload;
 
 /// Version of this protocol: the first byte of every frame. Frame, COBS and CRC stay as they are in every version.
-pub const PROTOCOL_VERSION: u8 = 1;
+pub const PROTOCOL_VERSION: u8 = 2;
 
 /// Length of the longest frame in bytes, its zero included.
 pub const MAX_FRAME: usize = 255;

@@ -12,7 +12,7 @@
 //! | `frame.rs` | COBS, CRC and [`Encoder`] |
 //! | `decoder.rs` | [`Decoder`] |
 //! | `schema.rs` | [`SCHEMA`] |
-//! | `estimator.rs` | a [`Sample`] for `estimator-core`, and an [`Estimate`] from it |
+//! | `estimator.rs` | a [`Sample`] for `estimator-core`, and an [`Estimate`], [`Uncertainty`] and contact from it |
 //!
 //! ```
 //! use telemetry::{Command, DecodeError, Decoder, Encoder, MAX_FRAME, Message, Outcome, Refusal, Reply, Request};
@@ -52,6 +52,7 @@ mod schema;
 mod wire;
 
 pub use decoder::{Counts, DecodeError, Decoder};
+pub use estimator::touched;
 pub use frame::{EncodeError, Encoder, MAX_FRAME, PROTOCOL_VERSION};
 pub use message::*;
 pub use payload::{Payload, topic};

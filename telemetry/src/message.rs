@@ -5,7 +5,7 @@
 use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
 
-use crate::wire::{EstimateWire, SampleWire};
+use crate::wire::{EstimateWire, SampleWire, UncertaintyWire};
 
 /// Ticks a second: the rate of samples and estimates, where nothing else was asked for.
 pub const TICK_HZ: f64 = 100.0;
@@ -37,6 +37,8 @@ pub enum Message {
     Event(Event),
     /// The answer to a request.
     Reply(Reply),
+    /// How far an estimate may be off.
+    Uncertainty(Uncertainty),
 }
 
 /// Who the board is and how it came up.
@@ -112,6 +114,30 @@ pub struct SegmentEstimate {
     pub theta: i32,
     /// World position x, y of the segment's end, m, in units of 2⁻²⁶.
     pub end: [i32; 2],
+}
+
+/// How far an estimate may be off and what touches the arm, in the bits of `estimator_core::Q`, whose variances are 64 times
+/// as large as they are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(into = "UncertaintyWire", from = "UncertaintyWire")]
+pub struct Uncertainty {
+    /// Number of the tick whose estimate it is of.
+    pub tick: u32,
+    /// The segments, from the base.
+    pub segments: [SegmentUncertainty; SEGMENTS],
+}
+
+/// What is known of one segment's error, and whether something touches it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct SegmentUncertainty {
+    /// Variance of θ_i, rad², in units of 2⁻³²; `None`: not known.
+    pub theta: Option<i32>,
+    /// Covariance xx, xy, yy of the segment's end in {W}, m², in units of 2⁻³²; `None`: not known.
+    pub end: Option<[i32; 3]>,
+    /// The largest change within half a second, in percent of what a free arm does not exceed; stays at its largest value.
+    pub contact_percent: u8,
+    /// Whether something touches it: from over 100 % on, until the change is undone, or for a minute.
+    pub is_touched: bool,
 }
 
 /// State of one sensor.
@@ -201,6 +227,8 @@ pub enum Event {
     BusRecovery,
     /// The estimator started anew, before the sample of this tick.
     Tare(u32),
+    /// Contact has begun or ended somewhere with the sample of this tick: whether something touches each segment.
+    Contact(u32, [bool; SEGMENTS]),
 }
 
 /// What the host asks.
@@ -219,7 +247,7 @@ pub enum Command {
     Ping,
     /// Start the estimator anew: the arm is in its reference pose.
     Tare,
-    /// Send every n-th sample and estimate, and health every n-th tick; 0: none.
+    /// Send every n-th of the messages that tell of every tick; 0: none.
     Rates(Rates),
     /// Let the pressures move.
     Arm,
@@ -240,6 +268,8 @@ pub struct Rates {
     pub estimate: u16,
     /// Ticks from one health message to the next.
     pub health: u16,
+    /// Ticks from one uncertainty to the next.
+    pub uncertainty: u16,
 }
 
 /// Set-points with a deadline.

@@ -19,6 +19,8 @@ pub mod topic {
     pub const EVENT: u8 = 5;
     /// [`Reply`](crate::Reply), from the board.
     pub const REPLY: u8 = 6;
+    /// [`Uncertainty`](crate::Uncertainty), from the board.
+    pub const UNCERTAINTY: u8 = 7;
     /// [`Request`](crate::Request), from the host.
     pub const REQUEST: u8 = 0x80;
 }
@@ -52,6 +54,7 @@ impl Payload for Message {
             Self::Health(_) => topic::HEALTH,
             Self::Event(_) => topic::EVENT,
             Self::Reply(_) => topic::REPLY,
+            Self::Uncertainty(_) => topic::UNCERTAINTY,
         }
     }
 
@@ -63,6 +66,7 @@ impl Payload for Message {
             Self::Health(health) => write(health, body),
             Self::Event(event) => write(event, body),
             Self::Reply(reply) => write(reply, body),
+            Self::Uncertainty(uncertainty) => write(uncertainty, body),
         }
     }
 
@@ -74,6 +78,7 @@ impl Payload for Message {
             topic::HEALTH => read(body).map(Self::Health),
             topic::EVENT => read(body).map(Self::Event),
             topic::REPLY => read(body).map(Self::Reply),
+            topic::UNCERTAINTY => read(body).map(Self::Uncertainty),
             _ => return Err(DecodeError::Topic(topic)),
         };
         message.ok_or(DecodeError::Body(topic))

@@ -1,4 +1,4 @@
-//! The compact forms of the two messages that are sent every tick.
+//! The compact forms of the messages that fill the line.
 //!
 //! Postcard's variable-length numbers take up to three bytes for 16 bits and five for 32, too much for the line at worst.
 //! Here every field has a fixed width, little-endian, and a bit mask in front says which readings there are. The others
@@ -10,7 +10,7 @@ use postcard_schema::Schema;
 use postcard_schema::schema::NamedType;
 use serde::{Deserialize, Serialize};
 
-use crate::message::{BEND_SENSORS, Estimate, SEGMENTS, Sample, SegmentEstimate};
+use crate::message::{BEND_SENSORS, Estimate, SEGMENTS, Sample, SegmentEstimate, SegmentUncertainty, Uncertainty};
 
 /// A [`Sample`] on the line.
 #[derive(Serialize, Deserialize, Schema)]
@@ -32,12 +32,26 @@ pub struct EstimateWire {
     segments: [[[u8; 4]; 3]; SEGMENTS],
 }
 
+/// An [`Uncertainty`] on the line.
+#[derive(Serialize, Deserialize, Schema)]
+pub struct UncertaintyWire {
+    tick: [u8; 4],
+    theta_known: u8,
+    end_known: u8,
+    touched: u8,
+    segments: [(u8, [[u8; 4]; 4]); SEGMENTS],
+}
+
 impl Schema for Sample {
     const SCHEMA: &'static NamedType = SampleWire::SCHEMA;
 }
 
 impl Schema for Estimate {
     const SCHEMA: &'static NamedType = EstimateWire::SCHEMA;
+}
+
+impl Schema for Uncertainty {
+    const SCHEMA: &'static NamedType = UncertaintyWire::SCHEMA;
 }
 
 impl From<Sample> for SampleWire {
@@ -84,6 +98,40 @@ impl From<EstimateWire> for Estimate {
             SegmentEstimate { theta, end: [x, y] }
         });
         Self { tick: u32::from_le_bytes(wire.tick), segments: present(wire.known.into(), segments) }
+    }
+}
+
+impl From<Uncertainty> for UncertaintyWire {
+    fn from(uncertainty: Uncertainty) -> Self {
+        let tick = uncertainty.tick.to_le_bytes();
+        let mut wire =
+            Self { tick, theta_known: 0, end_known: 0, touched: 0, segments: [Default::default(); SEGMENTS] };
+        for (i, (segment, wire_segment)) in uncertainty.segments.iter().zip(&mut wire.segments).enumerate() {
+            wire.theta_known |= u8::from(segment.theta.is_some()) << i;
+            wire.end_known |= u8::from(segment.end.is_some()) << i;
+            wire.touched |= u8::from(segment.is_touched) << i;
+            let [xx, xy, yy] = segment.end.unwrap_or_default();
+            let variances = [segment.theta.unwrap_or_default(), xx, xy, yy];
+            *wire_segment = (segment.contact_percent, variances.map(i32::to_le_bytes));
+        }
+        wire
+    }
+}
+
+impl From<UncertaintyWire> for Uncertainty {
+    fn from(wire: UncertaintyWire) -> Self {
+        let mut segments = [SegmentUncertainty::default(); SEGMENTS];
+        for (i, (segment, (contact_percent, variances))) in segments.iter_mut().zip(wire.segments).enumerate() {
+            let is_set = |mask: u8| mask >> i & 1 == 1;
+            let [theta, end @ ..] = variances.map(i32::from_le_bytes);
+            *segment = SegmentUncertainty {
+                theta: is_set(wire.theta_known).then_some(theta),
+                end: is_set(wire.end_known).then_some(end),
+                contact_percent,
+                is_touched: is_set(wire.touched),
+            };
+        }
+        Self { tick: u32::from_le_bytes(wire.tick), segments }
     }
 }
 

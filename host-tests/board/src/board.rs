@@ -3,7 +3,7 @@
 use rig_twin::{EndPose, Program, REGULATORS, SEGMENTS};
 use telemetry::{
     Command, Decoder, Encoder, Estimate, Event, Health, Hello, MAX_FRAME, Message, Outcome, Request, Sample,
-    SetPressures,
+    SetPressures, Uncertainty,
 };
 use virtual_due::{CYCLES_PER_SECOND, Cycles, Machine, Rig};
 
@@ -175,6 +175,14 @@ impl Board {
     pub fn estimates(&self) -> impl DoubleEndedIterator<Item = &Estimate> {
         self.received.iter().filter_map(|received| match &received.message {
             Message::Estimate(estimate) => Some(estimate),
+            _ => None,
+        })
+    }
+
+    /// All uncertainties, in order.
+    pub fn uncertainties(&self) -> impl DoubleEndedIterator<Item = &Uncertainty> {
+        self.received.iter().filter_map(|received| match &received.message {
+            Message::Uncertainty(uncertainty) => Some(uncertainty),
             _ => None,
         })
     }

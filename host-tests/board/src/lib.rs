@@ -9,5 +9,5 @@ mod view;
 
 pub use board::{Board, Received, UART};
 pub use build::{elf, firmware};
-pub use replay::{replay, table};
+pub use replay::{Replayed, replay, table};
 pub use view::View;

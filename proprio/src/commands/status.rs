@@ -1,8 +1,9 @@
 //! `proprio status`.
 
 use proprio::error::Error;
+use proprio::honesty::Ellipse;
 use proprio::recording::chip_number;
-use proprio::status::Status;
+use proprio::status::{KnownShape, Status};
 use telemetry::{SensorHealth, SensorState};
 
 use super::link;
@@ -61,6 +62,8 @@ fn screen(status: &Status) -> String {
                 health.saturations
             ),
         ),
+        ("tip", tip(status.shape.as_ref())),
+        ("contact", contact(status.shape.as_ref())),
         ("pressures", format!("{:?}, {pressures} kPa", health.actuation)),
         ("bend sensors", sensors(&health.bend, |i| format!("{}{}", i / 2 + 1, ['a', 'b'][i % 2]))),
         ("IMUs", sensors(&health.imu, |i| (i + 1).to_string())),
@@ -71,6 +74,23 @@ fn screen(status: &Status) -> String {
 
 fn up(tick: u32) -> String {
     format!("up for {:.1} s", f64::from(tick) / telemetry::TICK_HZ)
+}
+
+/// How far the tip may be off.
+fn tip(shape: Option<&KnownShape>) -> String {
+    match shape.and_then(|shape| shape.tip) {
+        Some(Ellipse { major_mm, minor_mm }) => {
+            format!("95 % within an ellipse of {major_mm:.1} mm by {minor_mm:.1} mm about the estimate")
+        }
+        None => "the board does not say how far it may be off".to_owned(),
+    }
+}
+
+/// Which segments something touches.
+fn contact(shape: Option<&KnownShape>) -> String {
+    let touched = (1..).zip(shape.iter().flat_map(|shape| shape.touched)).filter(|(_, touched)| *touched);
+    let numbers: Vec<String> = touched.map(|(number, _): (u32, _)| number.to_string()).collect();
+    if numbers.is_empty() { "none".to_owned() } else { format!("segment {}", numbers.join(", ")) }
 }
 
 /// All that are well in one word, each other one by its name, state and how often it was missed.

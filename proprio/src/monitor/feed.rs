@@ -2,7 +2,7 @@
 
 use calibration_tables::{ArmFile, Side};
 use serde::Serialize;
-use telemetry::{Actuation, Health, SensorHealth, SensorState};
+use telemetry::{Actuation, Health, SEGMENTS, SegmentUncertainty, SensorHealth, SensorState};
 
 use super::latency::Percentiles;
 use super::recording::Progress;
@@ -87,10 +87,10 @@ pub(super) struct Batch {
     pub rows: Vec<(f64, Vec<f32>)>,
     /// When the last one was sampled, µs by this program's clock: the page sends it back once it has drawn it.
     pub newest_us: u64,
-    /// How well the newest row is known, where the table says what errors come from.
+    /// How well the shape is known, where the board knows it.
     pub uncertainty: Option<Uncertainty>,
-    /// Which segments touch something, where the table says how to tell.
-    pub contact: Option<Vec<bool>>,
+    /// Which segments touch something.
+    pub contact: Option<[bool; SEGMENTS]>,
 }
 
 /// How well the shape is known.
@@ -98,6 +98,14 @@ pub(super) struct Batch {
 pub(super) struct Uncertainty {
     /// Covariance xx, xy, yy of each segment's end in {W}, m².
     pub ends_m2: Vec<[f64; 3]>,
+}
+
+impl Uncertainty {
+    /// As far as it is known; `None` where nothing is.
+    pub fn of(told: &telemetry::Uncertainty) -> Option<Self> {
+        let ends_m2: Vec<_> = told.segments.iter().map_while(SegmentUncertainty::end_m2).collect();
+        (!ends_m2.is_empty()).then_some(Self { ends_m2 })
+    }
 }
 
 /// How board and link are.

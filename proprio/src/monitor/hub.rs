@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 
 use estimator_core::Table;
 
-use super::feed::{Batch, Feed, Status};
+use super::feed::{Batch, Feed, Status, Uncertainty};
 use super::live::{Live, Taken};
 use super::observer::Observer;
 use super::shared::Shared;
@@ -81,9 +81,9 @@ impl<'t> Hub<'t> {
     fn send_rows(&mut self) {
         let mut batch = std::mem::take(&mut self.batch);
         if !batch.rows.is_empty() {
-            let observer = self.live.observer();
-            batch.uncertainty = observer.and_then(Observer::uncertainty);
-            batch.contact = observer.and_then(Observer::contact);
+            let told = self.live.uncertainty.as_ref();
+            batch.uncertainty = told.and_then(Uncertainty::of);
+            batch.contact = told.map(|told| told.segments.map(|segment| segment.is_touched));
             self.shared.tell(&Feed::Rows(batch));
         }
     }

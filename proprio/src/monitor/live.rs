@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 
 use estimator_core::Sample;
-use telemetry::{BEND_SENSORS, Estimate, Health, Message, SEGMENTS, SensorHealth, SensorState};
+use telemetry::{BEND_SENSORS, Estimate, Health, Message, SEGMENTS, SensorHealth, SensorState, Uncertainty};
 
 use super::feed::BoardTime;
 use super::observer::Observer;
@@ -50,6 +50,8 @@ pub(super) struct Live<'t> {
     base_us: u64,
     restarted: bool,
     pub health: Option<Health>,
+    /// The last that came, with the contact that was told since.
+    pub uncertainty: Option<Uncertainty>,
     totals: Totals,
     totals_before: VecDeque<Totals>,
 }
@@ -73,6 +75,7 @@ impl<'t> Live<'t> {
             base_us: 0,
             restarted: false,
             health: None,
+            uncertainty: None,
             totals: Totals::default(),
             totals_before: VecDeque::new(),
         }
@@ -85,17 +88,12 @@ impl<'t> Live<'t> {
             What::Message(message) => return self.message(event.at, message),
             What::Restarted => {
                 self.restarted = true;
-                self.health = None;
+                (self.health, self.uncertainty) = (None, None);
             }
-            What::Lost(_) | What::Ended(_) => self.health = None,
+            What::Lost(_) | What::Ended(_) => (self.health, self.uncertainty) = (None, None),
             What::Opened(_) | What::Undecoded(_) | What::Mismatch(_) => {}
         }
         None
-    }
-
-    /// The estimator beside the board's, while it has seen all that the board's has.
-    pub fn observer(&self) -> Option<&Observer<'t>> {
-        self.observer.as_ref().filter(|_| self.is_observed)
     }
 
     fn message(&mut self, at: HostNs, message: &Message) -> Option<Taken> {
@@ -111,6 +109,8 @@ impl<'t> Live<'t> {
                 return self.estimate(estimate);
             }
             Message::Health(health) => self.health = Some(*health),
+            Message::Uncertainty(uncertainty) => self.uncertainty = Some(*uncertainty),
+            Message::Event(telemetry::Event::Contact(_, touched)) => self.contact(*touched),
             Message::Event(telemetry::Event::Bend(i, state)) => self.sensor(usize::from(*i), *state),
             Message::Event(telemetry::Event::Imu(i, state)) => self.sensor(BEND_SENSORS + usize::from(*i), *state),
             Message::Hello(_) | Message::Event(_) | Message::Reply(_) => {}
@@ -171,6 +171,12 @@ impl<'t> Live<'t> {
     pub fn board_time(&self) -> Option<BoardTime> {
         let zero_ms = self.zero_ns? as f64 / 1e6;
         Some(BoardTime { zero_ms, drift: self.clock.drift().map(Into::into) })
+    }
+
+    /// Contact has begun or ended. The next uncertainty says the same, up to a quarter of a second later.
+    fn contact(&mut self, touched: [bool; SEGMENTS]) {
+        let segments = self.uncertainty.iter_mut().flat_map(|uncertainty| &mut uncertainty.segments);
+        segments.zip(touched).for_each(|(segment, touched)| segment.is_touched = touched);
     }
 
     /// The state of a sensor has changed: bend sensors first, then IMUs. Health says the same, up to a fifth of a second later.

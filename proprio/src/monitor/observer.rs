@@ -1,9 +1,8 @@
-//! The estimator beside the board's: it tells what the board does not send: drift, innovations, covariances and contact.
+//! The estimator beside the board's: it tells what the board does not send: drift and innovations.
 
 use calibration_tables::MAX_SEGMENTS;
 use estimator_core::{Estimator, Method, Q, Sample, Table};
 
-use super::feed::Uncertainty;
 use super::row::{Group, Row};
 use crate::replay::HostEstimator;
 
@@ -26,19 +25,6 @@ impl<'t> Observer<'t> {
     pub fn start(&mut self) {
         self.estimator.start().expect("the file was checked");
         self.predicted_rad = [None; MAX_SEGMENTS];
-    }
-
-    /// How well the newest sample's shape is known; `None` where the table does not say what errors come from.
-    pub fn uncertainty(&self) -> Option<Uncertainty> {
-        let known = self.estimator.uncertainties();
-        let ends_m2 = known.iter().map_while(|segment| Some(segment.end?.square_metres())).collect();
-        (!known.is_empty()).then_some(Uncertainty { ends_m2 })
-    }
-
-    /// Which segments touch something; `None` where the table does not say how to tell.
-    pub fn contact(&self) -> Option<Vec<bool>> {
-        let contacts = self.estimator.contacts();
-        self.table.contact.map(|_| contacts.iter().map(|contact| contact.is_touched).collect())
     }
 
     /// Takes one sample and sets what it knows of it.

@@ -1,13 +1,13 @@
-//! The board's own estimates against those of a replay.
+//! The board's own estimates, and what it says of them, against those of a replay.
 
 use std::fmt;
 
 use estimator_core::{Method, Q};
 use serde::Serialize;
-use telemetry::{Estimate, SegmentEstimate};
+use telemetry::{Estimate, SegmentEstimate, Uncertainty, touched};
 
 use crate::replay::Outcome;
-use crate::session::Row;
+use crate::session::{OnBoard, Row};
 
 /// How many of the board's estimates a replay gives again, bit for bit.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
@@ -20,8 +20,33 @@ pub struct Comparison {
     pub not_compared: u64,
     /// The first that differs.
     pub first_difference: Option<Difference>,
+    /// How far its estimates may be off, as the board has said from time to time.
+    pub uncertainties: Told,
+    /// Where contact began or ended, as the board has said.
+    pub contacts: Told,
     /// Whether the board's table was that of the replay, where its `Hello` is in the recording.
     pub table_matches: Option<bool>,
+}
+
+/// What the board has said beside its estimates, of one kind.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct Told {
+    /// Messages that are compared.
+    pub compared: u64,
+    /// Of these: the same in the replay.
+    pub equal: u64,
+    /// Number of the first tick that differs.
+    pub first_difference: Option<u32>,
+}
+
+impl Told {
+    fn add(&mut self, tick: u32, is_equal: bool) {
+        self.compared += 1;
+        self.equal += u64::from(is_equal);
+        if !is_equal {
+            self.first_difference.get_or_insert(tick);
+        }
+    }
 }
 
 /// An estimate that differs.
@@ -56,9 +81,23 @@ impl From<SegmentEstimate> for Values {
 }
 
 impl Comparison {
-    /// Compares one row's estimate, where the board has made one.
+    /// Compares what the board has said of one row.
     pub fn add(&mut self, row: &Row, outcome: &Outcome<Q>) {
-        let Some(board) = row.board else { return };
+        let Some(board) = &row.board else { return };
+        self.add_estimate(board, outcome);
+        if !board.complete {
+            return;
+        }
+        if let Some(recorded) = &board.uncertainty {
+            let computed = Uncertainty::of(recorded.tick, &outcome.uncertainties, &outcome.contacts);
+            self.uncertainties.add(board.tick, *recorded == computed);
+        }
+        if let Some(recorded) = board.contact {
+            self.contacts.add(board.tick, recorded == touched(&outcome.contacts));
+        }
+    }
+
+    fn add_estimate(&mut self, board: &OnBoard, outcome: &Outcome<Q>) {
         let Some(recorded) = board.estimate else { return };
         self.estimates += 1;
         if !board.complete {
@@ -82,10 +121,11 @@ impl Comparison {
         }
     }
 
-    /// Whether every estimate that could be compared is the same.
+    /// Whether all that could be compared is the same.
     #[must_use]
     pub fn is_exact(&self) -> bool {
-        self.first_difference.is_none()
+        let Self { first_difference, uncertainties, contacts, .. } = self;
+        first_difference.is_none() && uncertainties.first_difference.or(contacts.first_difference).is_none()
     }
 }
 
@@ -106,11 +146,21 @@ impl fmt::Display for Comparison {
                 Shown(*computed)
             )?;
         } else {
-            write!(f, "the {compared} recorded estimates are, bit for bit, those of this replay")?;
+            let [uncertainties, contacts] = [self.uncertainties, self.contacts].map(|told| told.equal);
+            write!(
+                f,
+                "the {compared} recorded estimates, {uncertainties} uncertainties and {contacts} changes of contact are, bit \
+                 for bit, those of this replay"
+            )?;
         }
         if self.not_compared > 0 {
             let more = self.not_compared;
             write!(f, "; {more} more are not compared, as samples before them are not in the recording")?;
+        }
+        for (what, told) in [("uncertainties", self.uncertainties), ("changes of contact", self.contacts)] {
+            if let Told { compared, equal, first_difference: Some(tick) } = told {
+                write!(f, "; {} of {compared} {what} are not, the first: tick {tick}", compared - equal)?;
+            }
         }
         if self.table_matches == Some(false) {
             write!(f, "; the board had another table")?;

@@ -3,7 +3,9 @@
 use std::f64::consts::FRAC_PI_2;
 
 use estimator_core::Q;
-use telemetry::{BEND_SENSORS, Estimate, Health, Hello, SEGMENTS, Sample, SensorHealth, SensorState, SetPressures};
+use telemetry::{
+    BEND_SENSORS, Estimate, Health, Hello, SEGMENTS, Sample, SensorHealth, SensorState, SetPressures, Uncertainty,
+};
 
 use super::cdr::{CdrReader, CdrWriter};
 use crate::link::HostNs;
@@ -63,6 +65,27 @@ pub fn pose_array(stamp: HostNs, estimate: &Estimate) -> Vec<u8> {
         let (sin, cos) = ((FRAC_PI_2 - heading) / 2.0).sin_cos();
         cdr.floats(&[x, y, 0.0, 0.0, 0.0, sin, cos]);
     }
+    cdr.into_bytes()
+}
+
+/// `proprio_msgs/msg/Uncertainty`: NaN where not known.
+pub fn uncertainty(stamp: HostNs, of: &Uncertainty) -> Vec<u8> {
+    let mut cdr = header(stamp);
+    for segment in &of.segments {
+        cdr.f64(segment.theta_rad2().unwrap_or(f64::NAN));
+    }
+    for segment in &of.segments {
+        cdr.floats(&segment.end_m2().unwrap_or([f64::NAN; 3]));
+    }
+    of.segments.iter().for_each(|segment| cdr.u8(segment.contact_percent));
+    of.segments.iter().for_each(|segment| cdr.u8(segment.is_touched.into()));
+    cdr.into_bytes()
+}
+
+/// `proprio_msgs/msg/Contact`.
+pub fn contact(stamp: HostNs, touched: [bool; SEGMENTS]) -> Vec<u8> {
+    let mut cdr = header(stamp);
+    touched.iter().for_each(|touched| cdr.u8((*touched).into()));
     cdr.into_bytes()
 }
 

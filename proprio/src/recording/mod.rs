@@ -22,7 +22,7 @@ mod rows;
 mod schema;
 mod writer;
 
-pub use compare::{Comparison, Difference, Values};
+pub use compare::{Comparison, Difference, Told, Values};
 pub use messages::chip_number;
 pub use reader::{Item, RawReader, ReadError, Reader, is_recording};
 pub use recover::{RecoverError, Recovery, recover};
@@ -37,6 +37,10 @@ pub const SAMPLES: &str = "/proprio/samples";
 pub const JOINT_STATES: &str = "/joint_states";
 /// Topic of `geometry_msgs/msg/PoseArray`.
 pub const SHAPE: &str = "/proprio/shape";
+/// Topic of `proprio_msgs/msg/Uncertainty`.
+pub const UNCERTAINTY: &str = "/proprio/uncertainty";
+/// Topic of `proprio_msgs/msg/Contact`.
+pub const CONTACT: &str = "/proprio/contact";
 /// Topic of `diagnostic_msgs/msg/DiagnosticArray`.
 pub const DIAGNOSTICS: &str = "/diagnostics";
 /// Topic of `proprio_msgs/msg/SetPoints`.

@@ -5,6 +5,7 @@ use std::io::{self, Read};
 use mcap::io::MessageReader;
 use mcap::sans_io::LinearReaderOptions;
 use mcap::{McapError, Message};
+use telemetry::PROTOCOL_VERSION;
 
 use super::{RAW, TRUTH, messages};
 use crate::link::HostNs;
@@ -37,6 +38,9 @@ pub enum ReadError {
     /// It is of a firmware whose messages this program does not know.
     #[error("the messages of its firmware, version {0}, have another form than this proprio reads")]
     OtherForm(String),
+    /// It is of a board that spoke another version of the protocol.
+    #[error("its board spoke protocol version {0}, and this proprio reads version {PROTOCOL_VERSION}")]
+    OtherProtocol(u8),
     /// It is damaged, or no recording of ours.
     #[error("the recording is damaged: {0}")]
     Damaged(String),

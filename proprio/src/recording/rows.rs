@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 
 use calibration_tables::MAX_SEGMENTS;
-use telemetry::{Decoder, Estimate, Hello, Message, SCHEMA, Sample};
+use telemetry::{DecodeError, Decoder, Event, Hello, Message, SCHEMA, Sample};
 
 use super::{Item, ReadError};
 use crate::link::{HostNs, Place, Runs};
@@ -20,7 +20,7 @@ pub(crate) struct RecordedRows<I> {
     runs: Runs,
     /// The board has restarted since the last sample.
     restarted: bool,
-    /// The row that waits for its estimate and its truth.
+    /// The row that waits for its estimate, for what else the board says of its tick, and for its truth.
     open: Option<Row>,
     whole: VecDeque<Row>,
     last: Option<Last>,
@@ -74,8 +74,11 @@ impl<I: Iterator<Item = Result<Item, ReadError>>> RecordedRows<I> {
             match self.items.next().transpose()? {
                 Some(Item::Bytes(at, bytes)) => {
                     for byte in bytes {
-                        if let Some(Ok(message)) = self.decoder.push(byte) {
-                            self.take(at, message)?;
+                        match self.decoder.push(byte) {
+                            Some(Ok(message)) => self.take(at, message)?,
+                            Some(Err(DecodeError::Version(version))) => return Err(ReadError::OtherProtocol(version)),
+                            // What was damaged on the line is lost.
+                            Some(Err(_)) | None => {}
                         }
                     }
                 }
@@ -105,7 +108,9 @@ impl<I: Iterator<Item = Result<Item, ReadError>>> RecordedRows<I> {
                     self.open = Some(self.row(at, &sample));
                 }
             }
-            Message::Estimate(estimate) => self.estimate(estimate),
+            Message::Estimate(estimate) => self.told(estimate.tick, |board| board.estimate = Some(estimate)),
+            Message::Uncertainty(of) => self.told(of.tick, |board| board.uncertainty = Some(of)),
+            Message::Event(Event::Contact(tick, touched)) => self.told(tick, |board| board.contact = Some(touched)),
             Message::Health(_) | Message::Event(_) | Message::Reply(_) => {}
         }
         Ok(())
@@ -135,7 +140,13 @@ impl<I: Iterator<Item = Result<Item, ReadError>>> RecordedRows<I> {
             sample: sample.into(),
             truth: [None; MAX_SEGMENTS],
             starts,
-            board: Some(OnBoard { tick: sample.tick, complete: self.complete, estimate: None }),
+            board: Some(OnBoard {
+                tick: sample.tick,
+                complete: self.complete,
+                estimate: None,
+                uncertainty: None,
+                contact: None,
+            }),
         };
         row.sample.time_us = self.base_us + sample.time_us;
         self.last = Some(Last { sample: *sample, at, row_us: row.sample.time_us, lost });
@@ -147,9 +158,10 @@ impl<I: Iterator<Item = Result<Item, ReadError>>> RecordedRows<I> {
         self.open.as_mut().filter(|row| row.board.is_some_and(|board| board.tick == tick))
     }
 
-    fn estimate(&mut self, estimate: Estimate) {
-        if let Some(board) = self.open(estimate.tick).and_then(|row| row.board.as_mut()) {
-            board.estimate = Some(estimate);
+    /// The board has said something of this tick.
+    fn told(&mut self, tick: u32, keep: impl FnOnce(&mut OnBoard)) {
+        if let Some(board) = self.open(tick).and_then(|row| row.board.as_mut()) {
+            keep(board);
         }
     }
 

@@ -46,6 +46,18 @@ pub const SAMPLE: Schema = Schema {
     needs: &[HEADER, TIME],
 };
 
+pub const UNCERTAINTY: Schema = Schema {
+    name: "proprio_msgs/msg/Uncertainty",
+    definition: include_str!("definitions/Uncertainty.msg"),
+    needs: &[HEADER, TIME],
+};
+
+pub const CONTACT: Schema = Schema {
+    name: "proprio_msgs/msg/Contact",
+    definition: include_str!("definitions/Contact.msg"),
+    needs: &[HEADER, TIME],
+};
+
 pub const TRUTH: Schema = Schema {
     name: "proprio_msgs/msg/Truth",
     definition: include_str!("definitions/Truth.msg"),
@@ -57,6 +69,7 @@ pub const SET_POINTS: Schema = Schema {
     definition: include_str!("definitions/SetPoints.msg"),
     needs: &[HEADER, TIME],
 };
+
 pub const STRING: Schema =
     Schema { name: "std_msgs/msg/String", definition: include_str!("definitions/String.msg"), needs: &[] };
 

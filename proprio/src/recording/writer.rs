@@ -8,10 +8,10 @@ use std::time::Duration;
 use mcap::records::{MessageHeader, Metadata};
 use mcap::write::NoSeek;
 use mcap::{Attachment, McapError, WriteOptions};
-use telemetry::{Estimate, Hello, Message, SCHEMA, Sample, SetPressures};
+use telemetry::{Estimate, Hello, Message, SCHEMA, SEGMENTS, Sample, SetPressures};
 
 use super::schema::{self, Schema};
-use super::{DIAGNOSTICS, JOINT_STATES, MARKS, RAW, SAMPLES, SET_POINTS, SHAPE, TRUTH, messages};
+use super::{CONTACT, DIAGNOSTICS, JOINT_STATES, MARKS, RAW, SAMPLES, SET_POINTS, SHAPE, TRUTH, UNCERTAINTY, messages};
 use crate::link::{BoardClock, Event, HostNs, Subscription, What};
 use crate::session::Truth;
 
@@ -41,6 +41,9 @@ struct Channels {
     joint_states: u16,
     shape: u16,
     diagnostics: u16,
+    uncertainty: u16,
+    /// Only where something touches the arm.
+    contact: Option<u16>,
     /// Only where the pressures are driven.
     set_points: Option<u16>,
     /// Only where there is truth.
@@ -76,6 +79,8 @@ impl<W: Write> Recorder<W> {
             joint_states: channel(&mut mcap, JOINT_STATES, &schema::JOINT_STATE)?,
             shape: channel(&mut mcap, SHAPE, &schema::POSE_ARRAY)?,
             diagnostics: channel(&mut mcap, DIAGNOSTICS, &schema::DIAGNOSTIC_ARRAY)?,
+            uncertainty: channel(&mut mcap, UNCERTAINTY, &schema::UNCERTAINTY)?,
+            contact: None,
             set_points: None,
             truth: None,
             marks: None,
@@ -162,8 +167,19 @@ impl<W: Write> Recorder<W> {
                 let message = messages::diagnostics(stamp, health, self.hello.as_ref());
                 self.write(self.channels.diagnostics, health.tick, at, stamp, &message)
             }
+            Message::Uncertainty(of) => {
+                let stamp = self.stamp(of.tick, at);
+                self.write(self.channels.uncertainty, of.tick, at, stamp, &messages::uncertainty(stamp, of))
+            }
+            Message::Event(telemetry::Event::Contact(tick, touched)) => self.contact(at, *tick, *touched),
             Message::Event(_) | Message::Reply(_) => Ok(()),
         }
+    }
+
+    fn contact(&mut self, at: HostNs, tick: u32, touched: [bool; SEGMENTS]) -> io::Result<()> {
+        let channel = channel_once(&mut self.channels.contact, &mut self.mcap, CONTACT, &schema::CONTACT)?;
+        let stamp = self.stamp(tick, at);
+        self.write(channel, tick, at, stamp, &messages::contact(stamp, touched))
     }
 
     /// Writes the truth of the sample with this tick, which came before.

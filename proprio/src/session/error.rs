@@ -174,7 +174,9 @@ impl Problem {
             Self::NotAFile => "save it as a file first",
             Self::Tare(_) => "write the number, or remove the column",
             Self::Recording(ReadError::Cut) => "save what is whole of it with `proprio recover`",
-            Self::Recording(ReadError::OtherForm(_)) => "read it with the proprio of that version",
+            Self::Recording(ReadError::OtherForm(_) | ReadError::OtherProtocol(_)) => {
+                "read it with the proprio of that version"
+            }
             Self::Recording(ReadError::Compressed(_)) => "decompress it (`mcap decompress`)",
             Self::Recording(ReadError::Damaged(_)) => {
                 "save what is whole of it with `proprio recover`, or take another"

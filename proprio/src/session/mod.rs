@@ -72,6 +72,10 @@ pub struct OnBoard {
     pub complete: bool,
     /// The board's estimate, where it was received.
     pub estimate: Option<telemetry::Estimate>,
+    /// How far it may be off, where the board has said so.
+    pub uncertainty: Option<telemetry::Uncertainty>,
+    /// What touches the segments, where the board has said that it has changed.
+    pub contact: Option<[bool; telemetry::SEGMENTS]>,
 }
 
 impl Row {

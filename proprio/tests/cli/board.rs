@@ -57,9 +57,12 @@ impl SyntheticBoard {
         }
         let sample = Sample { tick, time_us: u64::from(tick) * 10_000 + 137, tare: self.arm.tares(), bend, imu };
         let estimate = self.arm.step(&sample);
+        let contact = self.arm.contact(tick);
         let mut messages = Vec::new();
         messages.extend(tick.is_multiple_of(100).then(|| Message::Hello(self.hello())));
         messages.extend([Message::Sample(sample), Message::Estimate(estimate)]);
+        messages.extend(contact.map(Message::Event));
+        messages.extend(tick.is_multiple_of(25).then(|| Message::Uncertainty(self.arm.uncertainty(tick))));
         messages.extend(tick.is_multiple_of(20).then(|| Message::Health(health(tick))));
         let mut buffer = [0; MAX_FRAME];
         let frame = |message: &Message| self.encoder.encode(message, &mut buffer).expect("it fits").to_vec();

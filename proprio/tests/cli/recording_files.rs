@@ -5,7 +5,7 @@ use proprio::recording::Recorder;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 use serde_json::Value;
-use telemetry::{Decoder, Message};
+use telemetry::{Decoder, Encoder, Event, MAX_FRAME, Message, SEGMENTS};
 
 use super::board::SyntheticBoard;
 use super::common::{Folder, error_of, estimates, json, table};
@@ -40,6 +40,18 @@ fn replayed(recording: Vec<u8>) -> (Value, String) {
     recorded(&Folder::with("session.mcap", recording), "session.mcap")
 }
 
+/// The same of five seconds of a board whose messages are changed.
+fn replayed_with(change: impl Fn(&mut Message)) -> (Value, String) {
+    let (mut encoder, mut decoder) = (Encoder::new(), Decoder::<Message>::new());
+    let messages = SyntheticBoard::new(1, 5.0).bytes().into_iter().filter_map(|byte| decoder.push(byte));
+    let changed = messages.map(|message| {
+        let mut message = message.expect("nothing is damaged");
+        change(&mut message);
+        encoder.encode(&message, &mut [0; MAX_FRAME]).expect("it fits").to_vec()
+    });
+    replayed(record(changed))
+}
+
 #[test]
 fn a_replay_gives_the_recorded_estimates_bit_for_bit_and_says_so() {
     let (recorded, stderr) = replayed(record(ticks(SyntheticBoard::new(1, 20.0))));
@@ -48,7 +60,11 @@ fn a_replay_gives_the_recorded_estimates_bit_for_bit_and_says_so() {
         (&2000.into(), &2000.into(), &0.into())
     );
     assert_eq!((&recorded["first_difference"], &recorded["table_matches"]), (&Value::Null, &true.into()));
-    assert_eq!(stderr, "session.mcap: the 2000 recorded estimates are, bit for bit, those of this replay\n");
+    assert_eq!(
+        stderr,
+        "session.mcap: the 2000 recorded estimates, 80 uncertainties and 0 changes of contact are, bit for bit, those of this \
+         replay\n"
+    );
 }
 
 #[test]
@@ -75,23 +91,13 @@ fn the_estimator_starts_anew_where_the_boards_did() {
 /// The recorded estimates of one tick are changed by the least there is.
 #[test]
 fn the_first_estimate_that_differs_is_named() {
-    use telemetry::{Encoder, MAX_FRAME};
-
-    let mut encoder = Encoder::new();
-    let mut decoder = Decoder::<Message>::new();
-    let bytes = SyntheticBoard::new(1, 5.0).bytes();
-    let mut changed = Vec::new();
-    for message in bytes.into_iter().filter_map(|byte| decoder.push(byte)) {
-        let mut message = message.expect("nothing is damaged");
-        if let Message::Estimate(estimate) = &mut message
+    let (recorded, stderr) = replayed_with(|message| {
+        if let Message::Estimate(estimate) = message
             && estimate.tick >= 300
         {
             estimate.segments[2].as_mut().expect("it is known").end[1] += 1;
         }
-        let mut buffer = [0; MAX_FRAME];
-        changed.push(encoder.encode(&message, &mut buffer).expect("it fits").to_vec());
-    }
-    let (recorded, stderr) = replayed(record(changed));
+    });
     assert_eq!(recorded["equal"], 300);
     let first = &recorded["first_difference"];
     assert_eq!((&first["tick"], &first["segment"]), (&300.into(), &3.into()));
@@ -103,6 +109,36 @@ fn the_first_estimate_that_differs_is_named() {
     assert_eq!(["theta_rad", "x_m", "y_m"].map(difference), [0, 0, 1]);
     assert!(stderr.contains("200 of 500 recorded estimates are not those of this replay"), "{stderr}");
     assert!(stderr.contains("tick 300, segment 3, recorded θ "), "{stderr}");
+}
+
+#[test]
+fn an_uncertainty_that_differs_by_a_bit_is_said() {
+    let (recorded, stderr) = replayed_with(|message| {
+        if let Message::Uncertainty(uncertainty) = message
+            && uncertainty.tick == 300
+        {
+            uncertainty.segments[5].end.as_mut().expect("it is known")[1] += 1;
+        }
+    });
+    assert_eq!((&recorded["equal"], &recorded["first_difference"]), (&500.into(), &Value::Null));
+    let told = &recorded["uncertainties"];
+    assert_eq!((&told["compared"], &told["equal"], &told["first_difference"]), (&20.into(), &19.into(), &300.into()));
+    assert!(stderr.contains("1 of 20 uncertainties are not, the first: tick 300"), "{stderr}");
+}
+
+#[test]
+fn a_contact_that_was_none_is_said() {
+    let (recorded, stderr) = replayed_with(|message| {
+        // In an event's place, which costs nothing else.
+        if let Message::Health(health) = message
+            && health.tick == 340
+        {
+            *message = Message::Event(Event::Contact(health.tick, [true; SEGMENTS]));
+        }
+    });
+    let told = &recorded["contacts"];
+    assert_eq!((&told["compared"], &told["equal"], &told["first_difference"]), (&1.into(), &0.into(), &340.into()));
+    assert!(stderr.contains("1 of 1 changes of contact are not, the first: tick 340"), "{stderr}");
 }
 
 #[test]
@@ -130,7 +166,7 @@ fn estimates_after_a_lost_sample_are_not_compared_until_the_next_tare() {
 fn a_lost_estimate_costs_nothing_else() {
     let board = SyntheticBoard::new(1, 5.0);
     let pieces = board.enumerate().map(|(tick, (mut frames, _))| {
-        if tick == 250 {
+        if tick == 251 {
             frames.pop();
         }
         frames.concat()
@@ -251,6 +287,15 @@ fn a_flipped_bit_costs_what_follows_and_is_never_read() {
         assert_eq!(recorded["first_difference"], Value::Null, "byte {at}: {stderr}");
         assert!(recorded["equal"].as_u64().expect("a count") > 100, "byte {at}: {stderr}");
     }
+}
+
+#[test]
+fn a_recording_of_a_board_of_another_protocol_is_refused_and_says_so() {
+    // COBS( 1 | CRC-32 ): a frame of version 1 without anything in it.
+    let frame = [[6, 1].as_slice(), &0xa505_df1b_u32.to_le_bytes(), &[0]].concat();
+    let folder = Folder::with("old.mcap", record([frame]));
+    let error = folder.refused(&["replay", "old.mcap", "--table", table()]);
+    assert!(error.contains("its board spoke protocol version 1, and this proprio reads version 2"), "{error}");
 }
 
 #[test]

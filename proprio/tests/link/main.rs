@@ -11,3 +11,4 @@ mod page;
 mod reconnect;
 mod requests;
 mod sessions;
+mod uncertainty;

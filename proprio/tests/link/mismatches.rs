@@ -58,13 +58,13 @@ fn another_firmware_that_says_the_same_messages_is_read_and_told() {
 
 #[test]
 fn another_version_of_the_protocol_is_told() {
-    // COBS( 2 | CRC-32 ): a frame of version 2 without anything in it, as zip's CRC-32 of the byte 02 has it.
-    let crc: [u8; 4] = 0x3c0c_8ea1_u32.to_le_bytes();
-    let frame = [&[6, 2], &crc[..], &[0]].concat();
+    // COBS( 1 | CRC-32 ): a frame of version 1 without anything in it, as zip's CRC-32 of the byte 01 has it.
+    let crc: [u8; 4] = 0xa505_df1b_u32.to_le_bytes();
+    let frame = [&[6, 1], &crc[..], &[0]].concat();
     let (mut intake, mut told) = (Intake::new(None), Vec::new());
     intake.open();
     for byte in frame {
         intake.push(byte, |taken| told.push(taken));
     }
-    assert_eq!(mismatches(&told), [&Mismatch::Protocol(2)]);
+    assert_eq!(mismatches(&told), [&Mismatch::Protocol(1)]);
 }

@@ -25,7 +25,7 @@ fn estimate(tick: u32) -> Estimate {
     Estimate { tick, segments: std::array::from_fn(|i| Some(segment(i))) }
 }
 
-fn health(tick: u32, imu_3: SensorState) -> Health {
+pub fn health(tick: u32, imu_3: SensorState) -> Health {
     let sensor = |state| SensorHealth { state, missed: 5 };
     let mut imu = [sensor(SensorState::Ok); SEGMENTS];
     imu[2] = sensor(imu_3);
@@ -47,7 +47,7 @@ fn health(tick: u32, imu_3: SensorState) -> Health {
     }
 }
 
-fn say(line: &Line, ticks: std::ops::Range<u32>) {
+pub fn say(line: &Line, ticks: std::ops::Range<u32>) {
     for tick in ticks {
         let mut board = line.board();
         board.say(&Message::Sample(sample(tick)));

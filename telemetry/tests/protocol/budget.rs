@@ -16,8 +16,9 @@ fn longest_frame(message: &Message) -> usize {
         Message::Sample(_) => 98,
         Message::Estimate(_) => 87,
         Message::Health(_) => 161,
-        Message::Event(_) => 16,
+        Message::Event(_) => 22,
         Message::Reply(_) => 17,
+        Message::Uncertainty(_) => 119,
     }
 }
 
@@ -37,6 +38,7 @@ fn the_stream_leaves_a_fifth_of_the_line_free_at_worst() {
             let per_second = match message {
                 Message::Sample(_) | Message::Estimate(_) => 100,
                 Message::Health(_) => 5,
+                Message::Uncertainty(_) => 4,
                 Message::Hello(_) => 1,
                 Message::Event(_) | Message::Reply(_) => 0,
             };
@@ -64,7 +66,7 @@ struct Later(usize);
 
 impl Payload for Later {
     fn topic(&self) -> u8 {
-        7
+        8
     }
 
     fn write(&self, body: &mut [u8]) -> Option<usize> {
@@ -81,7 +83,7 @@ impl Payload for Later {
 fn the_longest_frame_arrives_and_a_longer_one_is_refused() {
     let frame = encode(&mut Encoder::new(), &Later(245));
     assert_eq!(frame.len(), MAX_FRAME);
-    assert_eq!(decode(&mut Decoder::<Message>::new(), &frame), [Err(DecodeError::Topic(7))]);
+    assert_eq!(decode(&mut Decoder::<Message>::new(), &frame), [Err(DecodeError::Topic(8))]);
     assert_eq!(Encoder::new().encode(&Later(246), &mut [0; 2 * MAX_FRAME]), Err(EncodeError::Room));
 }
 

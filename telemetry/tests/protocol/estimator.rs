@@ -1,8 +1,8 @@
 //! Board and host make the same of a sample.
 
-use estimator_core::{Estimator, ImuReading, Method, Q, Segment, Table};
+use estimator_core::{Contact, Covariance, Estimator, ImuReading, Method, Q, Segment, Table};
 use proptest::prelude::*;
-use telemetry::{Estimate, Sample};
+use telemetry::{Estimate, Sample, SegmentUncertainty, Uncertainty};
 
 use crate::values::sample;
 
@@ -38,4 +38,25 @@ fn an_estimate_has_the_bits_of_the_shape_and_ends_where_it_is_unknown() {
         assert_eq!(segment.end.map(Q::from_bits), [end.x, end.y]);
     }
     assert_eq!(estimate.segments[4..], [None, None]);
+}
+
+#[test]
+fn an_uncertainty_has_the_bits_of_the_covariances_and_the_segments_that_are_touched() {
+    let [theta, xx, xy, yy] = [0.5, 1.5, -0.25, 2.0].map(Q::from_f64);
+    let errors = [
+        estimator_core::Uncertainty { theta: Some(theta), end: Some(Covariance { xx, xy, yy }) },
+        estimator_core::Uncertainty { theta: Some(theta), end: None },
+    ];
+    let contacts = [Contact { score_percent: 300, is_touched: true }, Contact { score_percent: 99, is_touched: false }];
+
+    let found = Uncertainty::of(7, &errors, &contacts);
+    assert_eq!(found.tick, 7);
+    // 0.5 in units of 2⁻²⁶, and so on; 300 is more than a byte holds.
+    let of = |theta, end, contact_percent, is_touched| SegmentUncertainty { theta, end, contact_percent, is_touched };
+    assert_eq!(found.segments[0], of(Some(1 << 25), Some([3 << 25, -(1 << 24), 1 << 27]), 255, true));
+    assert_eq!((found.segments[0].theta_rad2(), found.segments[1].end_m2()), (Some(0.5 / 64.0), None));
+    assert_eq!(found.segments[0].end_m2(), Some([1.5 / 64.0, -0.25 / 64.0, 2.0 / 64.0]));
+    assert_eq!(found.segments[1], of(Some(1 << 25), None, 99, false));
+    assert_eq!(found.segments[2..], [SegmentUncertainty::default(); 4]);
+    assert_eq!(telemetry::touched(&contacts), [true, false, false, false, false, false]);
 }

@@ -1,7 +1,10 @@
 //! Frames are what the protocol page says, and only those are accepted.
 
 use proptest::prelude::*;
-use telemetry::{DecodeError, Decoder, Encoder, Message, PROTOCOL_VERSION, Payload, Request, SCHEMA, topic};
+use telemetry::{
+    DecodeError, Decoder, Encoder, Event, Message, PROTOCOL_VERSION, Payload, Request, SCHEMA, SEGMENTS,
+    SegmentUncertainty, Uncertainty, topic,
+};
 
 use crate::values::{longest_messages, message, ping};
 use crate::{block_by_hand, decode, encode, frame_by_hand};
@@ -18,7 +21,7 @@ proptest! {
 
 #[test]
 fn topics_are_those_of_the_protocol_page() {
-    assert_eq!(longest_messages().map(|message| message.topic()), [1, 2, 3, 4, 5, 6]);
+    assert_eq!(longest_messages().map(|message| message.topic()), [1, 2, 3, 4, 5, 6, 7]);
     assert_eq!(ping(1).topic(), 0x80);
 }
 
@@ -26,7 +29,41 @@ fn topics_are_those_of_the_protocol_page() {
 fn the_schema_is_that_of_this_version() {
     // If this fails, a message's form has changed: raise PROTOCOL_VERSION, put the new hash here, and bring
     // docs/PROTOCOL.md up to date.
-    assert_eq!((PROTOCOL_VERSION, SCHEMA), (1, 0xA862_C5CE));
+    assert_eq!((PROTOCOL_VERSION, SCHEMA), (2, 0x03C8_8117));
+}
+
+/// The body that a message has on the line.
+fn body(message: &Message) -> Vec<u8> {
+    let mut body = [0; 250];
+    let length = message.write(&mut body).expect("a body has at most 245 bytes");
+    body[..length].to_vec()
+}
+
+#[test]
+fn every_byte_of_an_uncertainty_has_its_place() {
+    let mut segments = [SegmentUncertainty::default(); SEGMENTS];
+    segments[0] = SegmentUncertainty {
+        theta: Some(0x0403_0201),
+        end: Some([0x0807_0605, -2, 0x100F_0E0D]),
+        contact_percent: 250,
+        is_touched: true,
+    };
+    segments[4] = SegmentUncertainty { theta: Some(1), end: None, contact_percent: 7, is_touched: false };
+    segments[5].is_touched = true;
+    let found = body(&Message::Uncertainty(Uncertainty { tick: 0xA3A2_A1A0, segments }));
+
+    let mut expected = [0; 109];
+    expected[..7].copy_from_slice(&[0xA0, 0xA1, 0xA2, 0xA3, 0b01_0001, 0b00_0001, 0b10_0001]);
+    let first = [250, 1, 2, 3, 4, 5, 6, 7, 8, 0xFE, 0xFF, 0xFF, 0xFF, 0x0D, 0x0E, 0x0F, 0x10];
+    expected[7..24].copy_from_slice(&first);
+    expected[7 + 4 * 17..][..2].copy_from_slice(&[7, 1]);
+    assert_eq!(found, expected);
+}
+
+#[test]
+fn a_contact_names_the_tick_and_each_segment() {
+    let contact = Event::Contact(300, [false, true, true, false, false, false]);
+    assert_eq!(body(&Message::Event(contact)), [5, 0xac, 0x02, 0, 1, 1, 0, 0, 0]);
 }
 
 #[test]
@@ -44,8 +81,8 @@ fn an_unknown_topic_is_skipped_and_its_number_counts() {
     let message = &longest_messages()[4];
     decode(&mut decoder, &encode(&mut encoder, message));
     encode(&mut encoder, message);
-    let found = decode(&mut decoder, &frame_by_hand(PROTOCOL_VERSION, 7, 1, b"news"));
-    assert_eq!(found, [Err(DecodeError::Topic(7))]);
+    let found = decode(&mut decoder, &frame_by_hand(PROTOCOL_VERSION, 8, 1, b"news"));
+    assert_eq!(found, [Err(DecodeError::Topic(8))]);
     assert_eq!(decode(&mut decoder, &encode(&mut encoder, message)), [Ok(message.clone())]);
     assert_eq!((decoder.counts().unknown, decoder.counts().lost), (1, 0));
 }

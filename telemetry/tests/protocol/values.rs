@@ -19,12 +19,14 @@ pub fn message() -> impl Strategy<Value = Message> {
         health().prop_map(Message::Health),
         event().prop_map(Message::Event),
         reply().prop_map(Message::Reply),
+        uncertainty().prop_map(Message::Uncertainty),
     ]
 }
 
 pub fn request() -> impl Strategy<Value = Request> {
-    let rates = prop::array::uniform3(number!(u16))
-        .prop_map(|[sample, estimate, health]| Command::Rates(Rates { sample, estimate, health }));
+    let rates = prop::array::uniform4(number!(u16)).prop_map(|[sample, estimate, health, uncertainty]| {
+        Command::Rates(Rates { sample, estimate, health, uncertainty })
+    });
     let pressures = (prop::array::uniform(number!(u32)), number!(u16))
         .prop_map(|(pressures_pa, valid_ms)| Command::SetPressures(SetPressures { pressures_pa, valid_ms }));
     let plain = select(vec![Command::Ping, Command::Tare, Command::Arm, Command::Disarm, Command::Reboot]);
@@ -84,6 +86,14 @@ fn estimate() -> impl Strategy<Value = Estimate> {
     (number!(u32), segments).prop_map(|(tick, segments)| Estimate { tick, segments })
 }
 
+fn uncertainty() -> impl Strategy<Value = Uncertainty> {
+    let end = prop::option::of(prop::array::uniform3(number!(i32)));
+    let segment = (prop::option::of(number!(i32)), end, number!(u8), any::<bool>()).prop_map(
+        |(theta, end, contact_percent, is_touched)| SegmentUncertainty { theta, end, contact_percent, is_touched },
+    );
+    (number!(u32), prop::array::uniform(segment)).prop_map(|(tick, segments)| Uncertainty { tick, segments })
+}
+
 fn sensor_state() -> impl Strategy<Value = SensorState> {
     select(vec![
         SensorState::Ok,
@@ -136,6 +146,7 @@ fn event() -> impl Strategy<Value = Event> {
         actuation().prop_map(Event::Actuation),
         Just(Event::BusRecovery),
         number!(u32).prop_map(Event::Tare),
+        (number!(u32), any::<[bool; SEGMENTS]>()).prop_map(|(tick, touched)| Event::Contact(tick, touched)),
     ]
 }
 
@@ -158,7 +169,7 @@ pub fn ping(id: u32) -> Request {
 }
 
 /// Of each kind the message that takes the most bytes.
-pub fn longest_messages() -> [Message; 6] {
+pub fn longest_messages() -> [Message; 7] {
     [
         Message::Hello(longest_hello()),
         Message::Sample(Sample {
@@ -173,8 +184,17 @@ pub fn longest_messages() -> [Message; 6] {
             segments: [Some(SegmentEstimate { theta: i32::MIN, end: [i32::MIN; 2] }); SEGMENTS],
         }),
         Message::Health(longest_health()),
-        Message::Event(Event::Tare(u32::MAX)),
+        Message::Event(Event::Contact(u32::MAX, [true; SEGMENTS])),
         Message::Reply(Reply { id: u32::MAX, outcome: Outcome::Nack(Refusal::Busy) }),
+        Message::Uncertainty(Uncertainty {
+            tick: u32::MAX,
+            segments: [SegmentUncertainty {
+                theta: Some(i32::MIN),
+                end: Some([i32::MIN; 3]),
+                contact_percent: u8::MAX,
+                is_touched: true,
+            }; SEGMENTS],
+        }),
     ]
 }
 

@@ -42,7 +42,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 
     record(&board, &path)?;
     let expected = replay(board.samples());
-    let equal = board.estimates().zip(&expected).filter(|(found, expected)| found == expected).count();
+    let equal = board.estimates().zip(&expected).filter(|(found, expected)| **found == expected.estimate).count();
     println!(
         "{equal} of {} estimates of the board are, bit for bit, the host's of the same samples",
         board.estimates().count()

@@ -16,3 +16,4 @@ mod sensors;
 mod terminal;
 #[cfg(unix)]
 mod tools;
+mod touch;

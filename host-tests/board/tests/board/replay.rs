@@ -2,19 +2,29 @@
 
 use board_tests::{Board, replay};
 use rig_twin::{Program, Scenario};
-use telemetry::{Command, Outcome};
+use telemetry::{Command, Event, Outcome};
 use virtual_due::Rig;
 
-/// Every estimate of the board is the host's of the same sample.
-fn assert_replays(board: &Board) {
+/// All that the board says of the arm's shape is the host's of the same samples: every estimate, uncertainty and contact.
+pub fn assert_replays(board: &Board) {
     let expected = replay(board.samples());
     let found: Vec<_> = board.estimates().copied().collect();
     assert!(found.len() > 100, "{} estimates", found.len());
     // The last sample may have left the board before its estimate.
     assert!(expected.len() - found.len() <= 1);
     for (found, expected) in found.iter().zip(&expected) {
-        assert_eq!(found, expected);
+        assert_eq!(*found, expected.estimate);
     }
+    let uncertainties: Vec<_> = board.uncertainties().collect();
+    assert!(uncertainties.len() >= found.len() / 25, "{} uncertainties", uncertainties.len());
+    for found in uncertainties {
+        let expected = expected.iter().find(|expected| expected.uncertainty.tick == found.tick);
+        assert_eq!(Some(*found), expected.map(|expected| expected.uncertainty));
+    }
+    let told: Vec<_> = board.events().filter(|event| matches!(event, Event::Contact(..))).collect();
+    let expected: Vec<_> = expected.iter().filter_map(|expected| expected.contact).collect();
+    assert!(told.len() == expected.len() || told.len() + 1 == expected.len(), "{told:?} and not {expected:?}");
+    assert_eq!(told, expected[..told.len()]);
 }
 
 #[test]

@@ -23,7 +23,7 @@ fn a_ping_is_answered_with_a_greeting() {
 #[test]
 fn rates_slow_the_stream_down() {
     let mut board = ready();
-    assert_eq!(board.ask(Command::Rates(Rates { sample: 0, estimate: 10, health: 0 })), Outcome::Ack);
+    assert_eq!(board.ask(Command::Rates(Rates { sample: 0, estimate: 10, health: 0, uncertainty: 0 })), Outcome::Ack);
     let before = (board.samples().count(), board.estimates().count(), board.healths().count());
     board.run_ms(1000);
     let after = (board.samples().count(), board.estimates().count(), board.healths().count());

@@ -1,0 +1,68 @@
+//! What the board says of who touches the arm, and of how well it knows its shape.
+
+use board_tests::Board;
+use rig_twin::{Program, Push, Scenario};
+use telemetry::{Command, Event, Message, Outcome, SEGMENTS};
+use virtual_due::{CYCLES_PER_SECOND, Rig};
+
+use crate::replay::assert_replays;
+
+/// What a push may take until it is found, s.
+const FOUND_S: f64 = 0.5;
+/// What its event may take from the sample to the host: a tick's work, and what waits before it on the line, s.
+const LINE_S: f64 = 0.05;
+
+/// A board whose arm swings and is pushed by a stick, for some seconds.
+fn pushed(seed: u64, seconds: u64) -> Board {
+    let program = Program::new(Scenario::Two, seed);
+    let mut board = Board::new(Rig::new(Scenario::Two, seed));
+    board.run_ms(2000);
+    assert_eq!(board.ask(Command::Arm), Outcome::Ack);
+    while board.machine.seconds() < seconds as f64 {
+        board.set_pressures(program.duties(board.machine.seconds()));
+        board.run_ms(50);
+    }
+    board
+}
+
+/// When the host had each event whole by which contact of a segment begins, s since power-on.
+fn begins_s(board: &Board, segment: usize) -> Vec<f64> {
+    let mut was_touched = false;
+    let begins = board.received().iter().filter_map(|received| match received.message {
+        Message::Event(Event::Contact(_, touched)) => {
+            let begins = touched[segment] && !was_touched;
+            was_touched = touched[segment];
+            begins.then_some(received.at as f64 / CYCLES_PER_SECOND as f64)
+        }
+        _ => None,
+    });
+    begins.collect()
+}
+
+#[test]
+fn a_push_is_told_within_half_a_second_and_what_the_line_takes() {
+    let board = pushed(71, 90);
+    let pushes = board.machine.world().twin().pushes();
+    let strong = |push: &&Push| push.bend_rad.abs() > 10_f64.to_radians() && push.start_s + FOUND_S + LINE_S < 90.0;
+    let strong: Vec<_> = pushes.iter().filter(strong).collect();
+    assert!(strong.len() >= 5, "{pushes:?}");
+    for push in strong {
+        let (in_time, told_s) = (push.start_s..=push.start_s + FOUND_S + LINE_S, begins_s(&board, push.segment));
+        assert!(told_s.iter().any(|told_s| in_time.contains(told_s)), "{push:?} was told of at {told_s:?}");
+    }
+    assert_replays(&board);
+}
+
+#[test]
+fn the_tips_ellipse_is_known_four_times_a_second_and_wider_than_the_bases() {
+    let mut board = Board::new(Rig::new(Scenario::One, 11));
+    board.run_ms(5000);
+    let known: Vec<_> = board.uncertainties().filter(|uncertainty| uncertainty.tick >= 300).collect();
+    assert!((7..=8).contains(&known.len()), "{}", known.len());
+    for uncertainty in known {
+        let ends: Vec<_> = uncertainty.segments.iter().filter_map(|segment| segment.end_m2()).collect();
+        assert_eq!(ends.len(), SEGMENTS, "{uncertainty:?}");
+        let spread = |[xx, _, yy]: [f64; 3]| xx + yy;
+        assert!(ends.windows(2).all(|pair| spread(pair[0]) < spread(pair[1])), "{ends:?}");
+    }
+}
