@@ -6,6 +6,8 @@ mod drive;
 mod engine;
 mod faults;
 mod last_words;
+#[cfg(unix)]
+mod noise;
 mod pressures;
 #[cfg(unix)]
 mod recording;
