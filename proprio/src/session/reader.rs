@@ -10,7 +10,7 @@ use telemetry::{Hello, SEGMENTS};
 use super::csv_file::CsvFile;
 use super::csv_rows::CsvRows;
 use super::source::{Kind, Source};
-use super::{Needs, Problem, Row, SessionError};
+use super::{Mark, Needs, Problem, Row, SessionError};
 use crate::recording::{Item, RawReader, ReadError, Reader, RecordedRows};
 
 /// Rows at the start whose time stamps tell the sample rate.
@@ -188,6 +188,15 @@ impl SessionReader {
         match &self.rows {
             Rows::Csv(_) => None,
             Rows::Recorded(rows, _) => rows.hello(),
+        }
+    }
+
+    /// The moments that were marked, as far as it was read.
+    #[must_use]
+    pub fn marks(&self) -> &[Mark] {
+        match &self.rows {
+            Rows::Csv(_) => &[],
+            Rows::Recorded(rows, _) => rows.marks(),
         }
     }
 
