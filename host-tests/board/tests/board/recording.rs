@@ -4,29 +4,17 @@
 use std::fs;
 use std::io::{BufRead, BufReader};
 use std::path::Path;
-use std::process::{Command, Stdio};
+use std::process::Stdio;
 use std::time::{Duration, Instant};
 
+use board_tests::DueProcess;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
-use crate::tools::{Running, done, folder, proprio, replayed, table, tool};
+use crate::tools::{Running, done, folder, proprio, replayed, table};
 
 /// Size of a recording of 20 s, bytes: at most 150 kB a second.
 const LONG: u64 = 2_400_000;
-
-/// The virtual Due with the firmware, and the path of its serial port.
-fn virtual_due(folder: &Path) -> (Running, String) {
-    let mut command = Command::new(tool("virtual-due"));
-    command.current_dir(folder).args(["run", "firmware", "--speed", "real", "--serial", "pty"]);
-    let mut child = command.stdin(Stdio::null()).stderr(Stdio::piped()).spawn().expect("the emulator starts");
-    let mut lines = BufReader::new(child.stderr.take().expect("a pipe")).lines();
-    let first = lines.next().expect("it says its port").expect("it writes UTF-8");
-    // It says more, which must not fill the pipe.
-    std::thread::spawn(move || lines.for_each(drop));
-    let port = first.strip_prefix("serial port: ").expect("the path of its port").to_owned();
-    (Running(child), port)
-}
 
 /// Records from a port until the file has so many bytes, and for a while after; then comes SIGKILL, at whatever byte it is.
 fn record_and_kill(folder: &Path, port: &str, name: &str, bytes: u64, wait: Duration) {
@@ -53,8 +41,8 @@ fn recovered(folder: &Path, name: &str) -> (u64, String) {
 #[test]
 fn a_recording_of_the_firmware_that_is_killed_or_cut_is_recovered_and_replays_bit_for_bit() {
     let folder = folder("killed");
-    let (_due, port) = virtual_due(&folder);
-    record_and_kill(&folder, &port, "killed.mcap", LONG, Duration::ZERO);
+    let due = DueProcess::start(&folder);
+    record_and_kill(&folder, &due.port, "killed.mcap", LONG, Duration::ZERO);
     let (whole, report) = recovered(&folder, "killed.mcap");
     assert!(whole > 1500, "{report}");
     assert!(report.contains("\"table_matches\":true"), "{report}");
@@ -74,12 +62,12 @@ fn a_recording_of_the_firmware_that_is_killed_or_cut_is_recovered_and_replays_bi
 #[test]
 fn a_recorder_may_be_killed_at_any_moment() {
     let folder = folder("killed at random");
-    let (_due, port) = virtual_due(&folder);
+    let due = DueProcess::start(&folder);
     let mut random = ChaCha8Rng::seed_from_u64(4);
     for name in ["a.mcap", "b.mcap", "c.mcap", "d.mcap"] {
         let bytes = 250_000 + u64::from(random.next_u32() % 350_000);
         let wait = Duration::from_millis(u64::from(random.next_u32() % 1000));
-        record_and_kill(&folder, &port, name, bytes, wait);
+        record_and_kill(&folder, &due.port, name, bytes, wait);
         let (saved, report) = recovered(&folder, name);
         // 150 kB a second at most.
         assert!(saved + 200 > bytes / 1500, "{saved} of {bytes} bytes: {report}");
