@@ -7,6 +7,8 @@ mod engine;
 mod faults;
 mod last_words;
 #[cfg(unix)]
+mod link;
+#[cfg(unix)]
 mod noise;
 mod pressures;
 #[cfg(unix)]

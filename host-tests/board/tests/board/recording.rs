@@ -93,6 +93,26 @@ fn status_says_how_the_virtual_due_is() {
 }
 
 #[test]
+fn status_is_json_for_programs() {
+    let folder = folder("status as JSON");
+    let printed = done(&folder, &["status", "--virtual", "--firmware", "firmware", "--table", &table(), "--json"]);
+    let status: serde_json::Value = serde_json::from_str(&printed).expect("JSON and nothing else");
+    let hello = &status["hello"];
+    assert_eq!(
+        (&hello["arm"], &hello["boot"], &status["proprio"]),
+        (&"planar-6".into(), &1.into(), &hello["firmware"])
+    );
+    assert_eq!((&status["answers"], &status["table_matches"]), (&true.into(), &true.into()), "{printed}");
+    assert_eq!(
+        (&status["received"]["lost"], &status["health"]["imu"][5]["state"]),
+        (&0.into(), &"Ok".into()),
+        "{printed}"
+    );
+    let samples_hz = status["rates"]["samples_hz"].as_f64().expect("a number");
+    assert!((90.0..110.0).contains(&samples_hz), "{samples_hz}");
+}
+
+#[test]
 fn monitor_prints_a_line_a_second_for_a_terminal() {
     let folder = folder("plain");
     let mut command = proprio(&folder, &["monitor", "--plain", "--virtual", "--firmware", "firmware"]);
