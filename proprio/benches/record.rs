@@ -1,13 +1,18 @@
-//! A day of a board's full stream, 8.64 million samples, recorded, and replayed by the tool: what that takes of a core, and of
-//! memory, which must not grow with the day: `cargo bench --package proprio --bench record`.
+//! A day of a board's full stream, 8.64 million samples, recorded, replayed by the tool, and opened on the page: what that takes of
+//! a core, and of memory, which must not grow with the day: `cargo bench --package proprio --bench record`.
 
+use std::env;
 use std::fs;
-use std::io::{self, BufWriter, Write};
+use std::io::{self, BufWriter, Read, Write};
+use std::net::TcpStream;
+use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 use proprio::link::{HostNs, Intake, Taken};
+use proprio::monitor::{Monitor, Options};
 use proprio::recording::Recorder;
+use proprio::replay::NamedTable;
 use telemetry::{
     BEND_SENSORS, Encoder, Estimate, Hello, MAX_FRAME, Message, PROTOCOL_VERSION, ResetCause, SCHEMA, SEGMENTS, Sample,
     SegmentEstimate, Text,
@@ -20,7 +25,13 @@ const DAY_S: f64 = 86_400.0;
 const START_NS: u64 = 1_764_000_000_000_000_000;
 const TABLE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../calibration-tables/planar-6.toml");
 
+/// With it, this program opens what comes to it on the page.
+const OPEN: &str = "--open-on-the-page";
+
 fn main() {
+    if env::args().any(|argument| argument == OPEN) {
+        return open_on_the_page();
+    }
     let start = Instant::now();
     record(io::sink(), DAY_TICKS, |tick| {
         if tick % (6 * HOUR_TICKS) == HOUR_TICKS - 1 {
@@ -30,9 +41,16 @@ fn main() {
     .expect("nothing is written");
     println!("recorded a day: {:.2} % of a core's time", start.elapsed().as_secs_f64() / DAY_S * 100.0);
     for (name, ticks) in [("a quarter of a day", DAY_TICKS / 4), ("a day", DAY_TICKS)] {
-        let start = Instant::now();
-        let peak = replay(ticks).unwrap_or_default();
-        println!("replayed {name}, {ticks} samples, in {:.0} s: peak memory {peak}", start.elapsed().as_secs_f64());
+        let mut replay = Command::new(env!("CARGO_BIN_EXE_proprio"));
+        replay.args(["replay", "/dev/stdin", "--table", TABLE]);
+        let mut open = Command::new(env::current_exe().expect("the system tells"));
+        open.arg(OPEN);
+        for (done, mut command) in [("replayed", replay), ("opened on the page", open)] {
+            let start = Instant::now();
+            let peak = feed(&mut command, ticks).unwrap_or_default();
+            let seconds = start.elapsed().as_secs_f64();
+            println!("{done} {name}, {ticks} samples, in {seconds:.0} s: peak memory {peak}");
+        }
     }
 }
 
@@ -63,10 +81,8 @@ fn record(sink: impl Write, ticks: u32, mut show: impl FnMut(u32)) -> io::Result
     recorder.finish().map(drop)
 }
 
-/// `proprio replay` of so many ticks, which it reads from a pipe, as 11 GB a day need not be kept. Gives its peak memory.
-fn replay(ticks: u32) -> Option<String> {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_proprio"));
-    command.args(["replay", "/dev/stdin", "--table", TABLE]);
+/// Feeds so many ticks to a program, by a pipe, as 11 GB a day need not be kept. Gives its peak memory.
+fn feed(command: &mut Command, ticks: u32) -> Option<String> {
     let mut child = command.stdin(Stdio::piped()).stdout(Stdio::null()).stderr(Stdio::null()).spawn().ok()?;
     let pipe = BufWriter::new(child.stdin.take()?);
     let writer = std::thread::spawn(move || record(pipe, ticks, |_| {}));
@@ -78,9 +94,23 @@ fn replay(ticks: u32) -> Option<String> {
         }
         std::thread::sleep(Duration::from_millis(20));
     };
-    writer.join().expect("it does not panic").expect("the replay reads to the end");
+    writer.join().expect("it does not panic").expect("it reads to the end");
     assert!(status.success(), "{status}");
     peak
+}
+
+/// The page's session, as a browser fetches it.
+fn open_on_the_page() {
+    let table = NamedTable::load(Path::new(TABLE)).expect("the reference table");
+    let (folder, session) = (env::temp_dir(), Some("/dev/stdin".into()));
+    let options = Options { port: 0, table: Some(table), folder, token: None, session };
+    let monitor = Monitor::start(None, options).expect("a free port");
+    let mut stream = TcpStream::connect(monitor.address()).expect("it listens");
+    let host = monitor.address();
+    write!(stream, "GET /session?name=stdin HTTP/1.1\r\nHost: {host}\r\nConnection: close\r\n\r\n").expect("it reads");
+    let mut answer = Vec::new();
+    stream.read_to_end(&mut answer).expect("it answers");
+    assert!(answer.len() > 1_000_000, "{}", String::from_utf8_lossy(&answer));
 }
 
 fn messages(tick: u32) -> impl Iterator<Item = Message> {
