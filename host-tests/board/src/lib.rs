@@ -4,12 +4,11 @@ mod board;
 #[cfg(unix)]
 pub mod browser;
 mod build;
-mod due;
+pub mod due;
 mod replay;
 mod view;
 
 pub use board::{Board, Received, UART};
 pub use build::{elf, firmware};
-pub use due::{DueProcess, tool};
 pub use replay::{replay, table};
 pub use view::View;

@@ -9,7 +9,7 @@ mod figure {
     use std::time::{Duration, Instant};
     use std::{env, fs};
 
-    use board_tests::{DueProcess, tool};
+    use board_tests::due::{DueProcess, tool};
 
     /// Before the measurement, s: the start, and the tare.
     const BEFORE_S: u64 = 5;

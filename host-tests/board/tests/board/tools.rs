@@ -4,7 +4,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 
-use board_tests::{firmware, tool};
+use board_tests::due::tool;
+use board_tests::firmware;
 
 /// A folder below cargo's own, with the firmware in it.
 pub fn folder(name: &str) -> PathBuf {
