@@ -1,6 +1,6 @@
 //! `[contact]` and `[uncertainty]`: when something touches the arm, and how far an estimate may be off.
 
-use std::f64::consts::FRAC_2_PI;
+use std::f64::consts::TAU;
 
 use estimator_core::{Alike, ContactRule, SCALE, Scalar, Turns, UncertaintyRule};
 use serde::{Deserialize, Serialize};
@@ -78,7 +78,7 @@ impl UncertaintyKeys {
         let measurement = measurement_deg2 * 1_f64.to_radians().powi(2);
         UncertaintyRule {
             theta: angle(self.theta_deg),
-            drift: scaled(self.drift_share * measurement * FRAC_2_PI / f64::from(UncertaintyRule::<S>::DRIFT_SCALE)),
+            drift: scaled(self.drift_share * measurement / TAU),
             bend: angle(self.bend_deg),
             contact: angle(self.contact_deg),
             end: scaled((self.end_mm / 1000.0).powi(2)),

@@ -1,5 +1,7 @@
 //! Drift anchor: the moving average of what the IMUs say beyond the bend sensors (paper, eq. 2 and 3).
 
+use core::ops::Range;
+
 use crate::angle::Turns;
 
 /// When the anchor averages and when it corrects; the same for all segments.
@@ -87,25 +89,27 @@ impl Pace {
         }
         slot
     }
+
+    /// The phases that belong to the newest sample: those of all samples from one complete value to the next are those
+    /// from 0 to the sample rate, each once.
+    pub(crate) fn phases(&self, rule: &AnchorRule, slot: Slot) -> Range<u32> {
+        let first = if slot.is_complete() { 0 } else { self.phase };
+        first..self.phase.saturating_add(rule.rate_millihertz)
+    }
 }
 
 /// A mean of up to 65 535 values.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Mean {
+struct Mean {
     sum: Turns,
     count: i32,
 }
 
 impl Mean {
-    pub(crate) const EMPTY: Self = Self { sum: Turns::ZERO, count: 0 };
+    const EMPTY: Self = Self { sum: Turns::ZERO, count: 0 };
 
     #[inline]
-    pub(crate) fn add(&mut self, value: Turns) {
-        *self = Self { sum: self.sum + value, count: self.count + 1 };
-    }
-
-    #[inline]
-    pub(crate) fn value(self) -> Option<Turns> {
+    fn value(self) -> Option<Turns> {
         (self.count != 0).then(|| self.sum.mean_of(self.count as u16))
     }
 }

@@ -1,14 +1,17 @@
 //! What goes beyond the paper, of one segment: the observer's drift correction, and what tells of contact.
 //!
-//! All of it works on values, means of the samples since the value before, at the anchor's pace.
+//! All of it works on values, means of the samples since the value before, at the anchor's pace. The values of all segments
+//! are complete at once, but each segment has its turn to work on its own, so that no sample costs much more than another.
 
-use crate::anchor::{Mean, Slot};
+use core::ops::Range;
+
+use crate::anchor::Slot;
 use crate::angle::Turns;
 use crate::contact::Touch;
 use crate::hysteresis::Memory;
-use crate::observer::{Disagreement, Observer, ObserverRule};
+use crate::observer::{Disagreement, Observer};
 use crate::scalar::Scalar;
-use crate::table::Segment;
+use crate::table::{Segment, Table};
 use crate::uncertainty::lever;
 
 /// What is remembered of one segment beyond the paper's method.
@@ -16,13 +19,25 @@ use crate::uncertainty::lever;
 pub(crate) struct Beyond<S> {
     pub memory: Memory<S>,
     pub observer: Observer,
-    /// θ_imu and θ_bend since the value before, over the samples that have both.
-    means: [Mean; 2],
+    /// Since the newest value,
+    growing: Sums,
+    /// and of that value.
+    complete: Sums,
+    /// When it is worked on, as a phase of the [`Pace`](crate::Pace).
+    turn: u32,
     pub touch: Touch,
     /// Whether θ_c and θ_bend were there in the newest sample.
     pub seen: Seen,
     /// As [`Spread::step`](crate::Spread::step) takes it.
     pub lever: S,
+}
+
+/// θ_imu and θ_bend over the samples of a value that have both.
+#[derive(Debug, Clone, Copy, Default)]
+struct Sums {
+    imu: Turns,
+    bend: Turns,
+    count: i32,
 }
 
 /// Which of a segment's two angles a sample has.
@@ -33,30 +48,42 @@ pub(crate) struct Seen {
 }
 
 impl<S: Scalar> Beyond<S> {
-    pub fn new(segment: &Segment<S>, observer: Option<&ObserverRule>) -> Self {
+    /// Of the segment with this place in the table.
+    pub fn new(place: usize, segment: &Segment<S>, table: &Table<S>) -> Self {
+        let share = table.anchor.sample_rate_millihertz / (table.segments.len() as u32).max(1);
         Self {
             memory: Memory::new(segment.hysteresis),
-            observer: observer.map_or_else(Observer::idle, Observer::new),
-            means: [Mean::EMPTY; 2],
+            observer: table.observer.as_ref().map_or_else(Observer::idle, Observer::new),
+            growing: Sums::default(),
+            complete: Sums::default(),
+            turn: share * place as u32,
             touch: Touch::new(),
             seen: Seen { imu: false, bend: false },
             lever: lever(segment),
         }
     }
 
-    /// Takes one sample's θ_imu and θ_bend, where both are known; gives the value that it completes.
-    #[inline(never)]
-    pub fn value(&mut self, slot: Slot, both: Option<(Turns, Turns)>) -> Option<Disagreement> {
-        let [imu, bend] = &mut self.means;
-        if let Some((of_imu, of_bend)) = both {
-            imu.add(of_imu);
-            bend.add(of_bend);
+    /// Takes one sample's θ_imu and θ_bend, where both are known.
+    #[inline]
+    pub fn add(&mut self, slot: Slot, both: Option<(Turns, Turns)>) {
+        if let Some((imu, bend)) = both {
+            let Sums { imu: of_imu, bend: of_bend, count } = self.growing;
+            self.growing = Sums { imu: of_imu + imu, bend: of_bend + bend, count: count + 1 };
         }
-        if !slot.is_complete() {
-            return None;
+        if slot.is_complete() {
+            self.complete = core::mem::take(&mut self.growing);
         }
-        let means = core::mem::replace(&mut self.means, [Mean::EMPTY; 2]).map(Mean::value);
-        let [Some(imu), Some(bend)] = means else { return None };
-        Some(Disagreement { imu, bend })
+    }
+
+    /// Whether these phases are the segment's turn.
+    pub fn is_due(&self, phases: &Range<u32>) -> bool {
+        phases.contains(&self.turn)
+    }
+
+    /// The newest value, where there is one.
+    pub fn value(&self) -> Option<Disagreement> {
+        let Sums { imu, bend, count } = self.complete;
+        let mean = |sum: Turns| sum.mean_of(count as u16);
+        (count != 0).then(|| Disagreement { imu: mean(imu), bend: mean(bend) })
     }
 }

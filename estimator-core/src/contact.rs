@@ -63,13 +63,11 @@ pub(crate) struct Touch {
     alike: Watch,
     /// θ_c of the newest value, in units of 2⁻³² turns.
     pub theta: Option<i32>,
-    pub contact: Contact,
 }
 
 impl Touch {
     pub const fn new() -> Self {
-        let contact = Contact { score_percent: 0, is_touched: false };
-        Self { bend: Watch::new(), alike: Watch::new(), theta: None, contact }
+        Self { bend: Watch::new(), alike: Watch::new(), theta: None }
     }
 
     /// Takes a value of the segment's own: θ_c and θ_bend.
@@ -78,21 +76,24 @@ impl Touch {
         let value = value.map(|(corrected, bend)| (corrected.bits() as i32, bend.bits() as i32));
         self.theta = value.map(|(corrected, _)| corrected);
         let value = value.map(|(corrected, bend)| Value { disagreement: corrected.wrapping_sub(bend), angle: bend });
-        self.contact = self.bend.step(Limits { change: rule.bend.bits() as u32, kept: KEPT }, value);
+        self.bend.step(Limits { change: rule.bend.bits() as u32, kept: KEPT }, value);
     }
 
-    /// Takes what the segment differs by from its like, where both are known; gives what that tells of either.
+    /// Takes what the segment differs by from its like, where both are known.
     #[inline(never)]
-    pub fn compare(&mut self, rule: &ContactRule, difference: Option<i32>) -> Contact {
+    pub fn compare(&mut self, rule: &ContactRule, difference: Option<i32>) {
         let value = difference.map(|disagreement| Value { disagreement, angle: 0 });
-        self.alike.step(Limits { change: rule.alike.bits() as u32, kept: 31 }, value)
+        self.alike.step(Limits { change: rule.alike.bits() as u32, kept: 31 }, value);
     }
 
-    /// The same contact, seen another way.
-    pub fn join(&mut self, other: Contact) {
-        let Contact { score_percent, is_touched } = &mut self.contact;
-        *score_percent = (*score_percent).max(other.score_percent);
-        *is_touched |= other.is_touched;
+    /// What the segment's own sensors tell.
+    pub const fn bend(&self) -> Contact {
+        self.bend.contact
+    }
+
+    /// What the segment and its like tell, of either.
+    pub const fn alike(&self) -> Contact {
+        self.alike.contact
     }
 }
 
@@ -104,6 +105,7 @@ struct Watch {
     known: u8,
     oldest: u8,
     going_on: Option<Departure>,
+    contact: Contact,
 }
 
 /// A disagreement, and the angle whose motion excuses a part of it.
@@ -132,16 +134,26 @@ struct Limits {
 
 impl Watch {
     const fn new() -> Self {
-        Self { recent: [Value { disagreement: 0, angle: 0 }; SPAN], known: 0, oldest: 0, going_on: None }
+        Self {
+            recent: [Value { disagreement: 0, angle: 0 }; SPAN],
+            known: 0,
+            oldest: 0,
+            going_on: None,
+            contact: Contact { score_percent: 0, is_touched: false },
+        }
     }
 
     /// Takes one value. A missing one leaves a gap that nothing is concluded over.
-    fn step(&mut self, limits: Limits, value: Option<Value>) -> Contact {
-        let Some(value) = value else {
+    fn step(&mut self, limits: Limits, value: Option<Value>) {
+        let score_percent = value.map_or(0, |value| self.score(limits, value));
+        if value.is_none() {
             self.known = 0;
-            return Contact { score_percent: 0, is_touched: self.going_on.is_some() };
-        };
-        let Some(place) = self.recent.get_mut(usize::from(self.oldest)) else { return Contact::default() };
+        }
+        self.contact = Contact { score_percent, is_touched: self.going_on.is_some() };
+    }
+
+    fn score(&mut self, limits: Limits, value: Value) -> u16 {
+        let Some(place) = self.recent.get_mut(usize::from(self.oldest)) else { return 0 };
         let before = core::mem::replace(place, value);
         self.oldest = if usize::from(self.oldest) + 1 < SPAN { self.oldest + 1 } else { 0 };
         let is_known = usize::from(self.known) == SPAN;
@@ -159,7 +171,7 @@ impl Watch {
             }
             None => None,
         };
-        Contact { score_percent, is_touched: self.going_on.is_some() }
+        score_percent
     }
 }
 
@@ -202,7 +214,8 @@ mod tests {
         let mut watch = Watch::new();
         let step = |degrees: i32| {
             let angle = (degrees * DEGREE).wrapping_mul(10);
-            watch.step(limits, Some(Value { disagreement: degrees * DEGREE, angle })).is_touched
+            watch.step(limits, Some(Value { disagreement: degrees * DEGREE, angle }));
+            watch.contact.is_touched
         };
         degrees.into_iter().map(step).collect()
     }
@@ -239,7 +252,8 @@ mod tests {
         let mut watch = Watch::new();
         let at = |degrees: i32| Some(Value { disagreement: degrees * DEGREE, angle: 0 });
         for value in [at(0), at(0), at(0), at(0), at(0), at(0), None, at(20), at(20), at(20), at(20), at(20), at(20)] {
-            assert!(!watch.step(PAIR, value).is_touched);
+            watch.step(PAIR, value);
+            assert!(!watch.contact.is_touched);
         }
     }
 

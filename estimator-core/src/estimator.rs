@@ -1,5 +1,7 @@
 //! The pipeline: one [`Sample`] in, one [`Estimate`] out, by all four methods.
 
+use core::ops::Range;
+
 use heapless::Vec;
 use nalgebra::{SVector, Vector2};
 
@@ -7,7 +9,7 @@ use crate::anchor::{Anchor, Pace, Slot};
 use crate::angle::{Angle, Turns};
 use crate::bend::BendMap;
 use crate::beyond::{Beyond, Seen};
-use crate::contact::{ContactRule, Contacts};
+use crate::contact::{Contact, ContactRule, Contacts};
 use crate::filter::{Block, Gains};
 use crate::imu::{Heading, Tangent};
 use crate::pcc::{Link, Pcc, SegmentShape, chain};
@@ -96,6 +98,7 @@ pub struct Estimator<'t, S, const N: usize, const W: usize> {
     has_bend_sensors: bool,
     is_beyond_the_paper: bool,
     pace: Pace,
+    has_value: bool,
     states: Vec<State<S, W>, N>,
     fused: Shape<S, N>,
 }
@@ -144,6 +147,7 @@ impl<'t, S: Scalar, const N: usize, const W: usize> Estimator<'t, S, N, W> {
             has_bend_sensors: false,
             is_beyond_the_paper: false,
             pace: Pace::new(),
+            has_value: false,
             states: Vec::new(),
             fused: Vec::new(),
         }
@@ -158,6 +162,7 @@ impl<'t, S: Scalar, const N: usize, const W: usize> Estimator<'t, S, N, W> {
         self.states.clear();
         self.fused.clear();
         self.pace = Pace::new();
+        self.has_value = false;
         let window = table.anchor.window;
         if window == 0 || usize::from(window) > W {
             return Err(TableError::Window { found: window, room: W });
@@ -168,9 +173,9 @@ impl<'t, S: Scalar, const N: usize, const W: usize> Estimator<'t, S, N, W> {
         }
         self.has_bend_sensors = table.segments.iter().any(|segment| segment.bend.iter().any(Option::is_some));
         self.is_beyond_the_paper = table.is_beyond_the_paper();
-        for segment in table.segments {
+        for (place, segment) in table.segments.iter().enumerate() {
             // There is room: it was checked.
-            let _ = self.states.push(State::new(segment, table));
+            let _ = self.states.push(State::new(place, segment, table));
             let _ = self.fused.push(SegmentShape { theta: None, end: None });
         }
         Ok(())
@@ -182,6 +187,7 @@ impl<'t, S: Scalar, const N: usize, const W: usize> Estimator<'t, S, N, W> {
         self.take(sample, |state, thetas| {
             let _ = segments.push(state.estimate(&thetas)); // There is room: `start` has checked.
         });
+        self.chain_fused();
         Estimate { time_us: sample.time_us, segments }
     }
 
@@ -192,12 +198,17 @@ impl<'t, S: Scalar, const N: usize, const W: usize> Estimator<'t, S, N, W> {
     pub fn fuse(&mut self, sample: &Sample<N>) -> &Shape<S, N> {
         self.take(sample, |_, _| ());
         // Over the states again, which leaves more of the registers to each of the two.
+        self.chain_fused();
+        &self.fused
+    }
+
+    #[inline]
+    fn chain_fused(&mut self) {
         let Self { states, fused, .. } = self;
         let links = states.iter().map(|state| state.fused().map(|fused| fused.link));
         for (segment, shape) in fused.iter_mut().zip(chain(links)) {
             *segment = shape;
         }
-        fused
     }
 
     #[inline]
@@ -213,10 +224,12 @@ impl<'t, S: Scalar, const N: usize, const W: usize> Estimator<'t, S, N, W> {
     /// Takes one sample, segment by segment from the base to the tip, and tells `then` of each.
     #[inline]
     fn take_by<const BEYOND: bool>(&mut self, sample: &Sample<N>, mut then: impl FnMut(&State<S, W>, Thetas<S>)) {
-        let Self { table, has_bend_sensors, pace, states, .. } = self;
+        let Self { table, has_bend_sensors, pace, has_value, states, .. } = self;
         let Table { anchor: rule, .. } = table;
         let has_bend_sensors = *has_bend_sensors;
         let slot = pace.tick(rule);
+        *has_value |= BEYOND && slot.is_complete();
+        let phases = if BEYOND && *has_value { pace.phases(rule, slot) } else { 0..0 };
         let mut before = &Tangent::BASE;
         let readings = sample.bend.iter().zip(&sample.imu);
         for (state, (counts, imu)) in states.iter_mut().zip(readings) {
@@ -226,7 +239,7 @@ impl<'t, S: Scalar, const N: usize, const W: usize> Estimator<'t, S, N, W> {
             let [difference, zero] = state.heading.tangent().minus(before);
             let imu_o = difference.zip(zero).map(|(imu, zero)| Angle::from(imu - zero));
             let imu_c = if BEYOND {
-                let theta_c = state.corrected(table, slot, [difference, zero], bend.map(S::to_turns));
+                let theta_c = state.corrected(table, slot, &phases, [difference, zero], bend.map(S::to_turns));
                 theta_c.filter(|_| has_bend_sensors).map(Angle::<S>::from)
             } else {
                 state.anchor.push(slot, difference.zip(bend).map(|(imu, bend)| imu - bend.to_turns()));
@@ -243,36 +256,64 @@ impl<'t, S: Scalar, const N: usize, const W: usize> Estimator<'t, S, N, W> {
             before = state.heading.tangent();
             then(state, Thetas { bend, imu_o, imu_c, bend_sensors_read, imu_read });
         }
-        if BEYOND
-            && slot.is_complete()
-            && let Some(rule) = &table.contact
-        {
-            compare(rule, table.segments, states);
+        if BEYOND && let Some(rule) = &table.contact {
+            compare(rule, &phases, table.segments, states);
         }
     }
 
     /// Whether something touches the segments, from the base to the tip; nothing where the table does not say how to tell.
     #[must_use]
     pub fn contacts(&self) -> Contacts<N> {
-        all(self.states.iter().map(|state| state.beyond.touch.contact))
+        let Self { table, states, .. } = self;
+        let touched = self.touched();
+        let count = if table.contact.is_some() { states.len() } else { 0 };
+        all((0..count).map(|i| {
+            let watches = states.iter().zip(table.segments).enumerate();
+            let scores = watches.flat_map(|(k, (State { beyond: Beyond { touch, .. }, .. }, segment))| {
+                let is_like = k == i || segment.alike.is_some_and(|alike| usize::from(alike.segment) == i);
+                [(k == i).then_some(touch.bend()), is_like.then_some(touch.alike())]
+            });
+            let score_percent = scores.flatten().map(|contact| contact.score_percent).max().unwrap_or_default();
+            Contact { score_percent, is_touched: touched >> i & 1 != 0 }
+        }))
+    }
+
+    /// A bit for each segment that something touches, the first in the lowest place.
+    fn touched(&self) -> u32 {
+        let Self { table, states, .. } = self;
+        let mut touched = 0;
+        for (i, (state, segment)) in states.iter().zip(table.segments).enumerate() {
+            let Beyond { touch, .. } = &state.beyond;
+            touched |= u32::from(touch.bend().is_touched) << i;
+            if touch.alike().is_touched {
+                let other = segment.alike.map_or(0, |alike| 1_u32.wrapping_shl(alike.segment.into()));
+                touched |= 1 << i | other;
+            }
+        }
+        touched
     }
 
     /// How far the fused shape of the newest sample may be off; empty where the table does not say what errors come from.
     #[must_use]
     pub fn uncertainties(&self) -> Uncertainties<S, N> {
-        let Some(rule) = &self.table.uncertainty else { return Vec::new() };
-        let links = self.states.iter().map(|state| state.fused().map(|fused| fused.link));
-        let mut spread = Some((Spread::base(), Vector2::zeros()));
-        all(self.states.iter().zip(chain(links)).map(|(state, shape)| {
-            let Beyond { observer, touch, seen, lever, .. } = &state.beyond;
-            let sources = Sources { seen: *seen, drift: observer.variance(), is_touched: touch.contact.is_touched };
-            let theta = rule.theta(&sources).filter(|_| shape.end.is_some());
-            spread = spread.zip(theta.zip(shape.end)).map(|((mut spread, before), (theta, end))| {
+        let Self { table, states, fused, .. } = self;
+        let Some(rule) = &table.uncertainty else { return Vec::new() };
+        let touched = self.touched();
+        let (mut spread, mut before, mut is_known) = (Spread::base(), Vector2::zeros(), true);
+        let mut uncertainties = Vec::new();
+        for (i, (state, shape)) in states.iter().zip(fused).enumerate() {
+            let Beyond { observer, seen, lever, .. } = &state.beyond;
+            let sources = Sources { seen: *seen, drift: observer.variance(), is_touched: touched >> i & 1 != 0 };
+            let theta = rule.theta(&sources);
+            let end = theta.zip(shape.end).filter(|_| is_known).map(|(theta, end)| {
                 spread.step(end - before, *lever, theta, rule.end);
-                (spread, end)
+                before = end;
+                spread.end()
             });
-            Uncertainty { theta, end: spread.map(|(spread, _)| spread.end()) }
-        }))
+            is_known = end.is_some();
+            let _ = uncertainties.push(Uncertainty { theta, end });
+        }
+        uncertainties
     }
 
     /// The arm's shape by `method` at one of this estimator's estimates: bend angles, and the chain of the segments.
@@ -298,20 +339,22 @@ fn all<T, const N: usize>(segments: impl Iterator<Item = T>) -> Vec<T, N> {
     all
 }
 
-/// Tells contact by the segments that bend alike, at the end of a value.
+/// Tells contact by the segments that bend alike: of each at its turn, which comes after that of the other.
 #[inline(never)]
-fn compare<S: Scalar, const W: usize>(rule: &ContactRule, segments: &[Segment<S>], states: &mut [State<S, W>]) {
+fn compare<S: Scalar, const W: usize>(
+    rule: &ContactRule,
+    phases: &Range<u32>,
+    segments: &[Segment<S>],
+    states: &mut [State<S, W>],
+) {
     for (i, segment) in segments.iter().enumerate() {
         let Some(alike) = segment.alike else { continue };
-        let other = usize::from(alike.segment);
-        let [here, there] = [i, other].map(|i| states.get(i).and_then(|state| state.beyond.touch.theta));
-        let difference = here.zip(there).map(|(here, there)| alike.difference(here, there));
-        let Some(state) = states.get_mut(i) else { continue };
-        let contact = state.beyond.touch.compare(rule, difference);
-        state.beyond.touch.join(contact);
-        if let Some(state) = states.get_mut(other) {
-            state.beyond.touch.join(contact);
-        }
+        let there = states.get(usize::from(alike.segment)).and_then(|state| state.beyond.touch.theta);
+        let Some(State { beyond, .. }) = states.get_mut(i).filter(|state| state.beyond.is_due(phases)) else {
+            continue;
+        };
+        let difference = beyond.touch.theta.zip(there).map(|(here, there)| alike.difference(here, there));
+        beyond.touch.compare(rule, difference);
     }
 }
 
@@ -342,7 +385,7 @@ fn read<S: Scalar>(map: Option<&BendMap<S>>, counts: Option<u16>) -> Option<S> {
 }
 
 impl<S: Scalar, const W: usize> State<S, W> {
-    fn new(segment: &Segment<S>, table: &Table<S>) -> Self {
+    fn new(place: usize, segment: &Segment<S>, table: &Table<S>) -> Self {
         Self {
             heading: Heading::new(table.tare_samples, segment.reference),
             maps: segment.bend,
@@ -352,7 +395,7 @@ impl<S: Scalar, const W: usize> State<S, W> {
             coord: Block::new(),
             orient_gains: Gains::new(&segment.orient),
             coord_gains: Gains::new(&segment.coord),
-            beyond: Beyond::new(segment, table.observer.as_ref()),
+            beyond: Beyond::new(place, segment, table),
         }
     }
 
@@ -362,14 +405,16 @@ impl<S: Scalar, const W: usize> State<S, W> {
         &mut self,
         table: &Table<S>,
         slot: Slot,
+        phases: &Range<u32>,
         [difference, zero]: [Option<Turns>; 2],
         bend: Option<Turns>,
     ) -> Option<Turns> {
         let Self { anchor, beyond, .. } = self;
         let theta_imu = difference.zip(zero).map(|(imu, zero)| imu - zero);
-        let value = beyond.value(slot, theta_imu.zip(bend));
+        beyond.add(slot, theta_imu.zip(bend));
+        let value = beyond.is_due(phases).then(|| beyond.value());
         let offset = if let Some(rule) = &table.observer {
-            if slot.is_complete() {
+            if let Some(value) = value {
                 beyond.observer.step(rule, value);
             }
             beyond.observer.bias()
@@ -377,9 +422,7 @@ impl<S: Scalar, const W: usize> State<S, W> {
             anchor.push(slot, difference.zip(bend).map(|(imu, bend)| imu - bend));
             zero.map(|zero| anchor.zero(&table.anchor, zero) - zero).unwrap_or_default()
         };
-        if slot.is_complete()
-            && let Some(rule) = &table.contact
-        {
+        if let Some((rule, value)) = table.contact.as_ref().zip(value) {
             beyond.touch.feel(rule, value.map(|value| (value.imu - offset, value.bend)));
         }
         theta_imu.map(|theta| theta - offset)

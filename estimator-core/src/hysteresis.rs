@@ -38,17 +38,20 @@ impl<S: Scalar> Memory<S> {
     pub fn correct(&mut self, theta: S) -> S {
         let Some(hysteresis) = &self.hysteresis else { return theta };
         let places = self.places.get_or_insert([theta; PLAYS]);
-        hysteresis.iter().zip(places).fold(theta, |corrected, (play, place)| {
-            let (low, high) = (theta - play.half_width, theta + play.half_width);
-            *place = if *place < low {
-                low
-            } else if *place > high {
-                high
+        let plays: [_; PLAYS] = core::array::from_fn(|k| {
+            let Play { half_width, weight } = hysteresis[k];
+            let ahead = theta - places[k];
+            let ahead = if ahead > half_width {
+                half_width
+            } else if -ahead > half_width {
+                -half_width
             } else {
-                *place
+                ahead
             };
-            corrected + play.weight * (theta - *place)
-        })
+            places[k] = theta - ahead;
+            (weight, ahead)
+        });
+        theta + S::dot(plays.map(|(weight, _)| weight), plays.map(|(_, ahead)| ahead))
     }
 }
 

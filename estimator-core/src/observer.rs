@@ -175,11 +175,16 @@ impl Observer {
             News::Rest => self.covariance.bias >= rule.doubt,
             News::Stuck => false,
         };
-        if !self.lets_pass(rule, innovation) || !teaches {
-            return;
+        if self.lets_pass(rule, innovation) && teaches {
+            self.learn(bend, innovation.bits() as i32);
         }
-        let innovation = i64::from(innovation.bits() as i32);
+    }
+
+    /// x = x⁻ + K innovation. Out of line, where the compiler sees that both numbers have 32 bits.
+    #[inline(never)]
+    fn learn(&mut self, bend: i32, innovation: i32) {
         let gain = self.covariance.measure(bend);
+        let innovation = i64::from(innovation);
         self.bias = self.bias.wrapping_add((i64::from(gain.bias) * innovation) >> (30 - FINE));
         self.rate = self.rate.saturating_add(rounded(i64::from(gain.rate) * innovation));
         self.slope = self.slope.saturating_add(rounded(i64::from(gain.slope) * innovation));
@@ -252,11 +257,9 @@ impl Covariance {
         let to_slope = self.bias_slope + scaled(self.slope, bend);
         // In units of 2⁻²⁷: it comes to 10 at most.
         let expected = (i64::from(ONE) + i64::from(to_bias) + ((i64::from(to_slope) * i64::from(bend)) >> 30)) >> 3;
-        let share = |of: i32| {
-            let share = divide::<27>(of.unsigned_abs(), expected as u32) as i32;
-            if of < 0 { -share } else { share }
-        };
-        let gain = Gain { bias: share(to_bias), rate: share(to_rate), slope: share(to_slope) };
+        let inverse = divide::<30>(1 << 27, expected as u32) as i32;
+        let [bias, rate, slope] = [to_bias, to_rate, to_slope].map(|to| scaled(to, inverse));
+        let gain = Gain { bias, rate, slope };
         self.bias -= scaled(gain.bias, to_bias);
         self.bias_rate -= scaled(gain.bias, to_rate);
         self.bias_slope -= scaled(gain.bias, to_slope);

@@ -22,8 +22,7 @@ const LARGEST: Constant = Constant::new(1.75);
 pub struct UncertaintyRule<S> {
     /// Of θ whatever is known of the drift, rad².
     pub theta: S,
-    /// Factor on the observer's variance of the bias, which is a share of the measurement's: per quarter turn and
-    /// [`DRIFT_SCALE`](UncertaintyRule::DRIFT_SCALE), rad.
+    /// Factor on the observer's variance of the bias, which is a share of the measurement's and taken for one of a turn, rad.
     pub drift: S,
     /// Of θ where bend sensors alone tell it, rad².
     pub bend: S,
@@ -31,11 +30,6 @@ pub struct UncertaintyRule<S> {
     pub contact: S,
     /// Of either coordinate of a segment's end in its own frame, whatever the angle, m².
     pub end: S,
-}
-
-impl<S> UncertaintyRule<S> {
-    /// What the factor on the bias's variance is divided by, to fit fixed point.
-    pub const DRIFT_SCALE: i32 = 8;
 }
 
 /// What is known of one segment's error.
@@ -63,9 +57,8 @@ impl<S: Scalar> UncertaintyRule<S> {
     pub(crate) fn theta(&self, sources: &Sources) -> Option<S> {
         let measured = match sources.seen {
             Seen { imu: true, .. } => {
-                // Quarter turns have the same bits.
-                let share = S::from_phase(Phase::from_bits(sources.drift));
-                self.theta + self.drift * share * S::from_int(Self::DRIFT_SCALE)
+                // One, of which it is less than half, is a whole turn.
+                self.theta + self.drift * S::from_phase(Phase::from_bits(sources.drift << 2))
             }
             Seen { imu: false, bend: true } => self.bend,
             Seen { imu: false, bend: false } => return None,
@@ -141,16 +134,16 @@ impl<S: Scalar> Spread<S> {
     #[inline(never)]
     pub fn step(&mut self, chord: Vector2<S>, lever: S, theta: S, point: S) {
         // How the end moves with the heading, clockwise positive: (x, y) to (y, −x).
-        let (gx, gy) = (chord.y, -chord.x);
-        let levered = lever * theta;
-        let weight = self.heading + lever * levered;
-        let (tx, ty) = (weight * gx, weight * gy);
-        let (cx, cy) = (self.cross.x, self.cross.y);
-        self.point.xx += gx * (cx + cx + tx) + point;
-        self.point.xy += gx * (cy + ty) + gy * cx;
-        self.point.yy += gy * (cy + cy + ty) + point;
+        let turn = Vector2::new(chord.y, -chord.x);
+        let levered = lever.bounded_product(theta);
+        // What the end's covariance grows by is the product of this and `turn`, and its transpose.
+        let half = (self.heading + lever.bounded_product(levered)).half();
+        let side = Vector2::new(self.cross.x + half * turn.x, self.cross.y + half * turn.y);
+        self.point.xx += S::dot([turn.x; 2], [side.x; 2]) + point;
+        self.point.xy += S::dot([turn.x, turn.y], [side.y, side.x]);
+        self.point.yy += S::dot([turn.y; 2], [side.y; 2]) + point;
         let shared = self.heading + levered;
-        self.cross = Vector2::new(cx + shared * gx, cy + shared * gy);
+        self.cross += Vector2::new(shared * turn.x, shared * turn.y);
         self.heading += theta;
     }
 

@@ -1,8 +1,8 @@
 //! Contact and uncertainty, from samples to what the estimator says of them.
 
 use estimator_core::{
-    Alike, BendMap, ContactRule, Estimator, ImuReading, ObserverRule, Phase, SCALE, Sample, Segment, Table, Turns,
-    Uncertainty, UncertaintyRule,
+    Alike, AnchorRule, BendMap, ContactRule, Estimate, Estimator, ImuReading, ObserverRule, Phase, SCALE, Sample,
+    Segment, SegmentEstimate, Table, Turns, Uncertainty, UncertaintyRule,
 };
 
 /// Deviations: of θ, of θ by bend sensors alone, and while something touches the segment, degrees.
@@ -33,6 +33,21 @@ fn table(segments: &[Segment<f64>]) -> Table<'_, f64> {
     };
     let contact = ContactRule { bend: turns(5.0), alike: turns(4.0) };
     Table { contact: Some(contact), uncertainty: Some(rule), ..Table::bare(segments) }
+}
+
+/// An observer of values at 10 Hz.
+fn observer() -> ObserverRule {
+    let one = f64::from(1 << 30);
+    ObserverRule {
+        step: (4_294_967_296.0 / (10.0 * ObserverRule::RATE_S)) as u32,
+        prior: [(1e-3 * one) as i32, (1e-2 * one) as i32, 1],
+        growth: [0, 35, 1],
+        gate: turns(8.0),
+        patience: 300,
+        jump: turns(12.0),
+        still: turns(1.0),
+        doubt: 1 << 23,
+    }
 }
 
 /// Both sensors and IMUs of two segments at these angles, degrees.
@@ -114,19 +129,8 @@ fn where_nothing_is_read_no_point_is_known_from_there_on() {
 #[test]
 fn the_variance_grows_while_saturated_bend_sensors_leave_the_observer_alone() {
     let segments = segments();
-    let one = f64::from(1 << 30);
-    let observer = ObserverRule {
-        step: (4_294_967_296.0 / (10.0 * ObserverRule::RATE_S)) as u32,
-        prior: [(1e-3 * one) as i32, (1e-2 * one) as i32, 1],
-        growth: [0, 35, 1],
-        gate: turns(8.0),
-        patience: 300,
-        jump: turns(12.0),
-        still: turns(1.0),
-        doubt: 1 << 23,
-    };
     let rule = UncertaintyRule { drift: 1.0, ..table(&segments).uncertainty.expect("it has one") };
-    let table = Table { observer: Some(observer), uncertainty: Some(rule), ..table(&segments) };
+    let table = Table { observer: Some(observer()), uncertainty: Some(rule), ..table(&segments) };
     let mut estimator = Estimator::<_, 2, 100>::new(&table).expect("it fits");
     for k in 0..600 {
         estimator.step(&sample([30.0 * (f64::from(k) / 12.0).sin(); 2]));
@@ -150,4 +154,32 @@ fn a_table_that_does_not_ask_gets_neither() {
     }
     assert!(estimator.uncertainties().is_empty());
     assert!(estimator.contacts().iter().all(|contact| !contact.is_touched));
+}
+
+/// What the observer takes from each θ_imu, degrees.
+fn biases_deg(estimate: &Estimate<f64, 2>) -> Vec<f64> {
+    let of_segment = |segment: &SegmentEstimate<f64>| Some(segment.imu_o?.rad() - segment.imu_c?.theta.rad());
+    estimate.segments.iter().filter_map(of_segment).map(f64::to_degrees).collect()
+}
+
+#[test]
+fn ten_samples_a_value_teach_each_segment_what_one_does() {
+    let segments = segments();
+    let at_10_hz = Table { observer: Some(observer()), ..table(&segments) };
+    let at_100_hz = Table { anchor: AnchorRule { sample_rate_millihertz: 100_000, ..at_10_hz.anchor }, ..at_10_hz };
+    let [mut slow, mut fast] =
+        [&at_10_hz, &at_100_hz].map(|table| Estimator::<_, 2, 100>::new(table).expect("it fits"));
+    let mut taught: Vec<f64> = Vec::new();
+    for k in 0..600 {
+        // The first IMU drifts by 30° in the minute.
+        let (bend, drift) = (30.0 * (f64::from(k) / 12.0).sin(), 0.05 * f64::from(k));
+        let sample = Sample { imu: sample([bend + drift, bend - drift]).imu, ..sample([bend; 2]) };
+        let estimates: Vec<_> = (0..10).map(|_| fast.step(&sample)).collect();
+        // Before its value is complete, all segments have had their turn with the one before.
+        for (fast, slow) in biases_deg(&estimates[8]).iter().zip(&taught) {
+            assert!((fast - slow).abs() < 1e-9, "{fast} instead of {slow} degrees");
+        }
+        taught = biases_deg(&slow.step(&sample));
+    }
+    assert!(taught[0] > 15.0 && taught[1] < -15.0, "{taught:?}");
 }

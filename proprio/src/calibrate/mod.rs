@@ -5,7 +5,9 @@
 //! 2. Plays on top of the quadratics correct hysteresis, where that is worth it on a part of the session held back.
 //! 3. The session is replayed with these maps; the errors that bend sensors and IMUs make give the filters' default
 //!    parameters.
+//! 4. What goes beyond the paper is set: the drift observer, contact, and how far an estimate may be off.
 
+mod beyond;
 mod error;
 mod fit;
 mod hysteresis;
@@ -80,5 +82,6 @@ pub fn calibrate(session: &Path, arm: &NamedTable, hysteresis: Correct) -> Resul
     if percent > MISFIT_PERCENT {
         return Err(refuse(CalibrationError::TruthMisfit { percent }));
     }
+    beyond::set(&sweep, misfit_m, &mut table.file);
     Ok(Calibration { table: table.file, sensors: sensors.into_iter().map(|sensor| sensor.report).collect(), warnings })
 }

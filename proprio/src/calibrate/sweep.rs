@@ -45,6 +45,16 @@ pub(super) struct Sweep {
     pub sensors: Vec<SensorColumn>,
 }
 
+/// Two segments that bend alike.
+pub(super) struct Like {
+    /// Number of the earlier, from 1.
+    pub first: usize,
+    /// Number of the later.
+    pub second: usize,
+    /// θ of the later over that of the earlier.
+    pub ratio: f64,
+}
+
 /// Headings come within one turn, from cameras as from IMUs.
 struct Unwrap {
     imu: [Heading<f64>; MAX_SEGMENTS],
@@ -111,24 +121,25 @@ impl Sweep {
             }
         }
         let alike = self.alike();
-        warnings.extend((!alike.is_empty()).then_some(Warning::Alike(alike)));
+        let pairs: Vec<_> = alike.iter().map(|like| (like.first, like.second)).collect();
+        warnings.extend((!pairs.is_empty()).then_some(Warning::Alike(pairs)));
         warnings.extend((!self.ends_with_line).then_some(Warning::LastLine));
         Ok(warnings)
     }
 
-    /// Pairs of segments, from 1, whose bend angles are the same but for a factor.
-    fn alike(&self) -> Vec<(usize, usize)> {
+    /// Pairs of segments whose bend angles are the same but for a factor.
+    pub fn alike(&self) -> Vec<Like> {
         let n = self.theta.len();
         let pairs = (0..n).flat_map(|i| (i + 1..n).map(move |j| (i, j)));
-        let is_alike = |(i, j): &(usize, usize)| {
-            let both = self.theta[*i].iter().zip(&self.theta[*j]).filter_map(|(a, b)| a.zip(*b));
+        let like = |(i, j): (usize, usize)| {
+            let both = self.theta[i].iter().zip(&self.theta[j]).filter_map(|(a, b)| a.zip(*b));
             let (mut aa, mut ab, mut bb) = (0.0, 0.0, 0.0);
             for (a, b) in both {
                 (aa, ab, bb) = (aa + a * a, ab + a * b, bb + b * b);
             }
-            ab * ab > ALIKE * aa * bb
+            (ab * ab > ALIKE * aa * bb).then(|| Like { first: i + 1, second: j + 1, ratio: ab / aa })
         };
-        pairs.filter(is_alike).map(|(i, j)| (i + 1, j + 1)).collect()
+        pairs.filter_map(like).collect()
     }
 }
 

@@ -89,7 +89,7 @@ pub static TABLE_BEYOND: Table<'static, Q> = Table {
     contact: Some(ContactRule { bend: degrees(5), alike: degrees(4) }),
     uncertainty: Some(UncertaintyRule {
         theta: Q::from_f64(0.001),
-        drift: Q::from_f64(0.3),
+        drift: Q::from_f64(0.6),
         bend: Q::from_f64(0.2),
         contact: Q::from_f64(0.1),
         end: Q::from_f64(6.4e-5),
@@ -113,7 +113,7 @@ pub fn steps<const N: usize>(table: &'static Table<'static, Q>) {
 pub fn steps_with_uncertainty<const N: usize>(table: &'static Table<'static, Q>) {
     run::<N>(table, |estimator, sample| {
         estimator.fuse(sample);
-        core::hint::black_box(estimator.uncertainties());
+        core::hint::black_box(&estimator.uncertainties());
     });
 }
 

@@ -1,0 +1,48 @@
+//! What goes beyond the paper: the drift observer, contact, and how far an estimate may be off.
+//!
+//! Their parameters are those of the reference arm, but for what a sweep shows of its own: which segments bend alike, how
+//! wrong bend sensors are, and how far constant curvature is from the truth.
+
+use calibration_tables::{AlikeKeys, ArmFile, DriftKeys, DriftKind, SegmentKeys, UncertaintyKeys};
+
+use super::sweep::Sweep;
+
+/// Deviation of θ beside what is known of the drift. The anchor passes on what lasts of the bend sensors' error,
+const OBSERVED_DEG: f64 = 0.1;
+/// which is this share of it.
+const ANCHORED_SHARE: f64 = 0.4;
+/// Share of the observer's variance that its bias is off by: it counts as noise what hysteresis takes back.
+const DRIFT_SHARE: f64 = 0.12;
+/// Deviation of θ that a touch adds.
+const CONTACT_DEG: f64 = 0.5;
+
+/// Sets what the arm description leaves open. `misfit_m` is the distance of the true tip from constant curvature.
+pub(super) fn set(sweep: &Sweep, misfit_m: f64, table: &mut ArmFile) {
+    let drift = table.drift.get_or_insert_with(DriftKeys::observer);
+    let bend_deg = bend_deg(&table.segments);
+    table.uncertainty = Some(UncertaintyKeys {
+        theta_deg: match drift.kind {
+            DriftKind::Anchor => ANCHORED_SHARE * bend_deg,
+            DriftKind::Observer => OBSERVED_DEG,
+        },
+        drift_share: DRIFT_SHARE,
+        bend_deg,
+        contact_deg: CONTACT_DEG,
+        // Both coordinates of all segments add up to it.
+        end_mm: misfit_m * 1000.0 / (2.0 * table.segments.len() as f64).sqrt(),
+    });
+    table.contact.get_or_insert_default();
+    for segment in &mut table.segments {
+        segment.alike = None;
+    }
+    for like in sweep.alike() {
+        let alike = &mut table.segments[like.second - 1].alike;
+        alike.get_or_insert(AlikeKeys { segment: like.first, ratio: like.ratio });
+    }
+}
+
+/// Root mean square error of the bend sensors, over the segments that have any.
+fn bend_deg(segments: &[SegmentKeys]) -> f64 {
+    let variances = || segments.iter().filter_map(|segment| segment.orient.as_ref()).map(|noise| noise.r_bend);
+    (variances().sum::<f64>() / variances().count().max(1) as f64).sqrt().to_degrees()
+}
