@@ -76,6 +76,10 @@ pub(super) fn set_filters(session: &Path, table: &mut NamedTable, rate_hz: f64) 
         if let Some(distance) = truth_misfit(row, baked.segments) {
             (misfit, tips) = (misfit + distance * distance, tips + 1.0);
         }
+        if row.starts {
+            pace = Pace::new();
+            gatherers.iter_mut().for_each(|gatherer| gatherer.anchor = Anchor::new());
+        }
         let slot = pace.tick(&baked.anchor);
         let mut sums = Some([0.0, 0.0]);
         for (i, (gatherer, estimate)) in gatherers.iter_mut().zip(&outcome.estimate.segments).enumerate() {

@@ -29,6 +29,7 @@ mod recording_live;
 mod recordings;
 mod report;
 mod report_numbers;
+mod restarts;
 mod simulate;
 mod streams;
 mod tune;
