@@ -1,5 +1,7 @@
 //! `[drift]`: which correction takes the drift out of the IMUs, and the observer's parameters.
 
+use std::ops::RangeInclusive;
+
 use estimator_core::{ObserverRule, Turns};
 use serde::{Deserialize, Serialize};
 
@@ -53,6 +55,13 @@ pub enum DriftKind {
     /// The observer of bias, rate and slope.
     Observer,
 }
+
+/// What `noise_deg2_s` may be.
+pub const NOISE_RANGE_DEG2_S: RangeInclusive<f64> = 0.01..=1e6;
+/// What `walk_deg_per_s` may be.
+pub const WALK_RANGE_DEG_PER_S: RangeInclusive<f64> = 0.0..=1.0;
+/// What `slope` may be.
+pub const SLOPE_RANGE: RangeInclusive<f64> = 0.0..=1.0;
 
 /// One in the units of the observer's variances.
 const ONE: f64 = 1_073_741_824.0;
@@ -119,11 +128,11 @@ impl DriftKeys {
     }
 
     pub(crate) fn check(&self) -> Result<(), FileError> {
-        within("drift.noise_deg2_s", self.noise_deg2_s, 0.01..=1e6)?;
+        within("drift.noise_deg2_s", self.noise_deg2_s, NOISE_RANGE_DEG2_S)?;
         within("drift.start_deg", self.start_deg, 0.0..=360.0)?;
         within("drift.rate_deg_per_s", self.rate_deg_per_s, 0.0..=10.0)?;
-        within("drift.walk_deg_per_s", self.walk_deg_per_s, 0.0..=1.0)?;
-        within("drift.slope", self.slope, 0.0..=1.0)?;
+        within("drift.walk_deg_per_s", self.walk_deg_per_s, WALK_RANGE_DEG_PER_S)?;
+        within("drift.slope", self.slope, SLOPE_RANGE)?;
         within("drift.gate_deg", self.gate_deg, 0.1..=180.0)?;
         within("drift.patience_s", self.patience_s, 0.0..=1e4)?;
         within("drift.jump_deg", self.jump_deg, 0.1..=180.0)?;

@@ -40,13 +40,13 @@ mod uncertainty;
 
 pub use bake::Baked;
 pub use check::H_RANGE;
-pub use drift::{DriftKeys, DriftKind};
+pub use drift::{DriftKeys, DriftKind, NOISE_RANGE_DEG2_S, SLOPE_RANGE, WALK_RANGE_DEG_PER_S};
 pub use file::{
     AnchorKeys, ArmFile, BendKeys, FileError, MAX_SEGMENTS, MAX_WINDOW, NoiseKeys, PlayKeys, SegmentKeys, Side,
     TareKeys,
 };
 pub use noise::{LAG_S, RMSE_DEG_UNKNOWN};
-pub use tuning::{RmseKeys, Stopped, TuningKeys};
+pub use tuning::{ObserverTuningKeys, RmseKeys, Stopped, TuningKeys};
 pub use uncertainty::{AlikeKeys, ContactKeys, UncertaintyKeys};
 
 /// The reference arm's description, `arms/planar-6.toml`.

@@ -62,13 +62,31 @@ impl ContactKeys {
     }
 }
 
+/// Largest deviation of an angle.
+const LARGEST_DEG: f64 = 9.0;
+const LARGEST_SHARE: f64 = 10.0;
+const LARGEST_MM: f64 = 100.0;
+
 impl UncertaintyKeys {
+    /// All variances times `factor`, or as far as the format goes.
+    #[must_use]
+    pub fn scaled(&self, factor: f64) -> Self {
+        let deviation = |value: f64, largest: f64| (value * factor.sqrt()).min(largest);
+        Self {
+            theta_deg: deviation(self.theta_deg, LARGEST_DEG),
+            drift_share: (self.drift_share * factor).min(LARGEST_SHARE),
+            bend_deg: deviation(self.bend_deg, LARGEST_DEG),
+            contact_deg: deviation(self.contact_deg, LARGEST_DEG),
+            end_mm: deviation(self.end_mm, LARGEST_MM),
+        }
+    }
+
     pub(crate) fn check(&self) -> Result<(), FileError> {
-        within("uncertainty.theta_deg", self.theta_deg, 0.0..=9.0)?;
-        within("uncertainty.drift_share", self.drift_share, 0.0..=10.0)?;
-        within("uncertainty.bend_deg", self.bend_deg, 0.0..=9.0)?;
-        within("uncertainty.contact_deg", self.contact_deg, 0.0..=9.0)?;
-        within("uncertainty.end_mm", self.end_mm, 0.0..=100.0)
+        within("uncertainty.theta_deg", self.theta_deg, 0.0..=LARGEST_DEG)?;
+        within("uncertainty.drift_share", self.drift_share, 0.0..=LARGEST_SHARE)?;
+        within("uncertainty.bend_deg", self.bend_deg, 0.0..=LARGEST_DEG)?;
+        within("uncertainty.contact_deg", self.contact_deg, 0.0..=LARGEST_DEG)?;
+        within("uncertainty.end_mm", self.end_mm, 0.0..=LARGEST_MM)
     }
 
     /// For an observer whose measurement has this variance, degrees²; 0 where the anchor corrects the drift.

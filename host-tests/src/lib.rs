@@ -1,6 +1,9 @@
-//! Oracles for the host tests.
+//! Oracles for the host tests: what their results are judged against.
+//!
+//! [`contact`] is what touches the simulated arm, beside what the estimator says of it.
 //!
 //! [`literal`] is the mathematics of `docs/METHOD.md` once more, written down as it stands there and in floats: what the
 //! estimator, which is streaming, decoupled and fixed point, is judged against.
 
+pub mod contact;
 pub mod literal;

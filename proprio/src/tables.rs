@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use calibration_tables::{RmseKeys, Stopped, TuningKeys};
+use calibration_tables::{ObserverTuningKeys, RmseKeys, Stopped, TuningKeys};
 use comfy_table::presets::NOTHING;
 use comfy_table::{CellAlignment, Table};
 use estimator_core::Method;
@@ -29,8 +29,8 @@ pub fn sensors(sensors: &[SensorReport]) -> String {
     format!("{}\nmean RMSE of the V–Orient maps: {mean:.2} deg\n", text(&mut table))
 }
 
-/// What a tuning that took `time` has brought.
-pub fn tuning(record: &TuningKeys, time: Duration) -> String {
+/// What a tuning has brought, of which each iteration took `iteration_time`.
+pub fn tuning(record: &TuningKeys, iteration_time: Duration) -> String {
     let mut table = table(&["RMSE", "before", "after", "held back, before", "after"]);
     let parts = [&record.before, &record.after, &record.held_back_before, &record.held_back_after];
     let mut add = |name: &str, figure: fn(&RmseKeys) -> f64| {
@@ -43,12 +43,32 @@ pub fn tuning(record: &TuningKeys, time: Duration) -> String {
         Stopped::Converged => "converged",
         Stopped::Interrupted => "interrupted",
     };
-    let each_s = time.as_secs_f64() / record.iterations.max(1) as f64;
+    let each_s = iteration_time.as_secs_f64();
     let (iterations, kept) = (record.iterations, record.kept);
-    format!(
+    let filters = format!(
         "{}\n{stopped} after {iterations} iterations of {each_s:.3} s; the table has iteration {kept}\n",
         text(&mut table)
-    )
+    );
+    filters + &record.observer.as_ref().map_or_else(String::new, observer) + &variances(record)
+}
+
+/// The drift observer's parameters, before and after.
+fn observer(of: &ObserverTuningKeys) -> String {
+    let mut table = table(&["drift observer", "before", "after"]);
+    let keys = [("noise_deg2_s", of.noise_deg2_s), ("walk_deg_per_s", of.walk_deg_per_s), ("slope", of.slope)];
+    for (name, values) in keys {
+        table.add_row([name.to_owned()].into_iter().chain(values.map(|value| format!("{value:.3e}"))));
+    }
+    format!("\n{}\nafter {} runs of the estimator\n", text(&mut table), of.runs)
+}
+
+/// What became of the variances, where the table has any.
+fn variances(record: &TuningKeys) -> String {
+    match record.variances {
+        None => String::new(),
+        Some(factor) if factor > 1.0 => format!("\nvariances are {factor:.2} times as large\n"),
+        Some(_) => "\nvariances are as they were\n".to_owned(),
+    }
 }
 
 /// Picks one figure of a method.

@@ -1,8 +1,8 @@
 //! A file is written and read without loss: every number to its last bit, every name to its last character.
 
 use calibration_tables::{
-    AlikeKeys, AnchorKeys, ArmFile, BendKeys, ContactKeys, DriftKeys, DriftKind, NoiseKeys, PlayKeys, RmseKeys,
-    SegmentKeys, Side, Stopped, TareKeys, TuningKeys, UncertaintyKeys,
+    AlikeKeys, AnchorKeys, ArmFile, BendKeys, ContactKeys, DriftKeys, DriftKind, NoiseKeys, ObserverTuningKeys,
+    PlayKeys, RmseKeys, SegmentKeys, Side, Stopped, TareKeys, TuningKeys, UncertaintyKeys,
 };
 use proptest::option;
 use proptest::prelude::*;
@@ -121,20 +121,37 @@ fn rmse() -> impl Strategy<Value = RmseKeys> {
     )
 }
 
+fn observer_tuning() -> impl Strategy<Value = ObserverTuningKeys> {
+    let share = [0.0..1.0_f64, 0.0..1.0_f64];
+    (any::<u32>(), [magnitude(-2.0..6.0), magnitude(-2.0..6.0)], share.clone(), share).prop_map(
+        |(runs, noise_deg2_s, walk_deg_per_s, slope)| ObserverTuningKeys {
+            runs: runs.into(),
+            noise_deg2_s,
+            walk_deg_per_s,
+            slope,
+        },
+    )
+}
+
 fn tuning() -> impl Strategy<Value = TuningKeys> {
     let sessions = prop::collection::vec(any::<String>(), 1..4);
     let stopped = prop_oneof![Just(Stopped::Converged), Just(Stopped::Interrupted)];
     let iterations = (0..=300_u64, 0..=300_u64);
-    (sessions, iterations, stopped, [rmse(), rmse(), rmse(), rmse()]).prop_map(
-        |(sessions, (iterations, kept), stopped, [before, after, held_back_before, held_back_after])| TuningKeys {
-            sessions,
-            iterations: iterations.max(kept),
-            kept,
-            stopped,
-            before,
-            after,
-            held_back_before,
-            held_back_after,
+    let beyond = (option::of(1.0..1e9_f64), option::of(observer_tuning()));
+    (sessions, iterations, stopped, beyond, [rmse(), rmse(), rmse(), rmse()]).prop_map(
+        |(sessions, (iterations, kept), stopped, beyond, [before, after, held_back_before, held_back_after])| {
+            TuningKeys {
+                sessions,
+                iterations: iterations.max(kept),
+                kept,
+                stopped,
+                variances: beyond.0,
+                observer: beyond.1,
+                before,
+                after,
+                held_back_before,
+                held_back_after,
+            }
         },
     )
 }

@@ -1,6 +1,6 @@
 //! `[tuning]`, the record of a tuning: read and checked as strictly as all else, and no part of the parameters.
 
-use calibration_tables::{ArmFile, FileError, Stopped};
+use calibration_tables::{ArmFile, FileError, ObserverTuningKeys, Stopped};
 use estimator_core::Q;
 
 use super::common::{TABLE, parse};
@@ -11,6 +11,8 @@ sessions = ["a.csv", "b.csv"]
 iterations = 12
 kept = 9
 stopped = "interrupted"
+variances = 1.5
+observer = { runs = 31, noise_deg2_s = [50.0, 80.0], walk_deg_per_s = [2e-4, 1e-4], slope = [0.15, 0.25] }
 before = { position_rmse_mm = 4.0, tip_rmse_mm = 8.0, heading_rmse_deg = 1.5 }
 after = { position_rmse_mm = 3.0, tip_rmse_mm = 6.0, heading_rmse_deg = 1.25 }
 held_back_before = { position_rmse_mm = 5.0, tip_rmse_mm = 9.0, heading_rmse_deg = 2.0 }
@@ -34,10 +36,23 @@ fn every_key_is_read() {
         (vec!["a.csv".to_owned(), "b.csv".to_owned()], 12, 9)
     );
     assert_eq!(tuning.stopped, Stopped::Interrupted);
+    assert_eq!(tuning.variances, Some(1.5));
+    let observer =
+        ObserverTuningKeys { runs: 31, noise_deg2_s: [50.0, 80.0], walk_deg_per_s: [2e-4, 1e-4], slope: [0.15, 0.25] };
+    assert_eq!(tuning.observer, Some(observer));
     let figures = [tuning.before, tuning.after, tuning.held_back_before, tuning.held_back_after]
         .map(|of| [of.position_rmse_mm, of.tip_rmse_mm, of.heading_rmse_deg].map(f64::to_bits));
     let expected = [[4.0, 8.0, 1.5], [3.0, 6.0, 1.25], [5.0, 9.0, 2.0], [4.5, 7.0, 1.75]];
     assert_eq!(figures, expected.map(|of| of.map(f64::to_bits)));
+}
+
+#[test]
+fn the_observer_and_the_variances_may_be_left_out() {
+    let text = tuned();
+    let filters = text.lines().filter(|line| !line.starts_with("variances") && !line.starts_with("observer"));
+    let lines: Vec<&str> = filters.collect();
+    let tuning = parse(&lines.join("\n")).tuning.expect("it is in the file");
+    assert_eq!((tuning.variances, tuning.observer), (None, None));
 }
 
 #[test]
@@ -81,6 +96,8 @@ fn values_that_no_tuning_has_are_refused_with_their_key_and_line() {
         ("tip_rmse_mm = 8.0", "tip_rmse_mm = -8.0", "tuning.before.tip_rmse_mm"),
         ("position_rmse_mm = 3.0", "position_rmse_mm = nan", "tuning.after.position_rmse_mm"),
         ("heading_rmse_deg = 2.0", "heading_rmse_deg = inf", "tuning.held_back_before.heading_rmse_deg"),
+        ("variances = 1.5", "variances = 0.5", "tuning.variances"),
+        ("slope = [0.15, 0.25]", "slope = [0.15, 1.25]", "tuning.observer.slope"),
         ("tip_rmse_mm = 7.0", "tip_rmse_mm = 1e10", "tuning.held_back_after.tip_rmse_mm"),
     ] {
         let text = tuned().replacen(from, to, 1);

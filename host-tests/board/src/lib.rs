@@ -4,6 +4,7 @@ mod board;
 #[cfg(unix)]
 pub mod browser;
 mod build;
+pub mod due;
 mod replay;
 mod view;
 

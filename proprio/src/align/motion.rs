@@ -57,6 +57,8 @@ impl Sensors {
 pub(super) struct Readings {
     pub times_us: Vec<u64>,
     pub ends_with_line: bool,
+    /// When runs of the board began, s: there an IMU's heading has a new zero.
+    starts_s: Vec<f64>,
     imu: Vec<Vec<Reading>>,
     bend: Vec<[Vec<Reading>; SENSORS_PER_SEGMENT]>,
 }
@@ -79,6 +81,7 @@ impl Readings {
         let mut readings = Self {
             times_us: Vec::new(),
             ends_with_line: reader.ends_with_line(),
+            starts_s: Vec::new(),
             imu: vec![Vec::new(); n],
             bend: vec![Default::default(); n],
         };
@@ -94,6 +97,7 @@ impl Readings {
         let Row { sample, .. } = row;
         self.times_us.push(sample.time_us);
         let time_s = self.since_start_s(sample.time_us);
+        self.starts_s.extend(row.starts.then_some(time_s));
         for ((imu, bend), (imu_read, bend_read)) in
             self.imu.iter_mut().zip(&mut self.bend).zip(sample.imu.iter().zip(&sample.bend))
         {
@@ -132,16 +136,16 @@ impl Motion {
             mem::take(&mut readings.bend).into_iter().enumerate().flat_map(|(i, pair)| pair.map(|sensor| (i, sensor)));
         let (imus, bend) = (seen(imus), seen(bend));
         let by = if imus.is_empty() { Sensors::Bend } else { Sensors::Imus };
-        let (sensors, cameras) = match by {
-            Sensors::Imus => (imus, frames.headings()),
-            Sensors::Bend => (bend, frames.bends()),
+        let (sensors, cameras, starts_s) = match by {
+            Sensors::Imus => (imus, frames.headings(), &readings.starts_s[..]),
+            Sensors::Bend => (bend, frames.bends(), &[][..]),
         };
         let pairs: Vec<Pair> =
-            sensors.into_iter().map(|(camera, read)| Pair { sensor: Signal::new(&read), camera }).collect();
+            sensors.into_iter().map(|(camera, read)| Pair { sensor: Signal::new(&read, starts_s), camera }).collect();
         if pairs.is_empty() {
             return Err(AlignmentError::NoSensors);
         }
-        Ok(Self { pairs, cameras: cameras.iter().map(|seen| Signal::new(seen)).collect(), by })
+        Ok(Self { pairs, cameras: cameras.iter().map(|seen| Signal::new(seen, &[])).collect(), by })
     }
 
     /// The step of what the camera saw of a pair's motion.

@@ -16,7 +16,6 @@ pub(super) type Reading = (f64, f64);
 /// A column: straight lines from reading to reading.
 pub(super) struct Signal {
     points: Vec<Point>,
-    pause_s: f64,
 }
 
 #[derive(Clone, Copy)]
@@ -27,32 +26,29 @@ struct Point {
     area: f64,
     /// Time in pauses since then.
     hidden_s: f64,
+    /// Whether the line to it is no motion: across a pause, or a new zero.
+    is_hidden: bool,
 }
 
 impl Signal {
-    /// The signal of readings in the order of time.
-    pub fn new(readings: &[Reading]) -> Self {
+    /// The signal of readings in the order of time, which have a new zero from each of `starts_s` on.
+    pub fn new(readings: &[Reading], starts_s: &[f64]) -> Self {
         let mut steps: Vec<f64> = readings.windows(2).map(|pair| pair[1].0 - pair[0].0).collect();
         steps.sort_unstable_by(f64::total_cmp);
         let usual_s = steps.get(steps.len() / 2).copied().unwrap_or_default();
-        let mut signal =
-            Self { points: Vec::with_capacity(readings.len()), pause_s: PAUSE_S.max(PAUSE_STEPS * usual_s) };
+        let pause_s = PAUSE_S.max(PAUSE_STEPS * usual_s);
+        let runs_before = |time_s: f64| starts_s.partition_point(|start_s| *start_s <= time_s);
+        let mut points: Vec<Point> = Vec::with_capacity(readings.len());
         for (time_s, value) in readings {
-            let point = match signal.points.last() {
-                None => Point { time_s: *time_s, value: *value, area: 0.0, hidden_s: 0.0 },
-                Some(last) => signal.on_line(*last, *time_s, *value, time_s - last.time_s),
-            };
-            signal.points.push(point);
+            points.push(match points.last() {
+                None => Point { time_s: *time_s, value: *value, area: 0.0, hidden_s: 0.0, is_hidden: false },
+                Some(last) => {
+                    let starts = runs_before(last.time_s) < runs_before(*time_s);
+                    last.line_to(*time_s, *value, starts || time_s - last.time_s > pause_s)
+                }
+            });
         }
-        signal
-    }
-
-    /// The point at `time_s` on a line that began at `from` and is `length_s` long.
-    fn on_line(&self, from: Point, time_s: f64, value: f64, length_s: f64) -> Point {
-        let since_s = time_s - from.time_s;
-        let hidden_s = if length_s > self.pause_s { since_s } else { 0.0 };
-        let area = from.area + since_s * f64::midpoint(from.value, value);
-        Point { time_s, value, area, hidden_s: from.hidden_s + hidden_s }
+        Self { points }
     }
 
     /// When the first and the last reading were taken.
@@ -63,9 +59,8 @@ impl Signal {
     fn at(&self, time_s: f64) -> Option<Point> {
         let after = self.points.partition_point(|point| point.time_s <= time_s);
         let (from, to) = (self.points.get(after.checked_sub(1)?)?, self.points.get(after)?);
-        let length_s = to.time_s - from.time_s;
-        let value = from.value + (to.value - from.value) * (time_s - from.time_s) / length_s;
-        Some(self.on_line(*from, time_s, value, length_s))
+        let value = from.value + (to.value - from.value) * (time_s - from.time_s) / (to.time_s - from.time_s);
+        Some(from.line_to(time_s, value, to.is_hidden))
     }
 
     /// The step at `time_s`, which is the mean over the span after it less the mean over the span before, and the step's
@@ -79,6 +74,16 @@ impl Signal {
     }
 }
 
+impl Point {
+    /// The end of a line from it.
+    fn line_to(&self, time_s: f64, value: f64, is_hidden: bool) -> Self {
+        let since_s = time_s - self.time_s;
+        let hidden_s = if is_hidden { since_s } else { 0.0 };
+        let area = self.area + since_s * f64::midpoint(self.value, value);
+        Self { time_s, value, area, hidden_s: self.hidden_s + hidden_s, is_hidden }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::Signal;
@@ -86,7 +91,7 @@ mod tests {
     #[test]
     fn a_ramp_steps_by_its_slope_times_the_span_however_it_was_sampled() {
         let times = [0.0, 1.0, 1.1, 1.11, 3.0, 3.5, 6.0];
-        let signal = Signal::new(&times.map(|time| (time, 3.0 * time)));
+        let signal = Signal::new(&times.map(|time| (time, 3.0 * time)), &[]);
         let [step, rate] = signal.step(2.5).expect("it lies within");
         assert!((step - 6.0).abs() < 1e-12 && rate.abs() < 1e-12, "{step}, {rate}");
     }
@@ -94,7 +99,7 @@ mod tests {
     #[test]
     fn there_is_no_step_across_a_pause_or_beyond_the_ends() {
         let times = (0..400).map(|k| f64::from(k) / 20.0).filter(|t| !(8.0..8.4).contains(t));
-        let signal = Signal::new(&times.map(|time| (time, time)).collect::<Vec<_>>());
+        let signal = Signal::new(&times.map(|time| (time, time)).collect::<Vec<_>>(), &[]);
         let known = [1.9, 2.1, 5.9, 6.2, 8.2, 10.3, 10.5, 17.9, 18.0].map(|time| signal.step(time).is_some());
         assert_eq!(known, [false, true, true, false, false, false, true, true, false]);
     }

@@ -1,9 +1,9 @@
-//! What goes beyond the paper: the drift observer, contact, and how far an estimate may be off.
+//! What goes beyond the paper: contact, and how far an estimate may be off.
 //!
 //! Their parameters are those of the reference arm, but for what a sweep shows of its own: which segments bend alike, how
 //! wrong bend sensors are, and how far constant curvature is from the truth.
 
-use calibration_tables::{AlikeKeys, ArmFile, DriftKeys, DriftKind, SegmentKeys, UncertaintyKeys};
+use calibration_tables::{AlikeKeys, ArmFile, DriftKind, SegmentKeys, UncertaintyKeys};
 
 use super::sweep::Sweep;
 
@@ -16,15 +16,12 @@ const DRIFT_SHARE: f64 = 0.12;
 /// Deviation of θ that a touch adds.
 const CONTACT_DEG: f64 = 0.5;
 
-/// Sets what the arm description leaves open. `misfit_m` is the distance of the true tip from constant curvature.
+/// Sets them for a table whose maps and filters are set. `misfit_m` is the distance of the true tip from constant curvature.
 pub(super) fn set(sweep: &Sweep, misfit_m: f64, table: &mut ArmFile) {
-    let drift = table.drift.get_or_insert_with(DriftKeys::observer);
+    let is_observed = table.drift.as_ref().is_some_and(|drift| drift.kind == DriftKind::Observer);
     let bend_deg = bend_deg(&table.segments);
     table.uncertainty = Some(UncertaintyKeys {
-        theta_deg: match drift.kind {
-            DriftKind::Anchor => ANCHORED_SHARE * bend_deg,
-            DriftKind::Observer => OBSERVED_DEG,
-        },
+        theta_deg: if is_observed { OBSERVED_DEG } else { ANCHORED_SHARE * bend_deg },
         drift_share: DRIFT_SHARE,
         bend_deg,
         contact_deg: CONTACT_DEG,

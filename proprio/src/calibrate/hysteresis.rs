@@ -80,6 +80,9 @@ impl Rows {
         let mut rows = Self { half_widths, error: Vec::new(), terms: Vec::new() };
         let mut places = None;
         for (row, truth) in sweep.theta[segment].iter().enumerate() {
+            if row > 0 && sweep.runs[row] != sweep.runs[row - 1] {
+                places = None;
+            }
             let angles = columns.iter().zip(maps);
             let angles = angles.filter_map(|(column, map)| Some(map.angle(volts(column.counts[row]?))));
             let (sum, count) = angles.fold((0.0, 0.0), |(sum, count), angle| (sum + angle, count + 1.0));

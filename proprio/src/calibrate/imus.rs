@@ -18,14 +18,16 @@ pub(super) fn check(sweep: &Sweep) -> Result<Vec<Warning>, CalibrationError> {
     let mut warnings = Vec::new();
     for (i, imu) in sweep.imu.iter().enumerate() {
         let segment = i + 1;
-        let Some(own) = unexplained(imu, &sweep.heading[i], lag, 1.0) else {
+        let Some(own) = unexplained(imu, &sweep.heading[i], &sweep.runs, lag, 1.0) else {
             warnings.push(Warning::ImuNotRead { segment });
             continue;
         };
         if own < GOOD_ENOUGH {
             continue;
         }
-        let explains = |j: usize, sign| unexplained(imu, &sweep.heading[j], lag, sign).filter(|u| u * BETTER < own);
+        let explains = |j: usize, sign| {
+            unexplained(imu, &sweep.heading[j], &sweep.runs, lag, sign).filter(|left| left * BETTER < own)
+        };
         if explains(i, -1.0).is_some() {
             return Err(CalibrationError::InvertedImu { segment });
         }
@@ -40,11 +42,13 @@ pub(super) fn check(sweep: &Sweep) -> Result<Vec<Warning>, CalibrationError> {
     Ok(warnings)
 }
 
-/// Share of the squared steps of `imu` over `lag` rows that `sign` times those of `truth` leave; `None` where too few
-/// rows have both. The mean step is taken out, as it is drift.
-fn unexplained(imu: &[Option<f64>], truth: &[Option<f64>], lag: usize, sign: f64) -> Option<f64> {
+/// Share of the squared steps of `imu` over `lag` rows of one run that `sign` times those of `truth` leave; `None` where
+/// too few rows have both. The mean step is taken out, as it is drift.
+fn unexplained(imu: &[Option<f64>], truth: &[Option<f64>], runs: &[u32], lag: usize, sign: f64) -> Option<f64> {
+    let is_in_one_run: Vec<bool> = runs.iter().zip(runs.iter().skip(lag)).map(|(from, to)| from == to).collect();
     let steps = |column: &[Option<f64>]| -> Vec<Option<f64>> {
-        column.iter().zip(column.iter().skip(lag)).map(|(from, to)| Some((*to)? - (*from)?)).collect()
+        let ends = column.iter().zip(column.iter().skip(lag)).zip(&is_in_one_run);
+        ends.map(|((from, to), is_in_one_run)| Some((*to)? - (*from)?).filter(|_| *is_in_one_run)).collect()
     };
     let pairs: Vec<(f64, f64)> = steps(imu).into_iter().zip(steps(truth)).filter_map(|(a, b)| a.zip(b)).collect();
     if pairs.len() < LEAST_ROWS {

@@ -3,9 +3,9 @@
 //! 1. Each bend sensor's quadratic is fitted to the truth by least squares (paper, eq. 1), after checks that name a
 //!    sensor that is dead, saturated, swapped or bent back.
 //! 2. Plays on top of the quadratics correct hysteresis, where that is worth it on a part of the session held back.
-//! 3. The session is replayed with these maps; the errors that bend sensors and IMUs make give the filters' default
+//! 3. The session is replayed with these maps and the drift observer; the errors that bend sensors and IMUs make give the filters' default
 //!    parameters.
-//! 4. What goes beyond the paper is set: the drift observer, contact, and how far an estimate may be off.
+//! 4. What else goes beyond the paper is set: contact, and how far an estimate may be off.
 
 mod beyond;
 mod error;
@@ -18,7 +18,7 @@ mod sweep;
 
 use std::path::Path;
 
-use calibration_tables::{ArmFile, BendKeys};
+use calibration_tables::{ArmFile, BendKeys, DriftKeys};
 
 pub use error::{CalibrationError, Warning};
 pub use hysteresis::Correct;
@@ -76,6 +76,7 @@ pub fn calibrate(session: &Path, arm: &NamedTable, hysteresis: Correct) -> Resul
         (segment.orient, segment.coord) = (None, None);
     }
     hysteresis::set(&sweep, &mut table.segments, hysteresis);
+    table.drift.get_or_insert_with(DriftKeys::observer);
     let mut table = NamedTable { file: table, path: arm.path };
     let misfit_m = residuals::set_filters(session, &mut table, sweep.rate_hz)?;
     let percent = misfit_m * 1e5 / table.file.length_mm();

@@ -34,11 +34,13 @@ pub(super) struct SensorColumn {
 pub(super) struct Sweep {
     pub rate_hz: f64,
     pub ends_with_line: bool,
+    /// In which run of the estimator each row is: where a new one starts, headings have a new zero and plays are at rest.
+    pub runs: Vec<u32>,
     /// True bend angle of each segment, rad.
     pub theta: Vec<Vec<Option<f64>>>,
     /// True heading of each segment's end, unwrapped, rad.
     pub heading: Vec<Vec<Option<f64>>>,
-    /// Unwrapped heading of each IMU, rad.
+    /// Unwrapped heading of each IMU, rad; its zero is the run's own.
     pub imu: Vec<Vec<Option<f64>>>,
     pub sensors: Vec<SensorColumn>,
 }
@@ -71,6 +73,7 @@ impl Sweep {
         let mut sweep = Self {
             rate_hz: reader.rate_hz(arm.rate_hz),
             ends_with_line: reader.ends_with_line(),
+            runs: Vec::new(),
             theta: vec![Vec::new(); n],
             heading: vec![Vec::new(); n],
             imu: vec![Vec::new(); n],
@@ -87,6 +90,7 @@ impl Sweep {
     }
 
     fn push(&mut self, row: &Row, unwrap: &mut Unwrap) {
+        self.runs.push(self.runs.last().copied().unwrap_or_default() + u32::from(row.starts));
         for i in 0..self.theta.len() {
             self.theta[i].push(row.true_theta(i));
             let truth = row.truth[i].and_then(|pose| pose.heading_rad).map(Phase::from_rad);

@@ -2,7 +2,6 @@
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
-use std::time::Instant;
 
 use calibration_tables::{Stopped, TuningKeys};
 use proprio::error::Error;
@@ -23,14 +22,13 @@ pub fn run(args: &Tune) -> Result<(), Error> {
     for path in tuner.cut_sessions() {
         super::warn(&format_args!("{}: {LAST_LINE}", path.display()));
     }
-    let (heed, start) = (Heed::interrupts(), Instant::now());
-    let Tuning { table, record } = tuner.tune(|| heed.is_requested())?;
-    let time = start.elapsed();
+    let heed = Heed::interrupts();
+    let Tuning { table, record, iteration_time } = tuner.tune(|| heed.is_requested())?;
     drop(heed);
     warnings(&record).for_each(|warning| super::warn(&warning));
     file.write_all(table.to_toml().as_bytes()).map_err(|error| file.error(error))?;
     // Last, so that a command that fails leaves no file.
-    super::print(&tables::tuning(&record, time))?;
+    super::print(&tables::tuning(&record, iteration_time))?;
     file.finish()
 }
 

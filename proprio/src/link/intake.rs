@@ -46,6 +46,7 @@ impl Intake {
         self.before = self.counts();
         self.decoder = Decoder::new();
         self.losses_begin = None;
+        self.runs.opened();
     }
 
     /// What was received since the beginning. Losses count from the first `Hello` after each opening.

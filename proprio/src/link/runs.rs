@@ -9,6 +9,8 @@ const REPEATED: u32 = 100;
 pub struct Runs {
     boot: Option<u32>,
     tick: Option<u32>,
+    /// The line was opened since the last sample: what comes now has not come before.
+    is_opened: bool,
 }
 
 /// Where a sample stands in the stream.
@@ -23,6 +25,11 @@ pub enum Place {
 }
 
 impl Runs {
+    /// The line is opened (again).
+    pub fn opened(&mut self) {
+        self.is_opened = true;
+    }
+
     /// Takes a `Hello`'s boot; says whether it is of another run.
     pub fn hello(&mut self, boot: u32) -> bool {
         let restarted = self.boot.is_some_and(|before| before != boot);
@@ -35,8 +42,9 @@ impl Runs {
 
     /// Takes a sample's tick.
     pub fn sample(&mut self, tick: u32) -> Place {
+        let may_repeat = !std::mem::take(&mut self.is_opened);
         let place = match self.tick {
-            Some(last) if tick <= last && last - tick < REPEATED => return Place::Repeated,
+            Some(last) if may_repeat && tick <= last && last - tick < REPEATED => return Place::Repeated,
             Some(last) if tick <= last => Place::Restarted,
             _ => Place::Next,
         };

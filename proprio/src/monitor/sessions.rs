@@ -16,7 +16,7 @@ use super::observer::Observer;
 use super::row::{self, Row};
 use crate::error::Error;
 use crate::replay::NamedTable;
-use crate::session::SessionReader;
+use crate::session::{Mark, SessionReader};
 
 /// Files that can be opened, and what for.
 #[derive(Debug)]
@@ -45,6 +45,21 @@ struct About {
     samples: u64,
     /// Every how many-th of them is here.
     every: u64,
+    /// Moments in it that were marked.
+    marks: Vec<Marked>,
+}
+
+/// A moment that was marked.
+#[derive(Debug, Serialize)]
+struct Marked {
+    time_s: f64,
+    text: String,
+}
+
+impl From<&Mark> for Marked {
+    fn from(mark: &Mark) -> Self {
+        Self { time_s: mark.time_us as f64 / 1e6, text: mark.text.clone() }
+    }
 }
 
 impl Sessions {
@@ -134,7 +149,9 @@ impl Sessions {
             }
             samples += 1;
         }
-        Ok(history.to_bytes(&About { arm: Arm::new(segments, Some(file)), samples, every }))
+        let marks = reader.marks().iter().map(Marked::from).filter(|mark| (from_s..=to_s).contains(&mark.time_s));
+        let marks = marks.collect();
+        Ok(history.to_bytes(&About { arm: Arm::new(segments, Some(file)), samples, every, marks }))
     }
 }
 

@@ -93,10 +93,12 @@ impl<'b> CdrReader<'b> {
         self.take().map(u32::from_le_bytes)
     }
 
-    pub fn skip_string(&mut self) -> Option<()> {
+    /// Without the zero that ends it.
+    pub fn string(&mut self) -> Option<&'b str> {
         let length = self.u32()? as usize;
-        self.at = self.at.checked_add(length).filter(|end| *end <= self.body.len())?;
-        Some(())
+        let text = self.body.get(self.at..)?.get(..length)?;
+        self.at += length;
+        std::str::from_utf8(text.strip_suffix(&[0])?).ok()
     }
 
     /// A sequence of floats.
@@ -134,10 +136,9 @@ mod tests {
         let bytes = cdr.into_bytes();
         let read = |bytes: &[u8]| {
             let mut cdr = CdrReader::new(bytes)?;
-            cdr.skip_string()?;
-            cdr.floats()
+            Some((cdr.string()?, cdr.floats()?))
         };
-        assert_eq!(read(&bytes), Some(vec![1.5, -2.5]));
+        assert_eq!(read(&bytes), Some(("frame", vec![1.5, -2.5])));
         assert_eq!((0..bytes.len()).find_map(|length| read(&bytes[..length])), None);
     }
 }

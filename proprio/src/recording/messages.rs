@@ -118,6 +118,11 @@ pub fn mark(text: &str) -> Vec<u8> {
     cdr.into_bytes()
 }
 
+/// The text of a `std_msgs/msg/String`; `None` where it is none.
+pub fn read_mark(message: &[u8]) -> Option<String> {
+    CdrReader::new(message)?.string().map(str::to_owned)
+}
+
 /// The chip's number in hexadecimal.
 pub fn chip_number(chip: &[u8; 16]) -> String {
     format!("{:032x}", u128::from_be_bytes(*chip))
@@ -201,7 +206,7 @@ pub fn read_truth(message: &[u8]) -> Option<Vec<Option<Truth>>> {
     let mut cdr = CdrReader::new(message)?;
     cdr.u32()?;
     cdr.u32()?;
-    cdr.skip_string()?;
+    cdr.string()?;
     let (xs, ys, headings) = (cdr.floats()?, cdr.floats()?, cdr.floats()?);
     if xs.len() != ys.len() || ys.len() != headings.len() {
         return None;

@@ -7,20 +7,22 @@ use mcap::sans_io::LinearReaderOptions;
 use mcap::{McapError, Message};
 use telemetry::PROTOCOL_VERSION;
 
-use super::{RAW, TRUTH, messages};
+use super::{MARKS, RAW, TRUTH, messages};
 use crate::link::HostNs;
 use crate::session::Truth;
 
 /// No record of ours is longer; a longer one is a damaged length.
 const LONGEST_RECORD: usize = 1 << 28;
 
-/// What a recording holds for a replay.
+/// What a recording holds for a session.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Item {
     /// Bytes as they came, and when.
     Bytes(HostNs, Vec<u8>),
     /// The truth of the sample with this tick, which came before.
     Truth(u32, Vec<Option<Truth>>),
+    /// A moment that a person has marked, and what for.
+    Mark(HostNs, String),
 }
 
 /// Why a recording cannot be read on.
@@ -88,7 +90,7 @@ impl<R: Read> Iterator for Reader<R> {
     }
 }
 
-/// What a replay needs of a message, if anything.
+/// What a session needs of a message, if anything.
 fn item(message: Result<Message<'static>, McapError>) -> Result<Option<Item>, ReadError> {
     let message = message?;
     match message.channel.topic.as_str() {
@@ -96,6 +98,10 @@ fn item(message: Result<Message<'static>, McapError>) -> Result<Option<Item>, Re
         TRUTH => match messages::read_truth(&message.data) {
             Some(ends) => Ok(Some(Item::Truth(message.sequence, ends))),
             None => Err(ReadError::Damaged(format!("a message on {TRUTH} is no truth"))),
+        },
+        MARKS => match messages::read_mark(&message.data) {
+            Some(text) => Ok(Some(Item::Mark(HostNs(message.log_time), text))),
+            None => Err(ReadError::Damaged(format!("a message on {MARKS} is no text"))),
         },
         _ => Ok(None),
     }

@@ -7,7 +7,7 @@ use telemetry::{DecodeError, Decoder, Event, Hello, Message, SCHEMA, Sample};
 
 use super::{Item, ReadError};
 use crate::link::{HostNs, Place, Runs};
-use crate::session::{OnBoard, Row, Truth};
+use crate::session::{Mark, OnBoard, Row, Truth};
 
 /// Time from one tick to the next, µs.
 const TICK_US: u64 = 10_000;
@@ -23,6 +23,7 @@ pub(crate) struct RecordedRows<I> {
     /// The row that waits for its estimate, for what else the board says of its tick, and for its truth.
     open: Option<Row>,
     whole: VecDeque<Row>,
+    marks: Vec<Mark>,
     last: Option<Last>,
     /// What is added to the board's time, so that it goes on over a restart, µs.
     base_us: u64,
@@ -50,6 +51,7 @@ impl<I: Iterator<Item = Result<Item, ReadError>>> RecordedRows<I> {
             restarted: false,
             open: None,
             whole: VecDeque::new(),
+            marks: Vec::new(),
             last: None,
             base_us: 0,
             complete: false,
@@ -60,6 +62,11 @@ impl<I: Iterator<Item = Result<Item, ReadError>>> RecordedRows<I> {
     /// The board's last `Hello` so far.
     pub fn hello(&self) -> Option<&Hello> {
         self.hello.as_ref()
+    }
+
+    /// The moments that were marked so far.
+    pub fn marks(&self) -> &[Mark] {
+        &self.marks
     }
 
     /// The next row, or `None` at the end.
@@ -83,6 +90,7 @@ impl<I: Iterator<Item = Result<Item, ReadError>>> RecordedRows<I> {
                     }
                 }
                 Some(Item::Truth(tick, ends)) => self.truth(tick, &ends),
+                Some(Item::Mark(at, text)) => self.mark(at, text),
                 None => {
                     self.at_end = true;
                     self.whole.extend(self.open.take());
@@ -151,6 +159,15 @@ impl<I: Iterator<Item = Result<Item, ReadError>>> RecordedRows<I> {
         row.sample.time_us = self.base_us + sample.time_us;
         self.last = Some(Last { sample: *sample, at, row_us: row.sample.time_us, lost });
         row
+    }
+
+    /// A mark has the host's time; the sample before it tells what that is on the rows' clock.
+    fn mark(&mut self, at: HostNs, text: String) {
+        let time_us = self.last.as_ref().map_or(0, |last| {
+            // It may have come before the sample, and was written after it.
+            last.row_us.saturating_add_signed((at.0 as i64 - last.at.0 as i64) / 1000)
+        });
+        self.marks.push(Mark { time_us, text });
     }
 
     /// The row that waits, where it is of this tick.

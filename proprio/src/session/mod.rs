@@ -63,6 +63,15 @@ pub struct Row {
     pub board: Option<OnBoard>,
 }
 
+/// A moment that a person has marked while it was recorded.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Mark {
+    /// When, by the clock of the rows, µs.
+    pub time_us: u64,
+    /// What for.
+    pub text: String,
+}
+
 /// What a board said of one sample.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OnBoard {

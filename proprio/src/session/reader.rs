@@ -10,7 +10,7 @@ use telemetry::{Hello, SEGMENTS};
 use super::csv_file::CsvFile;
 use super::csv_rows::CsvRows;
 use super::source::{Kind, Source};
-use super::{Needs, Problem, Row, SessionError};
+use super::{Mark, Needs, Problem, Row, SessionError};
 use crate::recording::{Item, RawReader, ReadError, Reader, RecordedRows};
 
 /// Rows at the start whose time stamps tell the sample rate.
@@ -87,8 +87,8 @@ impl SessionReader {
         if self.ahead.is_empty() {
             return Err(self.error(Problem::NoSamples));
         }
-        let times = self.ahead.iter().map(|row| row.sample.time_us);
-        self.rate_hz = rate_hz(times.clone().zip(times.skip(1)).map(|(from, to)| to - from).collect());
+        let steps = self.ahead.iter().zip(self.ahead.iter().skip(1)).map(|(from, to)| Step::new(from, to));
+        self.rate_hz = rate_hz(steps.collect());
         if matches!(self.rows, Rows::Recorded(..)) {
             // A board has no columns: the sensors are those that it has read at all.
             for (i, present) in self.bend_sensors.iter_mut().enumerate() {
@@ -191,6 +191,15 @@ impl SessionReader {
         }
     }
 
+    /// The moments that were marked, as far as it was read.
+    #[must_use]
+    pub fn marks(&self) -> &[Mark] {
+        match &self.rows {
+            Rows::Csv(_) => &[],
+            Rows::Recorded(rows, _) => rows.marks(),
+        }
+    }
+
     /// The next row, or `None` at the end.
     ///
     /// # Errors
@@ -215,11 +224,29 @@ impl SessionReader {
     }
 }
 
-/// Rate of the mean step, µs, of those that are not over twice the median: rows that were lost are no slower rate.
-fn rate_hz(mut steps_us: Vec<u64>) -> Option<f64> {
-    steps_us.sort_unstable();
-    let median = *steps_us.get(steps_us.len() / 2)?;
-    let without_gaps = steps_us.partition_point(|step| *step <= 2 * median);
-    let sum = steps_us[..without_gaps].iter().sum::<u64>();
-    (sum > 0).then(|| without_gaps as f64 * 1e6 / sum as f64)
+/// From one row to the next.
+struct Step {
+    us: u64,
+    /// Of a board's recording; 1 in a CSV, which numbers nothing.
+    ticks: u32,
+}
+
+impl Step {
+    fn new(from: &Row, to: &Row) -> Self {
+        let ticks = from.board.zip(to.board).map_or(1, |(from, to)| to.tick.wrapping_sub(from.tick));
+        Self { us: to.sample.time_us - from.sample.time_us, ticks }
+    }
+}
+
+/// Rate of the mean step of those over no more ticks than usual, and not over twice the median: rows that were lost are no
+/// slower rate.
+fn rate_hz(mut steps: Vec<Step>) -> Option<f64> {
+    steps.sort_unstable_by_key(|step| step.ticks);
+    let usual = steps.get(steps.len() / 2)?.ticks;
+    steps.truncate(steps.partition_point(|step| step.ticks <= usual));
+    steps.sort_unstable_by_key(|step| step.us);
+    let median_us = steps.get(steps.len() / 2)?.us;
+    steps.truncate(steps.partition_point(|step| step.us <= 2 * median_us));
+    let sum_us = steps.iter().map(|step| step.us).sum::<u64>();
+    (sum_us > 0).then(|| steps.len() as f64 * 1e6 / sum_us as f64)
 }

@@ -1,8 +1,11 @@
-//! Tuning: Q, R and H of all filters by gradient descent on the RMSE of sessions with truth.
+//! Tuning on sessions with truth: the drift observer's parameters, and Q, R and H of all filters, by the RMSE of fusion; and
+//! the variances, by what the errors are.
 //!
-//! 1. Each session runs once through the estimator up to its filters; nothing before them depends on their parameters.
-//! 2. Each iteration runs the estimator's own filters over what they measure, in dual numbers, and chains what they say.
+//! 1. Where the table has the observer, a search tries other parameters; each try is a run of the estimator up to its filters.
+//! 2. Nothing before the filters depends on their parameters. Gradient descent runs the estimator's own filters over what
+//!    they measure, in dual numbers, and chains what they say.
 //! 3. The last fifth of each session is held back. What gets worse there was tuned to noise, and is not kept.
+//! 4. Where the table says what errors come from, all variances grow by one factor if they are too small.
 
 mod descent;
 mod dual;
@@ -10,24 +13,28 @@ mod error;
 mod errors;
 mod filters;
 mod objective;
+mod observer;
 mod parameters;
 #[cfg(test)]
 mod tests;
 mod training;
 
 use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
 
-use calibration_tables::{ArmFile, Stopped, TuningKeys};
+use calibration_tables::{ArmFile, ObserverTuningKeys, Stopped, TuningKeys};
 
 pub use dual::Dual;
 pub use error::TuningError;
 
 use crate::error::Error;
+use crate::honesty::Honesty;
 use crate::progress::Progress;
-use crate::replay::NamedTable;
+use crate::replay::{NamedTable, replay};
 use descent::{Iterate, MAX_ITERATIONS, descend};
 use errors::Errors;
 use objective::{Evaluation, Objective, SessionErrors};
+use observer::{MAX_RUNS, observer, observer_at, search};
 use training::Training;
 
 /// Samples with truth that each part of a session needs.
@@ -47,6 +54,8 @@ pub struct Tuning {
     pub table: ArmFile,
     /// That record.
     pub record: TuningKeys,
+    /// What an iteration of the descent took.
+    pub iteration_time: Duration,
 }
 
 impl<'t> Tuner<'t> {
@@ -75,22 +84,71 @@ impl<'t> Tuner<'t> {
         cut.map(|session| session.path.as_path())
     }
 
-    /// Descends until the RMSE converges, or until `is_interrupted` after an iteration.
+    /// Searches and descends until the RMSE converges, or until `is_interrupted` after an iteration.
     ///
     /// # Errors
-    /// [`Error::Tuning`] where the RMSE is no number, or falls on and on.
-    pub fn tune(&self, is_interrupted: impl Fn() -> bool) -> Result<Tuning, Error> {
+    /// [`Error::Tuning`] where the RMSE is no number, or falls on and on; [`Error::Session`] where a session is no longer
+    /// what it was.
+    pub fn tune(mut self, is_interrupted: impl Fn() -> bool) -> Result<Tuning, Error> {
+        let (observed, observer) = self.tune_observer(&is_interrupted);
+        let start = Instant::now();
+        let Filtered { mut table, iterations, kept, stopped } = self.tune_filters(observed, &is_interrupted)?;
+        let iteration_time = start.elapsed().div_f64(iterations.max(1) as f64);
+        let variances = self.widen(&mut table)?;
+        let after = self.objective.of_table(&table);
+        let record = TuningKeys {
+            sessions: self.objective.sessions().iter().map(|session| session.path.display().to_string()).collect(),
+            iterations,
+            kept,
+            stopped,
+            variances,
+            observer,
+            before: pooled(&self.before, |session| &session.training).keys(),
+            after: pooled(&after, |session| &session.training).keys(),
+            held_back_before: pooled(&self.before, |session| &session.held_back).keys(),
+            held_back_after: pooled(&after, |session| &session.held_back).keys(),
+        };
+        Ok(Tuning { table: ArmFile { tuning: Some(record.clone()), ..table }, record, iteration_time })
+    }
+
+    /// The table with the best observer that is no worse on what is held back, which the sessions are measured with, and the
+    /// record of it.
+    fn tune_observer(&mut self, is_interrupted: impl Fn() -> bool) -> (ArmFile, Option<ObserverTuningKeys>) {
+        let mut table = self.table.file.clone();
+        let Some(start) = observer(&table).cloned() else { return (table, None) };
+        let mut progress = Progress::new("tuning the observer".to_owned(), MAX_RUNS as u64);
+        let mut runs = 0;
+        let finds = search(self.before.clone(), |place| {
+            table.drift = Some(observer_at(&start, place));
+            self.objective.measure(&table);
+            let found = self.objective.of_table(&table);
+            runs += 1;
+            progress.tell(runs, format!("tuning the observer: {}", told(&found)));
+            (!is_interrupted()).then_some(found)
+        });
+        let kept = finds.iter().rev().find(|find| find.found.held_back_loss <= self.before.held_back_loss);
+        let tuned = kept.map_or(start.clone(), |kept| observer_at(&start, &kept.place));
+        let record = ObserverTuningKeys {
+            runs,
+            noise_deg2_s: [start.noise_deg2_s, tuned.noise_deg2_s],
+            walk_deg_per_s: [start.walk_deg_per_s, tuned.walk_deg_per_s],
+            slope: [start.slope, tuned.slope],
+        };
+        table.drift = Some(tuned);
+        self.objective.measure(&table);
+        (table, Some(record))
+    }
+
+    /// The table with better filters.
+    fn tune_filters(&self, table: ArmFile, is_interrupted: impl Fn() -> bool) -> Result<Filtered, Error> {
         let mut progress = Progress::new("tuning".to_owned(), MAX_ITERATIONS);
-        let start = self.objective.start(&self.table.file);
+        let before = self.objective.of_table(&table);
         let (mut last, mut best): (Option<Iterate>, Option<Iterate>) = (None, None);
         let stopped = descend(
             |place| self.objective.at(place),
-            start,
+            self.objective.start(&table),
             |iterate| {
-                let rmse = pooled(&iterate.found, |session| &session.training).keys();
-                let (tip, heading) = (rmse.tip_rmse_mm, rmse.heading_rmse_deg);
-                progress
-                    .tell(iterate.number, format!("tuning: RMSE of the tip {tip:.2} mm, of headings {heading:.2} deg"));
+                progress.tell(iterate.number, format!("tuning: {}", told(&iterate.found)));
                 let is_best = |best: &Iterate| iterate.found.held_back_loss < best.found.held_back_loss;
                 if best.as_ref().is_none_or(is_best) {
                     best = Some(iterate.clone());
@@ -101,32 +159,50 @@ impl<'t> Tuner<'t> {
         );
         let stopped = stopped.map_err(|source| Error::Tuning { path: self.table.path.to_owned(), source })?;
         let iterations = last.as_ref().map_or(0, |last| last.number);
-        let kept = [last, best].into_iter().flatten().find(|kept| self.is_good(kept));
-        Ok(self.tuning(kept, iterations, stopped))
-    }
-
-    /// Whether an iterate is worth more than the table as it was.
-    fn is_good(&self, iterate: &Iterate) -> bool {
-        let Evaluation { loss, held_back_loss, .. } = iterate.found;
-        iterate.number > 0 && loss <= self.before.loss && held_back_loss <= self.before.held_back_loss
-    }
-
-    fn tuning(&self, kept: Option<Iterate>, iterations: u64, stopped: Stopped) -> Tuning {
-        let file = self.table.file.clone();
-        let table = kept.as_ref().map_or(file.clone(), |kept| self.objective.table(&kept.place, file));
-        let after = self.objective.of_table(&table);
-        let record = TuningKeys {
-            sessions: self.objective.sessions().iter().map(|session| session.path.display().to_string()).collect(),
-            iterations,
-            kept: kept.map_or(0, |kept| kept.number),
-            stopped,
-            before: pooled(&self.before, |session| &session.training).keys(),
-            after: pooled(&after, |session| &session.training).keys(),
-            held_back_before: pooled(&self.before, |session| &session.held_back).keys(),
-            held_back_after: pooled(&after, |session| &session.held_back).keys(),
+        let is_good = |iterate: &Iterate| {
+            let Evaluation { loss, held_back_loss, .. } = iterate.found;
+            iterate.number > 0 && loss <= before.loss && held_back_loss <= before.held_back_loss
         };
-        Tuning { table: ArmFile { tuning: Some(record.clone()), ..table }, record }
+        let kept = [last, best].into_iter().flatten().find(is_good);
+        let number = kept.as_ref().map_or(0, |kept| kept.number);
+        let table = kept.map_or(table.clone(), |kept| self.objective.table(&kept.place, table));
+        Ok(Filtered { table, iterations, kept: number, stopped })
     }
+
+    /// Multiplies all variances by what the ends' errors on the training part have them too small by, and gives the factor.
+    /// Motion to come may be less gentle: what is too large stays.
+    fn widen(&self, table: &mut ArmFile) -> Result<Option<f64>, Error> {
+        let Some(keys) = table.uncertainty.clone() else { return Ok(None) };
+        let mut honesty = Honesty::default();
+        let named = NamedTable { file: table.clone(), path: self.table.path };
+        for session in self.objective.sessions() {
+            let mut rows = 0..session.seen();
+            replay::<f64>(&session.path, &named, |row, outcome| {
+                if rows.next().is_some() {
+                    honesty.add(row, outcome);
+                }
+                Ok(())
+            })?;
+        }
+        let factor = honesty.figures().end_nees.filter(|nees| nees.is_finite()).map_or(1.0, |nees| nees.max(1.0));
+        table.uncertainty = Some(keys.scaled(factor));
+        Ok(Some(factor))
+    }
+}
+
+/// What came of the descent.
+struct Filtered {
+    table: ArmFile,
+    iterations: u64,
+    /// The iteration that the table's filters are of.
+    kept: u64,
+    stopped: Stopped,
+}
+
+/// The errors of what descent sees, for people.
+fn told(of: &Evaluation) -> String {
+    let rmse = pooled(of, |session| &session.training).keys();
+    format!("RMSE of the tip {:.2} mm, of headings {:.2} deg", rmse.tip_rmse_mm, rmse.heading_rmse_deg)
 }
 
 impl SessionErrors {

@@ -62,6 +62,13 @@ impl Objective {
         &self.sessions
     }
 
+    /// Measures all sessions anew, with a table's observer.
+    pub fn measure(&mut self, table: &ArmFile) {
+        thread::scope(|scope| {
+            self.sessions.iter_mut().for_each(|session| drop(scope.spawn(|| session.measure(table))));
+        });
+    }
+
     /// What a table's own filters are worth; the gradient is none.
     pub fn of_table(&self, table: &ArmFile) -> Evaluation {
         self.evaluate(|rate_hz| {

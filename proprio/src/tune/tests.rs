@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use calibration_tables::{ArmFile, NoiseKeys, Stopped};
+use calibration_tables::{ArmFile, DriftKeys, NoiseKeys, Stopped};
 use estimator_core::{
     BendMap, Estimator, ImuReading, Method, Noise, Phase, Q, Sample, Scalar, Segment as CoreSegment, Table,
 };
@@ -10,6 +10,7 @@ use rig_twin::Scenario;
 
 use super::descent::{MAX_ITERATIONS, descend};
 use super::objective::{Evaluation, Objective};
+use super::observer::{MAX_RUNS, Place, observer_at, search};
 use super::parameters::Ranges;
 use super::training::Training;
 use super::{Dual, TuningError, pooled};
@@ -188,6 +189,63 @@ fn errors_that_are_no_numbers_are_refused() {
     assert_eq!(descend(nothing, vec![0.0], |_| true), Err(TuningError::NotFinite));
     let steep = |_: &[f64]| Evaluation { loss: 1.0, gradient: vec![f64::INFINITY], ..Evaluation::default() };
     assert_eq!(descend(steep, vec![0.0], |_| true), Err(TuningError::NotFinite));
+}
+
+/// What a place costs that is off from the bottom of a bowl, in decades.
+fn bowl(place: &Place, bottom: [f64; 3], depth: f64) -> Evaluation {
+    let off = place.iter().zip(bottom).map(|(steps, bottom)| f64::from(*steps) / 8.0 - bottom);
+    Evaluation { loss: depth * off.map(|off| off * off).sum::<f64>(), ..Evaluation::default() }
+}
+
+#[test]
+fn the_observers_search_finds_the_bottom_of_a_bowl_to_a_factor_of_1_3() {
+    let bottom = [-0.7, 0.45, 0.3];
+    let mut runs = 0;
+    let finds = search(bowl(&[0; 3], bottom, 10.0), |place| {
+        runs += 1;
+        Some(bowl(place, bottom, 10.0))
+    });
+    let place = finds.last().expect("there is a better place").place;
+    assert!(place.iter().zip(bottom).all(|(steps, at)| (f64::from(*steps) / 8.0 - at).abs() <= 0.125), "{place:?}");
+    assert!(runs <= MAX_RUNS, "{runs}");
+}
+
+#[test]
+fn the_observers_search_keeps_within_a_decade_and_makes_no_slope_smaller() {
+    let bottom = [-3.0, 3.0, -3.0];
+    let mut finds = search(bowl(&[0; 3], bottom, 10.0), |place| Some(bowl(place, bottom, 10.0)));
+    assert_eq!(finds.pop().expect("there are better places").place, [-8, 8, 0]);
+}
+
+/// A fifth of a percent for a decade is not worth the way.
+#[test]
+fn the_observers_search_stays_where_there_is_little_to_win() {
+    let bottom = [1.0, -1.0, 1.0];
+    assert!(search(bowl(&[0; 3], bottom, 0.002), |place| Some(bowl(place, bottom, 0.002))).is_empty());
+}
+
+#[test]
+fn the_observers_search_ends_when_it_is_told_to_and_has_the_best_so_far() {
+    let bottom = [1.0, 0.0, 0.0];
+    let mut left = 7;
+    let finds = search(bowl(&[0; 3], bottom, 10.0), |place| {
+        left -= 1;
+        (left > 0).then(|| bowl(place, bottom, 10.0))
+    });
+    assert_eq!((finds.len(), finds[0].place, left), (1, [8, 0, 0], 0));
+}
+
+#[test]
+fn an_observer_at_any_place_is_one_that_the_format_takes() {
+    for start in [
+        DriftKeys { noise_deg2_s: 0.01, walk_deg_per_s: 0.0, slope: 0.0, ..DriftKeys::observer() },
+        DriftKeys { noise_deg2_s: 1e6, walk_deg_per_s: 1.0, slope: 1.0, ..DriftKeys::observer() },
+    ] {
+        for place in [[-8, -8, 0], [8, 8, 8]] {
+            let file = ArmFile { drift: Some(observer_at(&start, &place)), ..table().file };
+            assert_eq!(ArmFile::parse(&file.to_toml()).expect("it is in range"), file);
+        }
+    }
 }
 
 /// Fusion's tip after two seconds of bending, for filters with this R_imu.

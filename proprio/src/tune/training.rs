@@ -2,7 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use estimator_core::Estimator;
+use calibration_tables::{ArmFile, MAX_SEGMENTS};
+use estimator_core::{Estimator, Sample};
 
 use super::error::TuningError;
 use crate::calibrate::{MISFIT_PERCENT, truth_misfit};
@@ -26,6 +27,12 @@ pub(super) struct Measured {
     pub truth: Option<Truth>,
 }
 
+impl Measured {
+    const fn unknown(truth: Option<Truth>) -> Self {
+        Self { imu_c: None, bend: None, truth }
+    }
+}
+
 /// One session.
 #[derive(Debug)]
 pub(super) struct Training {
@@ -35,6 +42,7 @@ pub(super) struct Training {
     /// Root mean square distance of the true tip from the chain of the true bend angles, % of the arm's length.
     misfit_percent: f64,
     segments: usize,
+    samples: Vec<Sample<MAX_SEGMENTS>>,
     measured: Vec<Measured>,
     /// Rows before which the estimator starts anew.
     starts: Vec<bool>,
@@ -51,48 +59,67 @@ pub(super) struct Moment<'t> {
 }
 
 impl Training {
-    /// Runs a session through that part of the estimator on which no filter's parameters act.
+    /// Reads a session and [measures](Self::measure) it.
     pub fn read(session: &Path, table: &NamedTable) -> Result<Self, Error> {
         let mut reader = SessionReader::open(session, &Needs { truth: true, ..table.needs()? })?;
         let rate_hz = reader.rate_hz(table.file.rate_hz);
         let baked = table.bake::<f64>(rate_hz)?;
-        let baked = baked.table();
-        let mut estimator: Box<HostEstimator<f64>> = Box::new(Estimator::new(&baked).expect("the file was checked"));
+        let segments = baked.table().segments;
 
         let mut progress = Progress::new(format!("reading {}", session.display()), reader.progress().1);
-        let (mut measured, mut starts, mut misfit, mut tips) = (Vec::new(), Vec::new(), 0.0, 0.0);
+        let (mut samples, mut measured, mut starts) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut misfit, mut tips) = (0.0, 0.0);
         while let Some(row) = reader.next_row()? {
-            if let Some(distance) = truth_misfit(&row, baked.segments) {
+            if let Some(distance) = truth_misfit(&row, segments) {
                 (misfit, tips) = (misfit + distance * distance, tips + 1.0);
             }
-            if row.starts {
-                estimator.start().expect("the file was checked");
-            }
+            samples.push(row.sample);
+            measured.extend(row.truth.iter().take(segments.len()).map(|truth| Measured::unknown(*truth)));
             starts.push(row.starts);
-            let estimate = estimator.step(&row.sample);
-            measured.extend(estimate.segments.iter().zip(row.truth).map(|(segment, truth)| {
-                // Without whole turns, as the filters take them.
-                let [imu_c, bend] = [segment.imu_c, segment.bend].map(|link| link.map(|link| link.theta.rest));
-                Measured { imu_c, bend, truth }
-            }));
             progress.set(reader.progress().0);
         }
-        Ok(Self {
+        let mut training = Self {
             path: session.to_owned(),
             rate_hz,
             ends_with_line: reader.ends_with_line(),
             misfit_percent: (misfit / f64::max(tips, 1.0)).sqrt() * 1e5 / table.file.length_mm(),
-            segments: baked.segments.len(),
+            segments: segments.len(),
+            samples,
             measured,
             starts,
-        })
+        };
+        training.measure(&table.file);
+        Ok(training)
+    }
+
+    /// Runs the samples through that part of the estimator on which no filter's parameters act.
+    pub fn measure(&mut self, table: &ArmFile) {
+        let baked = table.bake::<f64>(self.rate_hz).expect("it is a table");
+        let baked = baked.table();
+        let mut estimator: Box<HostEstimator<f64>> = Box::new(Estimator::new(&baked).expect("the file was checked"));
+        let rows = self.measured.chunks_exact_mut(self.segments).zip(&self.samples).zip(&self.starts);
+        for ((measured, sample), starts) in rows {
+            if *starts {
+                estimator.start().expect("the file was checked");
+            }
+            let estimate = estimator.step(sample);
+            for (measured, segment) in measured.iter_mut().zip(&estimate.segments) {
+                // Without whole turns, as the filters take them.
+                let thetas = [segment.imu_c, segment.bend].map(|link| link.map(|link| link.theta.rest));
+                [measured.imu_c, measured.bend] = thetas;
+            }
+        }
+    }
+
+    /// How many samples are not held back.
+    pub fn seen(&self) -> usize {
+        self.samples.len() - self.samples.len() / HELD_BACK
     }
 
     /// All samples.
     pub fn rows(&self) -> impl Iterator<Item = Moment<'_>> {
-        let rows = self.measured.chunks_exact(self.segments);
-        let seen = rows.len() - rows.len() / HELD_BACK;
-        let rows = rows.zip(&self.starts).enumerate();
+        let seen = self.seen();
+        let rows = self.measured.chunks_exact(self.segments).zip(&self.starts).enumerate();
         rows.map(move |(row, (measured, starts))| Moment { is_held_back: row >= seen, starts: *starts, measured })
     }
 

@@ -156,6 +156,20 @@ impl Csv {
         }
     }
 
+    /// Makes the truth of an arm of six segments what `estimates` say by fusion, from a row on.
+    pub fn follow(&mut self, estimates: &Self, from: usize) {
+        let mut heading = vec![0.0; self.rows.len()];
+        for i in 1..=6 {
+            let thetas = estimates.numbers(&format!("fusion{i}_theta_deg"));
+            heading.iter_mut().zip(thetas).for_each(|(heading, theta)| *heading += theta);
+            let [x, y] = ["x", "y"].map(|axis| estimates.numbers(&format!("fusion{i}_{axis}_mm")));
+            for (part, values) in [("x_mm", &x), ("y_mm", &y), ("heading_deg", &heading)] {
+                let name = format!("truth{i}_{part}");
+                self.map(&name, |row, cell| if row < from { cell.to_owned() } else { values[row].to_string() });
+            }
+        }
+    }
+
     pub fn rename(&mut self, from: &str, to: &str) {
         let column = self.column(from);
         to.clone_into(&mut self.names[column]);

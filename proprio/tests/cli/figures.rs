@@ -30,11 +30,11 @@ fn replay(sessions: &[&str]) -> Value {
 fn the_report_has_the_keys_of_the_format() {
     let report = replay(&["a.csv", "b.csv"]);
     assert_eq!(keys(&report), ["all", "sessions"]);
-    assert_eq!(keys(&report["all"]), ["methods"]);
+    assert_eq!(keys(&report["all"]), ["methods", "uncertainty"]);
     let sessions = report["sessions"].as_array().expect("a list");
     assert_eq!(sessions.len(), 2);
     for session in sessions {
-        assert_eq!(keys(session), ["methods", "path", "samples", "seconds"]);
+        assert_eq!(keys(session), ["methods", "path", "samples", "seconds", "uncertainty"]);
         assert_eq!(keys(&session["methods"]), METHODS);
         for method in METHODS {
             assert_eq!(keys(&session["methods"][method]), FIGURES);
@@ -160,7 +160,10 @@ fn the_table_for_people_has_the_figures_of_the_json() {
         .filter(|cells| cells.first() == Some(&"session.csv"))
         .collect();
     let figures = ["tip_rmse_mm", "tip_rmse_percent", "tip_p75_mm", "theta_rmse_deg"];
+    let (honesty, rows) = rows.split_last().expect("there are tables");
     assert_eq!(rows.len(), figures.len(), "{}", run.stdout);
+    let nees = report["all"]["uncertainty"]["tip_nees"].as_f64().expect("a number");
+    assert_eq!(honesty[1], format!("{nees:.2}"));
     for (row, name) in rows.iter().zip(figures) {
         assert_eq!(row[1..3], ["150", "14.9"]);
         for (cell, method) in row[3..].iter().zip(["bend", "imu_o", "imu_c", "fusion"]) {

@@ -1,15 +1,17 @@
-//! The drift observer in the anchor's place, and the correction of hysteresis.
+//! The drift observer beside the anchor, and the correction of hysteresis.
 
 use std::fs;
 
-use super::common::{Folder, arm, figure, json, table};
+use super::common::{Folder, arm, figure, json};
 
-/// A run of 15 min with the reference table as `anchor.toml`, and with the observer in it as `observer.toml`.
+/// A run of 15 min, and a sweep's tables with the anchor, `anchor.toml`, and as `calibrate` makes them, `observer.toml`.
 fn folder(scenario: &str) -> Folder {
     let folder = Folder::new();
-    let text = fs::read_to_string(table()).expect("the reference table");
-    folder.write("anchor.toml", &text);
-    folder.write("observer.toml", text.replacen("[[segment]]", "[drift]\nkind = \"observer\"\n\n[[segment]]", 1));
+    folder.done(&["simulate", "--scenario", "sweep", "--seconds", "900", "--seed", "1", "-o", "sweep.csv"]);
+    let text = fs::read_to_string(arm()).expect("the reference arm");
+    folder.write("anchored.toml", text.replacen("[[segment]]", "[drift]\nkind = \"anchor\"\n\n[[segment]]", 1));
+    folder.done(&["calibrate", "sweep.csv", "--arm", "anchored.toml", "-o", "anchor.toml"]);
+    folder.done(&["calibrate", "sweep.csv", "--arm", arm(), "-o", "observer.toml"]);
     folder.done(&["simulate", "--scenario", scenario, "--seconds", "900", "--seed", "61", "-o", "session.csv"]);
     folder
 }

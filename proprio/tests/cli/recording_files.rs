@@ -162,6 +162,21 @@ fn estimates_after_a_lost_sample_are_not_compared_until_the_next_tare() {
     assert!(stderr.contains("199 more are not compared"), "{stderr}");
 }
 
+/// Its rate is the board's, however many samples are missing.
+#[test]
+fn a_recording_that_lacks_every_third_sample_is_replayed_at_the_boards_rate() {
+    let board = SyntheticBoard::new(1, 12.0);
+    let pieces = board.enumerate().map(|(tick, (mut frames, _))| {
+        if tick >= 100 && tick % 3 == 0 {
+            // The first frame of every hundredth tick is the Hello.
+            frames.remove(usize::from(tick % 100 == 0));
+        }
+        frames.concat()
+    });
+    let (recorded, stderr) = replayed(record(pieces));
+    assert_eq!((&recorded["equal"], &recorded["first_difference"]), (&102.into(), &Value::Null), "{stderr}");
+}
+
 #[test]
 fn a_lost_estimate_costs_nothing_else() {
     let board = SyntheticBoard::new(1, 5.0);

@@ -1,5 +1,6 @@
 //! `tune` on good sessions: what the table becomes, what is told of it, and how a run ends.
 
+use std::path::Path;
 use std::sync::OnceLock;
 
 use calibration_tables::{ArmFile, NoiseKeys, Stopped, TuningKeys};
@@ -12,9 +13,10 @@ pub fn training() -> Csv {
     SESSION.get_or_init(|| simulate("--scenario 1 --seconds 90 --seed 52")).clone()
 }
 
-/// The reference table with filters that trust both sensors alike and remember much.
+/// The reference table with the anchor, and with filters that trust both sensors alike and remember much.
 pub fn spoiled() -> String {
-    let mut file = load(std::path::Path::new(table()));
+    let mut file = load(table());
+    (file.drift, file.uncertainty) = (None, None);
     for segment in &mut file.segments {
         let noise = NoiseKeys { q: 2e-3, r_imu: 1e-3, r_bend: 1e-3, h_imu: 0.98, h_bend: 1.03 };
         (segment.orient, segment.coord) = (Some(noise.clone()), Some(noise));
@@ -22,8 +24,8 @@ pub fn spoiled() -> String {
     file.to_toml()
 }
 
-fn load(path: &std::path::Path) -> ArmFile {
-    ArmFile::load(path).expect("a valid table")
+pub fn load(path: impl AsRef<Path>) -> ArmFile {
+    ArmFile::load(path.as_ref()).expect("a valid table")
 }
 
 pub const TUNE: [&str; 6] = ["tune", "session.csv", "--table", "table.toml", "-o", "tuned.toml"];
@@ -43,7 +45,7 @@ impl Tuned {
     }
 
     fn file(&self) -> ArmFile {
-        load(&self.folder.path("tuned.toml"))
+        load(self.folder.path("tuned.toml"))
     }
 
     fn record(&self) -> TuningKeys {
@@ -83,7 +85,7 @@ fn the_record_is_what_replay_finds() {
 #[test]
 fn nothing_but_the_filters_and_the_record_changes() {
     let tuned = Tuned::new(&spoiled());
-    let (mut before, mut after) = (load(&tuned.folder.path("table.toml")), tuned.file());
+    let (mut before, mut after) = (load(tuned.folder.path("table.toml")), tuned.file());
     assert!(before.segments.iter().zip(&after.segments).all(|(a, b)| a.orient != b.orient && a.coord != b.coord));
     for file in [&mut before, &mut after] {
         file.tuning = None;
@@ -97,7 +99,7 @@ fn the_record_names_the_sessions_in_their_order() {
     let folder = Folder::with("b.csv", training().to_string());
     folder.write("a.csv", simulate("--scenario 2 --seconds 60 --seed 53").to_string());
     folder.done(&["tune", "b.csv", "a.csv", "--table", table(), "-o", "tuned.toml"]);
-    let record = load(&folder.path("tuned.toml")).tuning.expect("a record");
+    let record = load(folder.path("tuned.toml")).tuning.expect("a record");
     assert_eq!(record.sessions, ["b.csv", "a.csv"]);
 }
 
@@ -135,14 +137,14 @@ fn the_same_sessions_give_the_same_bytes() {
 fn a_tuned_table_is_as_good_as_it_gets() {
     let tuned = Tuned::new(&spoiled());
     tuned.folder.done(&["tune", "session.csv", "--table", "tuned.toml", "-o", "again.toml"]);
-    let again = load(&tuned.folder.path("again.toml")).tuning.expect("a record");
+    let again = load(tuned.folder.path("again.toml")).tuning.expect("a record");
     let gain = 1.0 - again.after.position_rmse_mm / again.before.position_rmse_mm;
     assert!(gain.abs() < 2e-3, "{gain} of the error: {again:?}");
 }
 
 #[test]
 fn a_table_without_filters_gets_some() {
-    let mut file = load(std::path::Path::new(table()));
+    let mut file = load(table());
     file.segments.iter_mut().for_each(|segment| (segment.orient, segment.coord) = (None, None));
     let tuned = Tuned::new(&file.to_toml());
     assert!(tuned.file().segments.iter().all(|segment| segment.orient.is_some() && segment.coord.is_some()));
@@ -154,7 +156,7 @@ fn a_calibration_of_a_tuned_table_forgets_the_tuning() {
     let tuned = Tuned::new(&spoiled());
     tuned.folder.write("sweep.csv", super::common::sweep().to_string());
     tuned.folder.done(&["calibrate", "sweep.csv", "--arm", "tuned.toml", "-o", "anew.toml"]);
-    assert_eq!(load(&tuned.folder.path("anew.toml")).tuning, None);
+    assert_eq!(load(tuned.folder.path("anew.toml")).tuning, None);
 }
 
 /// Truth that the old filters meet to a thousandth of a degree while it is held back: whatever descent finds is worse there.
@@ -166,20 +168,10 @@ fn filters_that_are_worse_on_what_is_held_back_are_not_kept() {
     folder.done(&["replay", "session.csv", "--table", "table.toml", "--out", "est.csv", "--float"]);
     let estimates = folder.csv("est.csv");
     let held_back_from = session.rows.len() - session.rows.len() / 5;
-    let mut heading = vec![0.0; session.rows.len()];
-    for i in 1..=6 {
-        let thetas = estimates.numbers(&format!("fusion{i}_theta_deg"));
-        heading.iter_mut().zip(thetas).for_each(|(heading, theta)| *heading += theta);
-        let [x, y] = ["x", "y"].map(|axis| estimates.numbers(&format!("fusion{i}_{axis}_mm")));
-        for (part, values) in [("x_mm", &x), ("y_mm", &y), ("heading_deg", &heading)] {
-            let name = format!("truth{i}_{part}");
-            session
-                .map(&name, |row, cell| if row < held_back_from { cell.to_owned() } else { values[row].to_string() });
-        }
-    }
+    session.follow(&estimates, held_back_from);
     folder.write("session.csv", session.to_string());
     let run = folder.done(&TUNE);
-    let (before, after) = (load(&folder.path("table.toml")), load(&folder.path("tuned.toml")));
+    let (before, after) = (load(folder.path("table.toml")), load(folder.path("tuned.toml")));
     let record = after.tuning.expect("a record");
     assert!(record.kept == 0 && record.iterations > 0, "{record:?}");
     assert_eq!(before.segments, after.segments);

@@ -5,10 +5,11 @@ use std::process::{Command, Stdio};
 use std::thread::sleep;
 use std::time::Duration;
 
-use calibration_tables::{ArmFile, Stopped};
+use calibration_tables::{ArmFile, DriftKeys, Stopped};
 
 use super::common::{Folder, Run, simulate};
 use super::tune::{TUNE, spoiled};
+use super::tune_observer::observing;
 
 /// A tuning that is interrupted after `pause`.
 fn interrupted(folder: &Folder, pause: Duration) -> Run {
@@ -22,19 +23,23 @@ fn interrupted(folder: &Folder, pause: Duration) -> Run {
 
 /// An interrupt that comes before the descent ends the run without a table; the descent takes many times as long, so that
 /// one that comes later and later meets it.
+fn run_until_heeded(folder: &Folder) -> Run {
+    let mut pause = Duration::from_millis(50);
+    loop {
+        let run = interrupted(folder, pause);
+        if run.code != Some(130) {
+            return run;
+        }
+        assert!(!folder.path("tuned.toml").exists(), "an interrupt before the descent leaves no table");
+        pause *= 2;
+    }
+}
+
 #[test]
 fn an_interrupted_tuning_leaves_the_best_table_so_far_and_says_so() {
     let folder = Folder::with("session.csv", simulate("--scenario 1 --seconds 600 --seed 54").to_string());
     folder.write("table.toml", spoiled());
-    let mut pause = Duration::from_millis(50);
-    let run = loop {
-        let run = interrupted(&folder, pause);
-        if run.code != Some(130) {
-            break run;
-        }
-        assert!(!folder.path("tuned.toml").exists(), "an interrupt before the descent leaves no table");
-        pause *= 2;
-    };
+    let run = run_until_heeded(&folder);
     assert_eq!(run.code, Some(0), "{}", run.stderr);
     assert!(run.stderr.starts_with("warning: interrupted after "), "{}", run.stderr);
     assert!(run.stdout.contains("interrupted after "), "{}", run.stdout);
@@ -47,4 +52,16 @@ fn an_interrupted_tuning_leaves_the_best_table_so_far_and_says_so() {
     assert!(folder.run(&["replay", "session.csv", "--table", "tuned.toml"]).code == Some(0));
     let entries = std::fs::read_dir(folder.path("")).expect("the folder is there").count();
     assert_eq!(entries, 3, "nothing is left behind");
+}
+
+/// The search comes before the descent, and takes longer than both have taken so far.
+#[test]
+fn an_interrupted_search_for_an_observer_ends_the_tuning_with_a_table() {
+    let folder = Folder::with("session.csv", simulate("--scenario 1 --seconds 600 --seed 54").to_string());
+    folder.write("table.toml", observing(DriftKeys::observer(), None));
+    let run = run_until_heeded(&folder);
+    assert_eq!(run.code, Some(0), "{}", run.stderr);
+    let record = ArmFile::load(&folder.path("tuned.toml")).expect("a valid table").tuning.expect("a record");
+    assert_eq!((record.stopped, record.iterations, record.kept), (Stopped::Interrupted, 0, 0));
+    assert!(record.observer.is_some_and(|observer| observer.runs > 0), "it was in the search");
 }

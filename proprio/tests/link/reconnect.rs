@@ -44,6 +44,26 @@ fn a_line_that_comes_back_is_opened_again_under_its_new_name() {
     assert_eq!(state.hello, Some(hello(2)));
 }
 
+/// A board that had its power by the cable numbers its boots from 1 again, and its ticks may be as low as before.
+#[test]
+fn a_board_that_lost_its_power_with_the_cable_has_restarted_however_short_it_ran() {
+    let line = Line::new();
+    let (link, events) = Link::start(Box::new(line.clone()), None).expect("memory opens");
+    line.board().restart(1);
+    (0..20).for_each(|tick| line.board().say(&Message::Sample(sample(tick))));
+    wait_for(&events, |what| matches!(what, What::Message(Message::Sample(last)) if last.tick == 19).then_some(()));
+    line.board().unplugged = true;
+    wait_for(&events, |what| matches!(what, What::Lost(_)).then_some(()));
+
+    line.board().restart(1);
+    (0..5).for_each(|tick| line.board().say(&Message::Sample(sample(tick))));
+    line.board().unplugged = false;
+    wait_for(&events, |what| matches!(what, What::Restarted).then_some(()));
+    wait_for(&events, |what| matches!(what, What::Message(Message::Sample(last)) if last.tick == 4).then_some(()));
+    link.request(Command::Tare).expect("it is greeted and answers");
+    assert_eq!((link.state().restarts, link.state().counts.lost), (1, 0));
+}
+
 #[test]
 fn a_line_that_cannot_be_opened_at_first_is_an_error_at_once() {
     let line = Line::new();

@@ -2,10 +2,14 @@
 
 use std::path::{Path, PathBuf};
 
+use proprio::link::HostNs;
 use proprio::monitor::{Monitor, Options};
+use proprio::recording::Recorder;
 use proprio::replay::NamedTable;
+use telemetry::{Encoder, MAX_FRAME, Message};
 
 use super::http::Page;
+use super::line::sample;
 
 const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
 
@@ -68,6 +72,35 @@ fn a_part_of_a_session_is_what_is_between_two_times() {
     let page = page(None);
     let about = page.get("/session?name=a%20b.csv&from_s=10&to_s=19.95").about();
     assert_eq!((&about["rows"], &about["samples"]), (&100.into(), &100.into()));
+}
+
+/// A mark has the host's time, and may be written behind samples that came after it.
+#[test]
+fn the_marks_of_a_recording_are_told_by_the_time_of_its_rows() {
+    let page = page(None);
+    let at_ms = |ms: u64| HostNs(1_764_000_000_000_000_000 + ms * 1_000_000);
+    let mut recorder = Recorder::new(Vec::new(), at_ms(0), "a test").expect("memory takes all");
+    let (mut encoder, mut buffer) = (Encoder::new(), [0; MAX_FRAME]);
+    for tick in 0..600 {
+        let message = Message::Sample(sample(tick));
+        let frame = encoder.encode(&message, &mut buffer).expect("it fits");
+        recorder.bytes(at_ms(10 * u64::from(tick)), frame).expect("memory takes all");
+        recorder.message(at_ms(10 * u64::from(tick)), &message).expect("memory takes all");
+        match tick {
+            150 => recorder.mark(at_ms(1503), "push").expect("memory takes all"),
+            404 => recorder.mark(at_ms(4000), "let go").expect("memory takes all"),
+            _ => {}
+        }
+    }
+    let recording = recorder.finish().expect("memory takes all");
+    std::fs::write(page.folder.path().join("marked.mcap"), recording).expect("there is room");
+
+    let expected = [("push", 1.503), ("let go", 4.0)];
+    let expected = expected.map(|(text, time_s)| serde_json::json!({ "text": text, "time_s": time_s }));
+    assert_eq!(page.get("/session?name=marked.mcap").about()["marks"], serde_json::json!(expected));
+    let part = page.get("/session?name=marked.mcap&from_s=2&to_s=5").about();
+    assert_eq!(part["marks"], serde_json::json!(expected[1..]));
+    assert_eq!(page.get("/session?name=a%20b.csv").about()["marks"], serde_json::json!([]));
 }
 
 #[test]

@@ -1,12 +1,17 @@
 //! The serial line on a pseudo-terminal, as other programs know a serial port.
 
+use std::time::{Duration, Instant};
+
 use super::run::{Line, Received};
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::fd::OwnedFd;
 use rustix::fs::{Mode, OFlags, open};
 use rustix::io::{Errno, ioctl_fionbio};
 use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
-use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
+use rustix::termios::{LocalModes, OptionalActions, tcgetattr, tcsetattr};
+
+/// Who opens a serial port sets its modes at once and looks whether they stand; only then are they looked at here.
+const SETTLING: Duration = Duration::from_millis(20);
 
 /// Our end of a pseudo-terminal.
 pub struct Pty {
@@ -14,6 +19,8 @@ pub struct Pty {
     /// Of the other end.
     path: String,
     open: bool,
+    /// When it was opened, until its modes are settled.
+    opened: Option<Instant>,
 }
 
 impl Pty {
@@ -27,7 +34,7 @@ impl Pty {
         let path = path.to_string_lossy().into_owned();
         // Opened and closed once: from then on a hang-up tells that nobody has it open.
         drop(open(path.as_str(), OFlags::RDWR | OFlags::NOCTTY, Mode::empty())?);
-        let pty = Self { ours, path, open: false };
+        let pty = Self { ours, path, open: false, opened: None };
         pty.make_raw()?;
         Ok(pty)
     }
@@ -37,10 +44,13 @@ impl Pty {
         &self.path
     }
 
+    /// Each closing forgets the modes, and not every program sets them.
     fn make_raw(&self) -> std::io::Result<()> {
         let mut modes = tcgetattr(&self.ours)?;
-        modes.make_raw();
-        tcsetattr(&self.ours, OptionalActions::Now, &modes)?;
+        if modes.local_modes.intersects(LocalModes::ICANON | LocalModes::ECHO) {
+            modes.make_raw();
+            tcsetattr(&self.ours, OptionalActions::Now, &modes)?;
+        }
         Ok(())
     }
 
@@ -58,6 +68,9 @@ impl Line for Pty {
         let was_open = std::mem::replace(&mut self.open, open);
         let opened = open && !was_open;
         if opened {
+            self.opened = Some(Instant::now());
+        }
+        if self.opened.take_if(|opened| opened.elapsed() >= SETTLING).is_some() {
             self.make_raw()?;
         }
         let mut bytes = vec![0; 4096];
@@ -84,7 +97,7 @@ impl Line for Pty {
 
 #[cfg(test)]
 mod tests {
-    use super::{Line, Mode, OFlags, Pty, open};
+    use super::{Line, Mode, OFlags, Pty, SETTLING, open};
 
     #[test]
     fn each_opening_is_told_once_and_bytes_for_nobody_are_lost() {
@@ -96,6 +109,7 @@ mod tests {
             pty.send(b"lost").expect("nobody");
             let theirs = open_it();
             assert!(pty.receive().expect("somebody").opened);
+            std::thread::sleep(SETTLING);
             assert!(!pty.receive().expect("somebody").opened);
             pty.send(b"seen").expect("somebody");
             let mut bytes = [0; 16];

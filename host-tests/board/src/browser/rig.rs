@@ -1,29 +1,21 @@
 //! The tools as they are used: the virtual Due on a pseudo-terminal, and `proprio monitor` on that.
 
-use std::io::{BufRead, BufReader, Write};
+use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
-use std::process::{Child, ChildStdin, Command, Stdio};
-use std::{env, fs};
+use std::process::{Child, Command, Stdio};
 
 use tempfile::TempDir;
 
-use crate::build::firmware;
+use crate::due::{DueProcess, tool};
 
 /// A board, and a monitor of it.
 pub struct MonitorRun {
-    due: Option<(Child, ChildStdin)>,
+    due: Option<DueProcess>,
     monitor: Child,
     /// What the monitor has printed.
     pub address: String,
     /// Where it records.
     pub folder: TempDir,
-}
-
-/// A tool of this workspace: beside this program, or above it, as cargo builds tests in `deps`.
-fn tool(name: &str) -> PathBuf {
-    let own = env::current_exe().expect("the system tells");
-    let mut built = own.ancestors().skip(1).take(2).map(|folder| folder.join(name));
-    built.find(|tool| tool.is_file()).unwrap_or_else(|| panic!("{name} is not built; `cargo verify` does"))
 }
 
 fn table() -> PathBuf {
@@ -38,19 +30,10 @@ impl MonitorRun {
     #[must_use]
     pub fn live(arguments: &[&str]) -> Self {
         let folder = tempfile::tempdir().expect("there is room for a temporary folder");
-        fs::write(folder.path().join("firmware"), firmware()).expect("there is room");
-        let mut command = Command::new(tool("virtual-due"));
-        command.current_dir(folder.path()).args(["run", "firmware", "--speed", "real", "--serial", "pty"]);
-        command.stdin(Stdio::piped()).stderr(Stdio::piped());
-        let mut due = command.spawn().expect("the emulator starts");
-        let mut lines = BufReader::new(due.stderr.take().expect("a pipe")).lines().map_while(Result::ok);
-        let first = lines.next().expect("it says its port");
-        let port = first.strip_prefix("serial port: ").expect("the path of its port").to_owned();
-        // It says more, which must not fill the pipe.
-        std::thread::spawn(move || lines.for_each(drop));
-        let hand = due.stdin.take().expect("a pipe");
+        let due = DueProcess::start(folder.path());
+        let port = due.port.clone();
         let arguments = [&["--port", &port], arguments].concat();
-        Self::start(folder, Some((due, hand)), &arguments)
+        Self::start(folder, Some(due), &arguments)
     }
 
     /// A session and no board.
@@ -63,7 +46,7 @@ impl MonitorRun {
         Self::start(folder, None, &[path.to_str().expect("a path of this workspace")])
     }
 
-    fn start(folder: TempDir, due: Option<(Child, ChildStdin)>, arguments: &[&str]) -> Self {
+    fn start(folder: TempDir, due: Option<DueProcess>, arguments: &[&str]) -> Self {
         let mut command = Command::new(tool("proprio"));
         command.current_dir(folder.path()).arg("monitor").args(arguments).args(["--listen", "0", "--table"]);
         command.arg(table()).stdin(Stdio::null()).stdout(Stdio::piped());
@@ -78,8 +61,7 @@ impl MonitorRun {
     /// # Panics
     /// If there is no board.
     pub fn hand(&mut self, line: &str) {
-        let (_, hand) = self.due.as_mut().expect("there is a board");
-        writeln!(hand, "{line}").expect("it runs");
+        self.due.as_mut().expect("there is a board").hand(line);
     }
 
     /// The address without the token.
@@ -91,10 +73,8 @@ impl MonitorRun {
 
 impl Drop for MonitorRun {
     fn drop(&mut self) {
-        let due = self.due.as_mut().map(|(due, _)| due);
-        for process in [Some(&mut self.monitor), due].into_iter().flatten() {
-            let _ = process.kill();
-            let _ = process.wait();
-        }
+        // It may have ended by itself.
+        let _ = self.monitor.kill();
+        let _ = self.monitor.wait();
     }
 }

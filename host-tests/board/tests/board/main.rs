@@ -6,6 +6,10 @@ mod drive;
 mod engine;
 mod faults;
 mod last_words;
+#[cfg(unix)]
+mod link;
+#[cfg(unix)]
+mod noise;
 mod pressures;
 #[cfg(unix)]
 mod recording;

@@ -4,47 +4,74 @@
 use std::fs;
 use std::io::{BufRead, BufReader};
 use std::path::Path;
-use std::process::{Command, Stdio};
+use std::process::Stdio;
 use std::time::{Duration, Instant};
 
-use crate::tools::{Running, done, folder, proprio, replayed, table, tool};
+use board_tests::due::DueProcess;
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{Rng, SeedableRng};
+
+use crate::tools::{Running, done, folder, proprio, replayed, table};
 
 /// Size of a recording of 20 s, bytes: at most 150 kB a second.
 const LONG: u64 = 2_400_000;
 
-/// The virtual Due with the firmware, and the path of its serial port.
-fn virtual_due(folder: &Path) -> (Running, String) {
-    let mut command = Command::new(tool("virtual-due"));
-    command.current_dir(folder).args(["run", "firmware", "--speed", "real", "--serial", "pty"]);
-    let mut child = command.stdin(Stdio::null()).stderr(Stdio::piped()).spawn().expect("the emulator starts");
-    let mut lines = BufReader::new(child.stderr.take().expect("a pipe")).lines();
-    let first = lines.next().expect("it says its port").expect("it writes UTF-8");
-    // It says more, which must not fill the pipe.
-    std::thread::spawn(move || lines.for_each(drop));
-    let port = first.strip_prefix("serial port: ").expect("the path of its port").to_owned();
-    (Running(child), port)
-}
-
-#[test]
-fn a_recording_of_the_firmware_that_is_killed_is_recovered_and_replays_bit_for_bit() {
-    let folder = folder("killed");
-    let (_due, port) = virtual_due(&folder);
-    let child = proprio(&folder, &["record", "--port", &port, "-o", "cut.mcap", "--table", &table()]).spawn();
+/// Records from a port until the file has so many bytes, and for a while after; then comes SIGKILL, at whatever byte it is.
+fn record_and_kill(folder: &Path, port: &str, name: &str, bytes: u64, wait: Duration) {
+    let child = proprio(folder, &["record", "--port", port, "-o", name, "--table", &table()]).spawn();
     let mut recorder = Running(child.expect("the tool starts"));
     let end = Instant::now() + Duration::from_mins(5);
-    while fs::metadata(folder.join("cut.mcap")).map_or(0, |file| file.len()) < LONG {
+    while fs::metadata(folder.join(name)).map_or(0, |file| file.len()) < bytes {
         assert!(recorder.0.try_wait().expect("it can be asked").is_none(), "it has ended by itself");
         assert!(Instant::now() < end, "20 s take over five minutes");
         std::thread::sleep(Duration::from_millis(3));
     }
-    // SIGKILL, at whatever byte it is.
+    std::thread::sleep(wait);
     recorder.0.kill().expect("it runs");
-    recorder.0.wait().expect("it ends");
+    assert_eq!(recorder.0.wait().expect("it ends").code(), None, "it had ended by itself");
+}
 
-    done(&folder, &["recover", "cut.mcap", "-o", "whole.mcap"]);
-    let (equal, report) = replayed(&folder, "whole.mcap");
-    assert!(equal > 1500, "{report}");
+/// Recovers a cut file and replays it; gives how many estimates are, bit for bit, the board's, and the report.
+fn recovered(folder: &Path, name: &str) -> (u64, String) {
+    let _ = fs::remove_file(folder.join("whole.mcap"));
+    done(folder, &["recover", name, "-o", "whole.mcap"]);
+    replayed(folder, "whole.mcap")
+}
+
+#[test]
+fn a_recording_of_the_firmware_that_is_killed_or_cut_is_recovered_and_replays_bit_for_bit() {
+    let folder = folder("killed");
+    let due = DueProcess::start(&folder);
+    record_and_kill(&folder, &due.port, "killed.mcap", LONG, Duration::ZERO);
+    let (whole, report) = recovered(&folder, "killed.mcap");
+    assert!(whole > 1500, "{report}");
     assert!(report.contains("\"table_matches\":true"), "{report}");
+
+    let killed = fs::read(folder.join("killed.mcap")).expect("it is there");
+    let mut random = ChaCha8Rng::seed_from_u64(3);
+    for _ in 0..16 {
+        let cut = killed.len() / 20 + random.next_u32() as usize % (killed.len() * 19 / 20);
+        fs::write(folder.join("cut.mcap"), &killed[..cut]).expect("there is room");
+        let (saved, report) = recovered(&folder, "cut.mcap");
+        // All but the last chunk, which is a second.
+        let at_best = whole * cut as u64 / killed.len() as u64;
+        assert!(saved + 200 > at_best, "cut at {cut} of {}: {saved} of about {at_best}: {report}", killed.len());
+    }
+}
+
+#[test]
+fn a_recorder_may_be_killed_at_any_moment() {
+    let folder = folder("killed at random");
+    let due = DueProcess::start(&folder);
+    let mut random = ChaCha8Rng::seed_from_u64(4);
+    for name in ["a.mcap", "b.mcap", "c.mcap", "d.mcap"] {
+        let bytes = 250_000 + u64::from(random.next_u32() % 350_000);
+        let wait = Duration::from_millis(u64::from(random.next_u32() % 1000));
+        record_and_kill(&folder, &due.port, name, bytes, wait);
+        let (saved, report) = recovered(&folder, name);
+        // 150 kB a second at most.
+        assert!(saved + 200 > bytes / 1500, "{saved} of {bytes} bytes: {report}");
+    }
 }
 
 #[test]
@@ -63,6 +90,26 @@ fn status_says_how_the_virtual_due_is() {
         assert!(status.contains(line), "{status}");
     }
     assert!(status.contains("virtual Due, answers") && status.contains(" 0 damaged, 0 lost"), "{status}");
+}
+
+#[test]
+fn status_is_json_for_programs() {
+    let folder = folder("status as JSON");
+    let printed = done(&folder, &["status", "--virtual", "--firmware", "firmware", "--table", &table(), "--json"]);
+    let status: serde_json::Value = serde_json::from_str(&printed).expect("JSON and nothing else");
+    let hello = &status["hello"];
+    assert_eq!(
+        (&hello["arm"], &hello["boot"], &status["proprio"]),
+        (&"planar-6".into(), &1.into(), &hello["firmware"])
+    );
+    assert_eq!((&status["answers"], &status["table_matches"]), (&true.into(), &true.into()), "{printed}");
+    assert_eq!(
+        (&status["received"]["lost"], &status["health"]["imu"][5]["state"]),
+        (&0.into(), &"Ok".into()),
+        "{printed}"
+    );
+    let samples_hz = status["rates"]["samples_hz"].as_f64().expect("a number");
+    assert!((90.0..110.0).contains(&samples_hz), "{samples_hz}");
 }
 
 #[test]

@@ -1,9 +1,10 @@
 //! The tools of this workspace, as they are used.
 
+use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
-use std::{env, fs};
 
+use board_tests::due::tool;
 use board_tests::firmware;
 
 /// A folder below cargo's own, with the firmware in it.
@@ -14,15 +15,6 @@ pub fn folder(name: &str) -> PathBuf {
     fs::create_dir_all(&folder).expect("cargo's folder can be written to");
     fs::write(folder.join("firmware"), firmware()).expect("there is room");
     folder
-}
-
-/// A tool of this workspace, beside the tests.
-pub fn tool(name: &str) -> PathBuf {
-    let tests = env::current_exe().expect("the system tells");
-    let built = tests.parent().and_then(Path::parent).expect("cargo builds tests in deps");
-    let tool = built.join(format!("{name}{}", env::consts::EXE_SUFFIX));
-    assert!(tool.is_file(), "{} is not built; `cargo verify` does", tool.display());
-    tool
 }
 
 pub fn proprio(folder: &Path, arguments: &[&str]) -> Command {

@@ -126,3 +126,29 @@ fn a_recording_is_made_marked_and_opened_from_the_keyboard() {
     drop(rig);
     browser.wait_for("document.getElementById('link').textContent === 'monitor is not running'");
 }
+
+#[test]
+#[ignore = "needs Chromium: .ci/browser runs it"]
+fn a_marked_moment_is_gone_to_in_the_recording_that_is_opened() {
+    let (_rig, mut browser) = opened(&[]);
+    browser.press("r");
+    browser.wait_for("document.getElementById('record').getAttribute('aria-pressed') === 'true'");
+    browser.wait_for("!document.getElementById('mark').disabled");
+    browser.value("new Promise((done) => setTimeout(done, 1500))");
+    browser.press("m");
+    browser.wait_for("document.querySelector('#marks button')?.textContent.startsWith('mark 1, ')");
+    browser.value("new Promise((done) => setTimeout(done, 500))");
+    browser.press("r");
+    browser.wait_for("document.getElementById('record').getAttribute('aria-pressed') === 'false'");
+
+    browser.press("o");
+    browser.wait_for("document.querySelector('#files button')?.textContent.startsWith('session-')");
+    browser.value("document.querySelector('#files button').click()");
+    browser.wait_for("document.getElementById('arm-name').textContent.startsWith('session-')");
+    let mark = browser.value("document.querySelector('#marks button').textContent");
+    let time = mark.as_str().and_then(|mark| mark.strip_prefix("mark 1, ")).expect("a mark and its time").to_owned();
+    browser.value("document.querySelector('#marks button').click()");
+    browser.wait_for(&format!("document.getElementById('time').textContent === '{time}'"));
+    browser.picture("marked.png");
+    assert!(browser.complaints.is_empty(), "{:?}", browser.complaints);
+}

@@ -19,6 +19,10 @@ fn a_session_is_opened_scrubbed_and_played_with_its_truth() {
     browser.wait_for("document.getElementById('time').textContent === '40.00 s'");
     let values = browser.text("arm-values");
     assert!(values.ends_with("mm from truth"), "{values}");
+    // A dashed line from the base through the true ends.
+    browser.wait_for("!document.getElementById('key-truth').hidden");
+    browser.press("s");
+    assert!(browser.download("proprio.svg").contains(r#"stroke-dasharray="5 5""#));
     browser.picture("session.png");
 
     browser.press(" ");

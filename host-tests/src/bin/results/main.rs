@@ -1,5 +1,6 @@
 //! `cargo xtask results`: calibrates, tunes and validates on the simulated arm, and writes `docs/RESULTS.md`.
 
+mod measure;
 mod page;
 mod runs;
 
@@ -7,7 +8,7 @@ use std::error::Error;
 use std::fs;
 use std::path::Path;
 
-use page::Results;
+use measure::Results;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");

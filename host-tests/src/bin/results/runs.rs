@@ -4,7 +4,7 @@ use std::error::Error;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use calibration_tables::{DriftKeys, TuningKeys};
+use calibration_tables::{ArmFile, DriftKeys, DriftKind, TuningKeys};
 use estimator_core::Q;
 use proprio::calibrate::{Calibration, Correct, calibrate};
 use proprio::output::OutputFile;
@@ -31,8 +31,16 @@ pub fn session(folder: &Path, scenario: Scenario, seed: u64, seconds: f64) -> Re
 }
 
 /// A table made of a sweep, and the mean RMSE of its V–Orient maps in degrees.
-pub fn calibrated(arm: &Path, sweep: &Path, table: &Path) -> Result<f64, Box<dyn Error>> {
-    let Calibration { table: file, sensors, .. } = calibrate(sweep, &NamedTable::load(arm)?, Correct::Auto)?;
+pub fn calibrated(
+    arm: &ArmFile,
+    sweep: &Path,
+    drift: DriftKind,
+    hysteresis: Correct,
+    table: &Path,
+) -> Result<f64, Box<dyn Error>> {
+    let arm = ArmFile { drift: Some(DriftKeys { kind: drift, ..DriftKeys::observer() }), ..arm.clone() };
+    let arm = NamedTable { file: arm, path: table };
+    let Calibration { table: file, sensors, .. } = calibrate(sweep, &arm, hysteresis)?;
     fs::write(table, file.to_toml())?;
     Ok(sensors.iter().map(|sensor| sensor.rmse_deg).sum::<f64>() / sensors.len() as f64)
 }
@@ -40,17 +48,9 @@ pub fn calibrated(arm: &Path, sweep: &Path, table: &Path) -> Result<f64, Box<dyn
 /// A table whose filters were tuned on a session.
 pub fn tuned(table: &Path, training: PathBuf, to: &Path) -> Result<TuningKeys, Box<dyn Error>> {
     let table = NamedTable::load(table)?;
-    let Tuning { table, record } = Tuner::new(&[training], &table)?.tune(|| false)?;
+    let Tuning { table, record, .. } = Tuner::new(&[training], &table)?.tune(|| false)?;
     fs::write(to, table.to_toml())?;
     Ok(record)
-}
-
-/// The same table with the observer in the anchor's place.
-pub fn observed(table: &Path, to: &Path) -> Result<(), Box<dyn Error>> {
-    let mut file = NamedTable::load(table)?.file;
-    file.drift = Some(DriftKeys::observer());
-    fs::write(to, file.to_toml())?;
-    Ok(())
 }
 
 /// Errors of a session, all of it and hour by hour.

@@ -120,7 +120,22 @@ function build() {
     });
     return button;
   }));
+  listMarks();
   app.changed();
+}
+
+/** The marks of what is shown, each a button that goes there. */
+function listMarks() {
+  const { marks } = app.session ?? app;
+  $('marks').hidden = !marks.length;
+  $('marks').replaceChildren(...marks.map(({ time_s, text }) => {
+    const button = Object.assign(document.createElement('button'), { textContent: `${text}, ${clock(time_s)}` });
+    button.addEventListener('click', () => {
+      app.view.seek(app.store, time_s);
+      app.changed();
+    });
+    return button;
+  }));
 }
 
 function figure(spec) {
@@ -233,7 +248,7 @@ function armSpec() {
 }
 
 function plotSpec({ before, range, canvas }) {
-  const { store, view, hidden, marks } = app;
+  const { store, view, hidden } = app;
   const [from, to] = wholePixels(view.window(store), innerWidth(canvas));
   const columns = store?.series(before, '_deg') ?? [];
   const seen = columns.filter((_, i) => !hidden.has(i));
@@ -243,7 +258,7 @@ function plotSpec({ before, range, canvas }) {
   const unknown = !store?.count ? 'nothing has come yet' : !hasTable ? 'takes a table: --table TABLE.toml'
     : app.session || before === 'theta' ? 'not known here' : 'known from the next tare on';
   const empty = low <= high ? '' : unknown;
-  return { store, columns, range, from, to, limit: view.limit, cursor: view.cursor, marks: app.session ? [] : marks, hidden, colours: palette, empty };
+  return { store, columns, range, from, to, limit: view.limit, cursor: view.cursor, marks: (app.session ?? app).marks, hidden, colours: palette, empty };
 }
 
 /** The window moved on by whole pixels only: rows stay in their columns, and what would look the same is not drawn again. */
@@ -352,8 +367,10 @@ async function attempt(work) {
 
 const record = () => attempt(() => ask('/record', { on: $('record').getAttribute('aria-pressed') !== 'true' }));
 const mark = () => attempt(async () => {
-  await ask('/mark', { text: `mark ${app.marks.length + 1}` });
-  app.marks.push(app.live.last);
+  const text = `mark ${app.marks.length + 1}`;
+  await ask('/mark', { text });
+  app.marks.push({ time_s: app.live.last, text });
+  listMarks();
   app.changed();
 });
 

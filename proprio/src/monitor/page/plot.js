@@ -143,7 +143,11 @@ export function drawPlot(c, width, height, spec) {
   c.beginPath();
   c.rect(inner.x, inner.y, inner.w, inner.h);
   c.clip();
-  for (const mark of marks ?? []) vertical(c, toX(mark), inner, colours.faint, [2, 3]);
+  for (const { time_s, text } of marks) {
+    vertical(c, toX(time_s), inner, colours.faint, [2, 3]);
+    Object.assign(c, { fillStyle: colours.faint, textAlign: 'left', textBaseline: 'top' });
+    c.fillText(text, toX(time_s) + 3, inner.y + 2);
+  }
   if (store?.count) {
     const [first, last] = visible(store, from, to, limit);
     // Where rows are dense, lines of one pixel: browsers draw them twenty times as fast as wider ones.

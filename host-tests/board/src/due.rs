@@ -1,0 +1,65 @@
+//! The program `virtual-due` with the firmware, on a pseudo-terminal, as a process of its own.
+
+use std::env;
+use std::fs;
+use std::io::{BufRead, BufReader, Write};
+use std::path::{Path, PathBuf};
+use std::process::{Child, ChildStdin, Command, Stdio};
+
+use crate::build::firmware;
+
+/// A tool of this workspace: beside this program, or above it, as cargo builds tests in `deps`.
+///
+/// # Panics
+/// If it is not built.
+#[must_use]
+pub fn tool(name: &str) -> PathBuf {
+    let own = env::current_exe().expect("the system tells");
+    let mut built = own.ancestors().skip(1).take(2).map(|folder| folder.join(name));
+    built.find(|tool| tool.is_file()).unwrap_or_else(|| panic!("{name} is not built; `cargo verify` does"))
+}
+
+/// A board at the pace of the wall clock, until it is dropped.
+pub struct DueProcess {
+    child: Child,
+    hand: ChildStdin,
+    /// Path of its serial port.
+    pub port: String,
+}
+
+impl DueProcess {
+    /// Starts one in a folder, in which it leaves the firmware.
+    ///
+    /// # Panics
+    /// If it is not built, or does not start.
+    #[must_use]
+    pub fn start(folder: &Path) -> Self {
+        fs::write(folder.join("firmware"), firmware()).expect("there is room");
+        let mut command = Command::new(tool("virtual-due"));
+        command.current_dir(folder).args(["run", "firmware", "--speed", "real", "--serial", "pty"]);
+        let mut child = command.stdin(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("the emulator starts");
+        let mut lines = BufReader::new(child.stderr.take().expect("a pipe")).lines().map_while(Result::ok);
+        let first = lines.next().expect("it says its port");
+        let port = first.strip_prefix("serial port: ").expect("the path of its port").to_owned();
+        // It says more, which must not fill the pipe.
+        std::thread::spawn(move || lines.for_each(drop));
+        let hand = child.stdin.take().expect("a pipe");
+        Self { child, hand, port }
+    }
+
+    /// `unplug imu3`, `plug imu3`, `unplug bend2a`.
+    ///
+    /// # Panics
+    /// If it has ended.
+    pub fn hand(&mut self, line: &str) {
+        writeln!(self.hand, "{line}").expect("it runs");
+    }
+}
+
+impl Drop for DueProcess {
+    fn drop(&mut self) {
+        // It may have ended by itself.
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}

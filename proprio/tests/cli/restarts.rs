@@ -1,0 +1,86 @@
+//! A board that restarted inside a recording: headings have a new zero from there on, and nothing is worse for it.
+
+use calibration_tables::ArmFile;
+
+use super::common::{Calibration, Csv, Folder, arm, figure, json, sweep};
+use super::recordings::Recording;
+
+/// The session as it would be if the board had restarted before each of these rows: a new tare, and IMUs that start at
+/// other headings.
+fn restarted(mut session: Csv, rows: &[usize]) -> Csv {
+    let restarts = |row: usize| rows.iter().filter(|start| **start <= row).count();
+    for i in 1..=6 {
+        session.map(&format!("imu{i}_deg"), |row, text| {
+            let heading_deg: f64 = text.parse().expect("no reading is missing");
+            let turned_deg = heading_deg + (47 * (i + 1) * restarts(row)) as f64;
+            format!("{:.4}", turned_deg.rem_euclid(360.0) % 360.0)
+        });
+    }
+    session.push("tare", "");
+    session.map("tare", |row, _| restarts(row).to_string());
+    session
+}
+
+/// The folder with the table of a sweep.
+fn calibrated(session: &Csv, file: &str, hysteresis: &str) -> Folder {
+    let folder = Folder::with("sweep.csv", session.to_string());
+    if file != "sweep.csv" {
+        folder.done(&["convert", "sweep.csv", file]);
+    }
+    folder.done(&["calibrate", file, "--arm", arm(), "--hysteresis", hysteresis, "-o", "table.toml"]);
+    folder
+}
+
+#[test]
+fn a_sweep_in_which_the_board_restarted_gives_the_same_table() {
+    let table = |folder: Folder| ArmFile::load(&folder.path("table.toml")).expect("a calibration makes a valid table");
+    let expected = table(calibrated(&sweep(), "sweep.csv", "never"));
+    for file in ["sweep.csv", "sweep.mcap"] {
+        let found = table(calibrated(&restarted(sweep(), &[2000, 3333, 3340]), file, "never"));
+        for (i, (found, expected)) in (1..).zip(found.segments.iter().zip(&expected.segments)) {
+            for (found, expected) in found.bend.iter().flatten().zip(expected.bend.iter().flatten()) {
+                for volts in expected.volts.expect("a calibration states the range") {
+                    let error_deg = (found.angle(volts) - expected.angle(volts)).to_degrees().abs();
+                    assert!(error_deg < 1e-6, "{file}, segment {i}: {error_deg}° at {volts} V");
+                }
+            }
+            // The first second of each run has no heading: 2 s of 600.
+            for (found, expected) in [(&found.orient, &expected.orient), (&found.coord, &expected.coord)] {
+                let (found, expected) = (found.as_ref().expect("stated"), expected.as_ref().expect("stated"));
+                let ratios = [found.r_imu / expected.r_imu, found.r_bend / expected.r_bend];
+                assert!(ratios.iter().all(|ratio| (ratio - 1.0).abs() < 0.02), "{file}, segment {i}: {ratios:?}");
+            }
+        }
+    }
+}
+
+/// Plays are at rest where a run starts, wherever the arm is.
+#[test]
+fn the_hysteresis_of_a_sweep_in_which_the_board_restarted_is_corrected_as_well() {
+    let bend = |session: &Csv| {
+        let folder = calibrated(session, "sweep.csv", "always");
+        folder.write("whole.csv", sweep().to_string());
+        let run = folder.done(&["replay", "whole.csv", "--table", "table.toml", "--json"]);
+        figure(&json(&run), "bend", "theta_rmse_deg")
+    };
+    let (found, expected) = (bend(&restarted(sweep(), &[2000, 3333, 3340])), bend(&sweep()));
+    assert!(found < 1.01 * expected, "{found}°, {expected}° without a restart");
+}
+
+#[test]
+fn a_sweep_in_which_the_board_restarted_has_no_other_warning() {
+    let said = |session: &Csv| Calibration::of(session).run.stderr;
+    assert_eq!(said(&restarted(sweep(), &[2000, 3333])), said(&sweep()));
+}
+
+#[test]
+fn clocks_are_found_as_well_over_restarts() {
+    let expected = Recording::long().align().numbers("residual")[0];
+    let mut recording = Recording::long();
+    recording.session = restarted(recording.session, &[1500, 3210, 6000, 6050]);
+    let aligned = recording.with_clock(-12.5, 60.0).align();
+    assert!(aligned.offset_error_ms(-12.5, 60.0).abs() < 5.0, "{}", aligned.run.stdout);
+    assert!((aligned.skew_ppm() - 60.0).abs() < 10.0, "{}", aligned.run.stdout);
+    let residual = aligned.numbers("residual")[0];
+    assert!(residual < 1.2 * expected, "{residual} ms, {expected} ms without a restart");
+}
