@@ -12,7 +12,9 @@ const OBSERVED_DEG: f64 = 0.1;
 /// which is this share of it.
 const ANCHORED_SHARE: f64 = 0.4;
 /// Share of the observer's variance that its bias is off by: it counts as noise what hysteresis takes back.
-const DRIFT_SHARE: f64 = 0.12;
+const DRIFT_SHARE: f64 = 0.1;
+/// Deviation of each heading behind the observer: its gyroscope's sensitivity. The anchor follows it.
+const HEADING_DEG: f64 = 0.6;
 /// Deviation of θ that a touch adds.
 const CONTACT_DEG: f64 = 0.5;
 
@@ -25,6 +27,7 @@ pub(super) fn set(sweep: &Sweep, misfit_m: f64, table: &mut ArmFile) {
         drift_share: DRIFT_SHARE,
         bend_deg,
         contact_deg: CONTACT_DEG,
+        heading_deg: if is_observed { HEADING_DEG } else { 0.0 },
         // Both coordinates of all segments add up to it.
         end_mm: misfit_m * 1000.0 / (2.0 * table.segments.len() as f64).sqrt(),
     });
