@@ -57,6 +57,17 @@ def check_poses(poses, row):
         assert same(math.cos(math.radians(90 - turn_deg - heading_deg)), 1 + 0 * heading_deg, 1e-9), (i, poses)
 
 
+def check_uncertainty(uncertainty, row):
+    assert len(uncertainty.theta_variance) == 6 and len(uncertainty.end_covariance) == 18, uncertainty
+    for i in range(6):
+        xx, xy, yy = uncertainty.end_covariance[3 * i : 3 * i + 3]
+        if math.isnan(xx):
+            continue
+        assert row[f"fusion{i + 1}_x_mm"] != "" and 0 < uncertainty.theta_variance[i] < math.radians(9.5) ** 2, (i, uncertainty)
+        assert 1e-4 < math.sqrt(xx + yy) < 0.05 and abs(xy) <= max(xx, yy), (i, uncertainty)
+    assert not any(uncertainty.touched) and all(percent <= 100 for percent in uncertainty.contact_percent), uncertainty
+
+
 def check_diagnostics(diagnostics):
     names = [status.name for status in diagnostics.status]
     bends = [f"bend {i}{name}" for i in range(1, 7) for name in "ab"]
@@ -74,7 +85,7 @@ with open(folder / "session.mcap", "rb") as file:
     attachments = {attachment.name: attachment.data for attachment in reader.iter_attachments()}
     metadata = {entry.name: entry.metadata for entry in reader.iter_metadata()}
     raw = [message for _, _, message in reader.iter_messages(topics=["/proprio/raw"])]
-    topics = ["/proprio/samples", "/joint_states", "/proprio/shape", "/diagnostics"]
+    topics = ["/proprio/samples", "/joint_states", "/proprio/shape", "/proprio/uncertainty", "/diagnostics"]
     decoded = {topic: [] for topic in topics}
     for _, channel, message, content in reader.iter_decoded_messages(topics=topics):
         decoded[channel.topic].append((message, content))
@@ -94,6 +105,9 @@ for message, joints in decoded["/joint_states"]:
     check_joints(joints, estimates[places[message.sequence]])
 for message, poses in decoded["/proprio/shape"]:
     check_poses(poses, estimates[places[message.sequence]])
+for message, uncertainty in decoded["/proprio/uncertainty"]:
+    check_uncertainty(uncertainty, estimates[places[message.sequence]])
+assert not math.isnan(decoded["/proprio/uncertainty"][-1][1].end_covariance[-1])
 for _, diagnostics in decoded["/diagnostics"]:
     check_diagnostics(diagnostics)
 for message, content in [entry for entries in decoded.values() for entry in entries]:

@@ -12,8 +12,10 @@ use crate::link::{Link, LinkError, Mismatch, Subscription, What};
 const PATIENCE_S: u64 = 10;
 /// Rates are those of at least so long, s.
 const RATES_S: f64 = 1.0;
-/// A board that has just started is looked at until its first tare, or so long: its IMUs come up slowly.
+/// A board that has just started is looked at until its first tare is over, or so long: its IMUs come up slowly.
 const SETTLING: Duration = Duration::from_secs(3);
+/// From the begin of a tare until the arm is known as well as it will be and the board has said so.
+const TARE_TICKS: u32 = 150;
 
 /// How a board is.
 #[derive(Debug, Serialize)]
@@ -90,7 +92,8 @@ struct Seen {
     health: Option<Health>,
     shape: Option<KnownShape>,
     healthy_since: Option<Instant>,
-    tared: bool,
+    /// Tick of the first sample since a tare.
+    tared: Option<u32>,
     samples: u32,
     estimates: u32,
     bytes: u64,
@@ -166,7 +169,9 @@ impl Seen {
                 self.pass(health.tick);
             }
             Message::Sample(sample) => {
-                self.tared = sample.tare > 0;
+                if sample.tare > 0 {
+                    self.tared.get_or_insert(sample.tick);
+                }
                 self.samples += u32::from(self.ticks.is_some());
                 self.pass(sample.tick);
             }
@@ -185,8 +190,9 @@ impl Seen {
 
     /// By the board's clock, once it has settled and enough has come.
     fn rates(&self) -> Option<Rates> {
-        let settled = self.tared || self.healthy_since?.elapsed() >= SETTLING;
         let (first, last) = self.ticks?;
+        let is_tared = self.tared.is_some_and(|tick| last.saturating_sub(tick) >= TARE_TICKS);
+        let settled = is_tared || self.healthy_since?.elapsed() >= SETTLING;
         let seconds = f64::from(last.saturating_sub(first)) / TICK_HZ;
         (settled && seconds >= RATES_S).then(|| Rates {
             samples_hz: f64::from(self.samples) / seconds,

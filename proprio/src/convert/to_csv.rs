@@ -31,7 +31,8 @@ pub fn write(mut reader: SessionReader, mut file: OutputFile) -> Result<(OutputF
         progress.set(reader.progress().0);
     }
     let arrival = if reader.kind() == Kind::Recording { ", the times of arrival" } else { "" };
-    let mut left_out = vec![format!("the board's events and health{arrival} and the bytes themselves are left out")];
+    let mut left_out =
+        vec![format!("the board's events, uncertainties and health{arrival} and the bytes themselves are left out")];
     if estimates > 0 {
         left_out.push(format!("the board's {estimates} estimates are left out; `proprio replay` makes them again"));
     }

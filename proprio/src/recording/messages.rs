@@ -85,7 +85,9 @@ pub fn uncertainty(stamp: HostNs, of: &Uncertainty) -> Vec<u8> {
 /// `proprio_msgs/msg/Contact`.
 pub fn contact(stamp: HostNs, touched: [bool; SEGMENTS]) -> Vec<u8> {
     let mut cdr = header(stamp);
-    touched.iter().for_each(|touched| cdr.u8((*touched).into()));
+    for touched in touched {
+        cdr.u8(touched.into());
+    }
     cdr.into_bytes()
 }
 

@@ -51,7 +51,7 @@ fn status_says_how_well_the_tip_is_known_and_what_touches_the_arm() {
     line.board().say(&Message::Health(health(0, telemetry::SensorState::Ok)));
     line.board().say(&uncertainty(0));
     line.board().say(&Message::Event(Event::Contact(1, SECOND)));
-    for tick in 0..150 {
+    for tick in 0..200 {
         line.board().say(&Message::Sample(sample(tick)));
     }
     let status = Status::of(&link, &events, false).expect("the board says it");
