@@ -65,7 +65,14 @@ fn feeling_table() -> &'static Table<'static, Q> {
     let segments: &'static [Segment<Q>] = Box::leak(Box::new([segment; SEGMENTS]));
     let turns = |degrees: f64| Turns::from_rad(degrees.to_radians());
     let of = |value: f64| Q::from_f64(value * SCALE);
-    let errors = UncertaintyRule { theta: of(1e-4), drift: of(0.0), bend: of(1e-3), contact: of(1e-3), end: of(1e-6) };
+    let errors = UncertaintyRule {
+        theta: of(1e-4),
+        drift: of(0.0),
+        bend: of(1e-3),
+        contact: of(1e-3),
+        heading: of(1e-4),
+        end: of(1e-6),
+    };
     let contact = Some(ContactRule { bend: turns(5.0), alike: turns(4.0) });
     Box::leak(Box::new(Table { contact, uncertainty: Some(errors), ..Table::bare(segments) }))
 }

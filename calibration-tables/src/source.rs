@@ -73,11 +73,12 @@ fn contact_source(ContactRule { bend, alike }: &ContactRule) -> String {
 
 fn uncertainty_source(rule: &UncertaintyRule<Q>) -> String {
     format!(
-        "Some(estimator_core::UncertaintyRule {{ theta: {}, drift: {}, bend: {}, contact: {}, end: {} }})",
+        "Some(estimator_core::UncertaintyRule {{ theta: {}, drift: {}, bend: {}, contact: {}, heading: {}, end: {} }})",
         q(rule.theta),
         q(rule.drift),
         q(rule.bend),
         q(rule.contact),
+        q(rule.heading),
         q(rule.end)
     )
 }

@@ -36,6 +36,8 @@ pub struct UncertaintyKeys {
     pub bend_deg: f64,
     /// Of θ while something touches the segment, beside the others.
     pub contact_deg: f64,
+    /// Of each heading by itself: what one θ has too much of it, the next has too little.
+    pub heading_deg: f64,
     /// Of either coordinate of a segment's end, whatever its angle.
     pub end_mm: f64,
 }
@@ -77,6 +79,7 @@ impl UncertaintyKeys {
             drift_share: (self.drift_share * factor).min(LARGEST_SHARE),
             bend_deg: deviation(self.bend_deg, LARGEST_DEG),
             contact_deg: deviation(self.contact_deg, LARGEST_DEG),
+            heading_deg: deviation(self.heading_deg, LARGEST_DEG),
             end_mm: deviation(self.end_mm, LARGEST_MM),
         }
     }
@@ -86,6 +89,7 @@ impl UncertaintyKeys {
         within("uncertainty.drift_share", self.drift_share, 0.0..=LARGEST_SHARE)?;
         within("uncertainty.bend_deg", self.bend_deg, 0.0..=LARGEST_DEG)?;
         within("uncertainty.contact_deg", self.contact_deg, 0.0..=LARGEST_DEG)?;
+        within("uncertainty.heading_deg", self.heading_deg, 0.0..=LARGEST_DEG)?;
         within("uncertainty.end_mm", self.end_mm, 0.0..=LARGEST_MM)
     }
 
@@ -99,6 +103,7 @@ impl UncertaintyKeys {
             drift: scaled(self.drift_share * measurement / TAU),
             bend: angle(self.bend_deg),
             contact: angle(self.contact_deg),
+            heading: angle(self.heading_deg),
             end: scaled((self.end_mm / 1000.0).powi(2)),
         }
     }

@@ -299,19 +299,23 @@ impl<'t, S: Scalar, const N: usize, const W: usize> Estimator<'t, S, N, W> {
         let Self { table, states, fused, .. } = self;
         let Some(rule) = &table.uncertainty else { return Vec::new() };
         let touched = self.touched();
-        let (mut spread, mut before, mut is_known) = (Spread::base(), Vector2::zeros(), true);
+        let mut spread = Spread::base(rule.heading, rule.end);
+        let (mut before, mut is_known) = (Vector2::zeros(), true);
+        // The base's heading has no error.
+        let mut headings = rule.heading;
         let mut uncertainties = Vec::new();
         for (i, (state, shape)) in states.iter().zip(fused).enumerate() {
             let Beyond { observer, seen, lever, .. } = &state.beyond;
             let sources = Sources { seen: *seen, drift: observer.variance(), is_touched: touched >> i & 1 != 0 };
             let theta = rule.theta(&sources);
             let end = theta.zip(shape.end).filter(|_| is_known).map(|(theta, end)| {
-                spread.step(end - before, *lever, theta, rule.end);
+                spread.step(end - before, *lever, theta);
                 before = end;
                 spread.end()
             });
             is_known = end.is_some();
-            let _ = uncertainties.push(Uncertainty { theta, end });
+            let _ = uncertainties.push(Uncertainty { theta: theta.map(|theta| theta + headings), end });
+            headings = rule.heading + rule.heading;
         }
         uncertainties
     }
@@ -348,11 +352,12 @@ fn compare<S: Scalar, const W: usize>(
     states: &mut [State<S, W>],
 ) {
     for (i, segment) in segments.iter().enumerate() {
+        if !states.get(i).is_some_and(|state| state.beyond.is_due(phases)) {
+            continue;
+        }
         let Some(alike) = segment.alike else { continue };
         let there = states.get(usize::from(alike.segment)).and_then(|state| state.beyond.touch.theta);
-        let Some(State { beyond, .. }) = states.get_mut(i).filter(|state| state.beyond.is_due(phases)) else {
-            continue;
-        };
+        let Some(State { beyond, .. }) = states.get_mut(i) else { continue };
         let difference = beyond.touch.theta.zip(there).map(|(here, there)| alike.difference(here, there));
         beyond.touch.compare(rule, difference);
     }

@@ -41,12 +41,12 @@ impl<S: Scalar> Memory<S> {
         let plays: [_; PLAYS] = core::array::from_fn(|k| {
             let Play { half_width, weight } = hysteresis[k];
             let ahead = theta - places[k];
-            let ahead = if ahead > half_width {
-                half_width
-            } else if -ahead > half_width {
+            let ahead = if ahead.is_within(half_width) {
+                ahead
+            } else if ahead < S::zero() {
                 -half_width
             } else {
-                ahead
+                half_width
             };
             places[k] = theta - ahead;
             (weight, ahead)

@@ -28,6 +28,8 @@ pub struct UncertaintyRule<S> {
     pub bend: S,
     /// Of θ while something touches the segment, beside the others, rad².
     pub contact: S,
+    /// Of each heading by itself, rad²: what one θ has too much of it, the next has too little.
+    pub heading: S,
     /// Of either coordinate of a segment's end in its own frame, whatever the angle, m².
     pub end: S,
 }
@@ -53,7 +55,7 @@ pub(crate) struct Sources {
 }
 
 impl<S: Scalar> UncertaintyRule<S> {
-    /// Variance of θ; `None` where nothing was measured.
+    /// Variance of θ but for the headings' own errors; `None` where nothing was measured.
     pub(crate) fn theta(&self, sources: &Sources) -> Option<S> {
         let measured = match sources.seen {
             Seen { imu: true, .. } => {
@@ -100,21 +102,24 @@ pub(crate) fn lever<S: Scalar>(segment: &Segment<S>) -> S {
 /// Covariance of the newest heading and point of a chain, segment by segment from the base.
 ///
 /// An error of the heading before a segment turns it about its start; one of its own bend angle turns its end about a point
-/// on the way, a `lever` of its chord from the end: half of an arc's, all of a connector's behind it. The errors of the
-/// bend angles are taken to be independent.
+/// on the way, a `lever` of its chord from the end: half of an arc's, all of a connector's behind it. These errors of the
+/// bend angles are taken to be independent, and add up along the chain. Beside them each heading has an error of its own, its
+/// gyroscope's, which turns one chord and goes no further.
 ///
 /// ```
 /// use estimator_core::{SCALE, Spread};
 /// use nalgebra::Vector2;
 ///
 /// // A straight arm of one arc of 0.1 m whose bend angle may be off by 0.1 rad: its end may be off by 5 mm, sideways.
-/// let mut spread = Spread::<f64>::base();
-/// spread.step(Vector2::new(0.0, 0.1), 0.5, 0.01 * SCALE, 0.0);
+/// let mut spread = Spread::<f64>::base(0.0, 0.0);
+/// spread.step(Vector2::new(0.0, 0.1), 0.5, 0.01 * SCALE);
 /// let [xx, xy, yy] = spread.end().square_metres();
 /// assert!((xx.sqrt() - 0.005).abs() < 1e-12 && xy.abs() < 1e-12 && yy < 1e-12);
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Spread<S> {
+    /// Variance of each heading's own error, and of each end's in either direction.
+    own: [S; 2],
     heading: S,
     /// Covariance of heading and point.
     cross: Vector2<S>,
@@ -122,26 +127,28 @@ pub struct Spread<S> {
 }
 
 impl<S: Scalar> Spread<S> {
-    /// The base, which is where it is.
+    /// The base, which is where it is. The variances are those of each `heading`'s own error, and of what each `end` is off in
+    /// either direction whatever the angles.
     #[must_use]
-    pub fn base() -> Self {
+    pub fn base(heading: S, end: S) -> Self {
         let point = Covariance { xx: S::zero(), xy: S::zero(), yy: S::zero() };
-        Self { heading: S::zero(), cross: Vector2::zeros(), point }
+        Self { own: [heading, end], heading: S::zero(), cross: Vector2::zeros(), point }
     }
 
-    /// Goes on by one segment: its `chord` from start to end in {W}, its `lever`, the variance of its bend angle, and that
-    /// of what its end is off in either direction whatever the angle ([`SCALE`] times m²).
+    /// Goes on by one segment: its `chord` from start to end in {W}, its `lever`, and the variance of its bend angle that adds
+    /// up.
     #[inline(never)]
-    pub fn step(&mut self, chord: Vector2<S>, lever: S, theta: S, point: S) {
+    pub fn step(&mut self, chord: Vector2<S>, lever: S, theta: S) {
+        let [heading, end] = self.own;
         // How the end moves with the heading, clockwise positive: (x, y) to (y, −x).
         let turn = Vector2::new(chord.y, -chord.x);
         let levered = lever.bounded_product(theta);
         // What the end's covariance grows by is the product of this and `turn`, and its transpose.
-        let half = (self.heading + lever.bounded_product(levered)).half();
+        let half = (self.heading + lever.bounded_product(levered) + heading).half();
         let side = Vector2::new(self.cross.x + half * turn.x, self.cross.y + half * turn.y);
-        self.point.xx += S::dot([turn.x; 2], [side.x; 2]) + point;
+        self.point.xx += S::dot([turn.x; 2], [side.x; 2]) + end;
         self.point.xy += S::dot([turn.x, turn.y], [side.y, side.x]);
-        self.point.yy += S::dot([turn.y; 2], [side.y; 2]) + point;
+        self.point.yy += S::dot([turn.y; 2], [side.y; 2]) + end;
         let shared = self.heading + levered;
         self.cross += Vector2::new(shared * turn.x, shared * turn.y);
         self.heading += theta;

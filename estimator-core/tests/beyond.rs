@@ -29,6 +29,7 @@ fn table(segments: &[Segment<f64>]) -> Table<'_, f64> {
         drift: 0.0,
         bend: variance(BEND_DEG),
         contact: variance(CONTACT_DEG),
+        heading: 0.0,
         end: 1e-8 * SCALE,
     };
     let contact = ContactRule { bend: turns(5.0), alike: turns(4.0) };

@@ -6,6 +6,8 @@ use nalgebra::Vector2;
 const BENDS: [f64; 6] = [0.3, -0.5, 0.8, 0.4, -0.2, 0.6];
 /// Deviations of the bend angles, rad.
 const DEVIATIONS: [f64; 6] = [0.01, 0.02, 0.005, 0.01, 0.03, 0.01];
+/// Deviation of each heading by itself, rad.
+const HEADING: f64 = 0.01;
 /// Deviation of each end, m.
 const POINT: f64 = 0.001;
 
@@ -26,15 +28,15 @@ fn ends(bends: &[f64]) -> Vec<Vector2<f64>> {
 
 /// Deviations of each end along x and y, mm, and their correlation.
 fn spread<S: Scalar>() -> Vec<[f64; 3]> {
-    let mut spread = Spread::<S>::base();
+    let [heading, point] = [HEADING, POINT].map(|deviation| S::from_f64(deviation.powi(2) * SCALE));
+    let mut spread = Spread::<S>::base(heading, point);
     let mut before = Vector2::zeros();
     let of = |(i, end): (usize, Vector2<f64>)| {
         let chord: Vector2<f64> = end - before;
         before = end;
         let lever = if i % 2 == 0 { 57.0 / 97.0 } else { 40.0 / 97.0 };
-        let [lever, theta, point] =
-            [lever, DEVIATIONS[i].powi(2) * SCALE, POINT * POINT * SCALE].map(<S as Scalar>::from_f64);
-        spread.step(chord.map(<S as Scalar>::from_f64), lever, theta, point);
+        let [lever, theta] = [lever, DEVIATIONS[i].powi(2) * SCALE].map(<S as Scalar>::from_f64);
+        spread.step(chord.map(<S as Scalar>::from_f64), lever, theta);
         deviations(spread.end().square_metres())
     };
     ends(&BENDS).into_iter().enumerate().map(of).collect()
@@ -54,7 +56,12 @@ fn the_covariance_is_that_of_the_chain_s_derivatives() {
             *sum = [sum[0] + d.x * d.x, sum[1] + d.x * d.y, sum[2] + d.y * d.y];
         }
     }
-    for (i, (found, sum)) in spread::<f64>().into_iter().zip(sums).enumerate() {
+    let chord = |i: usize| ends(&BENDS)[i] - if i == 0 { Vector2::zeros() } else { ends(&BENDS)[i - 1] };
+    for (i, (found, mut sum)) in spread::<f64>().into_iter().zip(sums).enumerate() {
+        // A heading's own error turns one chord.
+        for turn in (0..=i).map(|k| chord(k) * HEADING) {
+            sum = [sum[0] + turn.y * turn.y, sum[1] - turn.x * turn.y, sum[2] + turn.x * turn.x];
+        }
         let points = (i + 1) as f64 * POINT * POINT;
         let expected = deviations([sum[0] + points, sum[1], sum[2] + points]);
         // The lever is that of a slightly bent arc.

@@ -264,7 +264,7 @@ fn drift_keys_are_checked() {
 fn keys_of_contact_and_uncertainty_are_checked() {
     let keys = |section: &str, line: &str| format!("[{section}]\n{line}\n[[segment]]");
     refuses("[[segment]]", &keys("contact", "alike_deg = 0.0"), "contact.alike_deg", "0.0");
-    let rest = "drift_share = 0.1\nbend_deg = 3.0\ncontact_deg = 1.0\nend_mm = 0.5";
+    let rest = "drift_share = 0.1\nbend_deg = 3.0\ncontact_deg = 1.0\nheading_deg = 0.5\nend_mm = 0.5";
     let line = format!("theta_deg = 10.0\n{rest}");
     refuses("[[segment]]", &keys("uncertainty", &line), "uncertainty.theta_deg", "10.0");
 }

@@ -92,12 +92,13 @@ fn contact() -> impl Strategy<Value = ContactKeys> {
 }
 
 fn uncertainty() -> impl Strategy<Value = UncertaintyKeys> {
-    (0.0..9.0_f64, 0.0..10.0_f64, 0.0..9.0_f64, 0.0..9.0_f64, 0.0..100.0_f64).prop_map(
-        |(theta_deg, drift_share, bend_deg, contact_deg, end_mm)| UncertaintyKeys {
+    (0.0..9.0_f64, 0.0..10.0_f64, 0.0..9.0_f64, 0.0..9.0_f64, 0.0..9.0_f64, 0.0..100.0_f64).prop_map(
+        |(theta_deg, drift_share, bend_deg, contact_deg, heading_deg, end_mm)| UncertaintyKeys {
             theta_deg,
             drift_share,
             bend_deg,
             contact_deg,
+            heading_deg,
             end_mm,
         },
     )

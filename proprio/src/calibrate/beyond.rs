@@ -12,27 +12,36 @@ const OBSERVED_DEG: f64 = 0.1;
 /// which is this share of it.
 const ANCHORED_SHARE: f64 = 0.4;
 /// Share of the observer's variance that its bias is off by: it counts as noise what hysteresis takes back.
-const DRIFT_SHARE: f64 = 0.12;
+const DRIFT_SHARE: f64 = 0.055;
+/// Deviation of each heading behind the observer: its gyroscope's sensitivity. The anchor follows it.
+const HEADING_DEG: f64 = 0.5;
 /// Deviation of θ that a touch adds.
-const CONTACT_DEG: f64 = 0.5;
+const CONTACT_DEG: f64 = 0.8;
+/// Share of the sweep's distance from constant curvature that the angles' deviations do not cover.
+const END_SHARE: f64 = 0.7;
+/// The format's, of segments that bend alike.
+const LARGEST_RATIO: f64 = 7.9;
 
 /// Sets them for a table whose maps and filters are set. `misfit_m` is the distance of the true tip from constant curvature.
 pub(super) fn set(sweep: &Sweep, misfit_m: f64, table: &mut ArmFile) {
     let is_observed = table.drift.as_ref().is_some_and(|drift| drift.kind == DriftKind::Observer);
     let bend_deg = bend_deg(&table.segments);
-    table.uncertainty = Some(UncertaintyKeys {
+    let deviations = UncertaintyKeys {
         theta_deg: if is_observed { OBSERVED_DEG } else { ANCHORED_SHARE * bend_deg },
         drift_share: DRIFT_SHARE,
         bend_deg,
         contact_deg: CONTACT_DEG,
+        heading_deg: if is_observed { HEADING_DEG } else { 0.0 },
         // Both coordinates of all segments add up to it.
-        end_mm: misfit_m * 1000.0 / (2.0 * table.segments.len() as f64).sqrt(),
-    });
+        end_mm: END_SHARE * misfit_m * 1000.0 / (2.0 * table.segments.len() as f64).sqrt(),
+    };
+    // As far as the format goes.
+    table.uncertainty = Some(deviations.scaled(1.0));
     table.contact.get_or_insert_default();
     for segment in &mut table.segments {
         segment.alike = None;
     }
-    for like in sweep.alike() {
+    for like in sweep.alike().iter().filter(|like| like.ratio.abs() < LARGEST_RATIO) {
         let alike = &mut table.segments[like.second - 1].alike;
         alike.get_or_insert(AlikeKeys { segment: like.first, ratio: like.ratio });
     }

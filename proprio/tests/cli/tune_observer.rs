@@ -19,8 +19,9 @@ fn timid() -> DriftKeys {
 
 /// Deviations for which the errors are too large, or too small, by this factor.
 fn deviations(factor: f64) -> UncertaintyKeys {
-    let [theta_deg, drift_share, bend_deg, contact_deg, end_mm] = [0.1, 0.15, 3.0, 1.0, 0.5].map(|key| key * factor);
-    UncertaintyKeys { theta_deg, drift_share, bend_deg, contact_deg, end_mm }
+    let [theta_deg, drift_share, bend_deg, contact_deg, heading_deg, end_mm] =
+        [0.1, 0.1, 3.0, 0.5, 0.6, 0.5].map(|key| key * factor);
+    UncertaintyKeys { theta_deg, drift_share, bend_deg, contact_deg, heading_deg, end_mm }
 }
 
 /// A folder with the table before and after, and its record.
@@ -102,6 +103,7 @@ fn variances_that_are_too_small_grow_by_one_factor_to_what_the_errors_are() {
         (small.drift_share, grown.drift_share, factor),
         (small.bend_deg, grown.bend_deg, factor.sqrt()),
         (small.contact_deg, grown.contact_deg, factor.sqrt()),
+        (small.heading_deg, grown.heading_deg, factor.sqrt()),
         (small.end_mm, grown.end_mm, factor.sqrt()),
     ] {
         assert!((after / before / by - 1.0).abs() < 1e-12, "{before} became {after}, expected {by} times as much");

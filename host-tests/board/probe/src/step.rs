@@ -92,6 +92,7 @@ pub static TABLE_BEYOND: Table<'static, Q> = Table {
         drift: Q::from_f64(0.6),
         bend: Q::from_f64(0.2),
         contact: Q::from_f64(0.1),
+        heading: Q::from_f64(0.007),
         end: Q::from_f64(6.4e-5),
     }),
     ..table(6)
