@@ -78,7 +78,9 @@ pub(super) fn set_filters(session: &Path, table: &mut NamedTable, rate_hz: f64) 
         }
         if row.starts {
             pace = Pace::new();
-            gatherers.iter_mut().for_each(|gatherer| gatherer.anchor = anchor);
+            for gatherer in &mut gatherers {
+                gatherer.anchor = anchor;
+            }
         }
         let slot = pace.tick(&baked.anchor);
         let mut sums = Some([0.0, 0.0]);

@@ -136,9 +136,9 @@ mod tests {
         let bytes = cdr.into_bytes();
         let read = |bytes: &[u8]| {
             let mut cdr = CdrReader::new(bytes)?;
-            Some((cdr.string()?, cdr.floats()?))
+            Some((cdr.string()?.to_owned(), cdr.floats()?))
         };
-        assert_eq!(read(&bytes), Some(("frame", vec![1.5, -2.5])));
+        assert_eq!(read(&bytes), Some(("frame".to_owned(), vec![1.5, -2.5])));
         assert_eq!((0..bytes.len()).find_map(|length| read(&bytes[..length])), None);
     }
 }
