@@ -12,13 +12,13 @@ const OBSERVED_DEG: f64 = 0.1;
 /// which is this share of it.
 const ANCHORED_SHARE: f64 = 0.4;
 /// Share of the observer's variance that its bias is off by: it counts as noise what hysteresis takes back.
-const DRIFT_SHARE: f64 = 0.055;
+const DRIFT_SHARE: f64 = 0.05;
 /// Deviation of each heading behind the observer: its gyroscope's sensitivity. The anchor follows it.
-const HEADING_DEG: f64 = 0.5;
+const HEADING_DEG: f64 = 0.55;
 /// Deviation of θ that a touch adds.
-const CONTACT_DEG: f64 = 0.8;
+const CONTACT_DEG: f64 = 1.0;
 /// Share of the sweep's distance from constant curvature that the angles' deviations do not cover.
-const END_SHARE: f64 = 0.7;
+const END_SHARE: f64 = 0.9;
 /// The format's, of segments that bend alike.
 const LARGEST_RATIO: f64 = 7.9;
 
