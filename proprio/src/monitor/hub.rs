@@ -8,7 +8,7 @@ use estimator_core::Table;
 
 use super::feed::{Batch, Feed, Status, Uncertainty};
 use super::live::{Live, Taken};
-use super::observer::Observer;
+use super::shadow::Shadow;
 use super::shared::Shared;
 use crate::link::{Event, HostNs, Link, Subscription, What};
 
@@ -32,7 +32,7 @@ pub(super) struct Hub<'t> {
 
 impl<'t> Hub<'t> {
     pub fn new(shared: Arc<Shared>, events: Subscription, table: Option<&'t Table<'t, estimator_core::Q>>) -> Self {
-        let live = Live::new(table.map(Observer::new));
+        let live = Live::new(table.map(Shadow::new));
         let now = Instant::now();
         Self { shared, events, live, batch: Batch::default(), batched: now, told: now, notes: Vec::new() }
     }

@@ -6,8 +6,8 @@ use estimator_core::Sample;
 use telemetry::{BEND_SENSORS, Estimate, Health, Message, SEGMENTS, SensorHealth, SensorState, Uncertainty};
 
 use super::feed::BoardTime;
-use super::observer::Observer;
 use super::row::Row;
+use super::shadow::Shadow;
 use crate::link::{BoardClock, Event, HostNs, What};
 use crate::status::Rates;
 
@@ -37,9 +37,9 @@ struct Totals {
 
 /// A live board.
 pub(super) struct Live<'t> {
-    observer: Option<Observer<'t>>,
-    /// Whether the observer has seen every sample since the estimator's start.
-    is_observed: bool,
+    shadow: Option<Shadow<'t>>,
+    /// Whether the shadow has seen every sample since the estimator's start.
+    is_shadowed: bool,
     clock: BoardClock,
     /// The board's time 0 on the host's clock, ns.
     zero_ns: Option<u64>,
@@ -64,10 +64,10 @@ struct Last {
 }
 
 impl<'t> Live<'t> {
-    pub fn new(observer: Option<Observer<'t>>) -> Self {
+    pub fn new(shadow: Option<Shadow<'t>>) -> Self {
         Self {
-            observer,
-            is_observed: false,
+            shadow,
+            is_shadowed: false,
             clock: BoardClock::default(),
             zero_ns: None,
             open: None,
@@ -125,25 +125,25 @@ impl<'t> Live<'t> {
             if restarted || self.base_us + sample.time_us < last.time_us {
                 let passed_us = (at.0.saturating_sub(last.at.0) / 1000).max(TICK_US);
                 self.base_us = (last.time_us + passed_us).saturating_sub(sample.time_us);
-                self.is_observed = sample.tick == 0;
+                self.is_shadowed = sample.tick == 0;
             } else if sample.tare == last.tare {
                 starts = false;
             } else {
-                self.is_observed = true;
+                self.is_shadowed = true;
             }
         } else {
-            self.is_observed = sample.tick == 0;
+            self.is_shadowed = sample.tick == 0;
         }
         let time_us = self.base_us + sample.time_us;
         self.last = Some(Last { at, tare: sample.tare, time_us });
 
         let mut row = Row::new(time_us as f64 / 1e6, SEGMENTS);
-        if let Some(observer) = &mut self.observer {
+        if let Some(shadow) = &mut self.shadow {
             if starts {
-                observer.start();
+                shadow.start();
             }
-            if self.is_observed {
-                observer.step(&Sample::from(sample), &mut row);
+            if self.is_shadowed {
+                shadow.step(&Sample::from(sample), &mut row);
             }
         }
         // The board's own estimate is what is shown.

@@ -6,7 +6,7 @@
 //!
 //! | file | what it is for |
 //! |---|---|
-//! | `live.rs`, `observer.rs`, `row.rs` | what the link says, as rows; drift and innovations by an estimator beside the board's |
+//! | `live.rs`, `shadow.rs`, `row.rs` | what the link says, as rows; drift and innovations by an estimator beside the board's |
 //! | `hub.rs`, `feed.rs`, `history.rs` | batches and status; the last ten minutes |
 //! | `latency.rs` | from a sample to the screen |
 //! | `recording.rs`, `sessions.rs` | sessions that are recorded, and opened |
@@ -21,12 +21,12 @@ mod history;
 mod hub;
 mod latency;
 mod live;
-mod observer;
 mod plain;
 mod recording;
 mod row;
 mod server;
 mod sessions;
+mod shadow;
 mod shared;
 mod socket;
 

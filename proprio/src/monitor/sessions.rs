@@ -12,8 +12,8 @@ use tempfile::TempPath;
 
 use super::feed::Arm;
 use super::history::History;
-use super::observer::Observer;
 use super::row::{self, Row};
+use super::shadow::Shadow;
 use crate::error::Error;
 use crate::replay::NamedTable;
 use crate::session::{Mark, SessionReader};
@@ -121,15 +121,15 @@ impl Sessions {
         let mut reader = SessionReader::open(path, &table.needs()?)?;
         let baked = table.bake::<Q>(reader.rate_hz(file.rate_hz))?;
         let baked = baked.table();
-        let mut observer = Observer::new(&baked);
+        let mut shadow = Shadow::new(&baked);
         let mut history = History::new(row::names(segments).len());
         let (mut samples, mut every) = (0, 1);
         while let Some(read) = reader.next_row()? {
             let mut row = Row::new(read.sample.time_us as f64 / 1e6, segments);
             if read.starts {
-                observer.start();
+                shadow.start();
             }
-            observer.step(&read.sample, &mut row);
+            shadow.step(&read.sample, &mut row);
             if let Some(estimate) = read.board.and_then(|board| board.estimate) {
                 row.set_estimate(&estimate.segments);
             }

@@ -7,14 +7,14 @@ use super::row::{Group, Row};
 use crate::replay::HostEstimator;
 
 /// The board's estimator once more, over the samples that it sends.
-pub(super) struct Observer<'t> {
+pub(super) struct Shadow<'t> {
     estimator: Box<HostEstimator<'t, Q>>,
     table: &'t Table<'t, Q>,
     /// x⁻ of KF_orient, rad: with A = I the state after the sample before.
     predicted_rad: [Option<f64>; MAX_SEGMENTS],
 }
 
-impl<'t> Observer<'t> {
+impl<'t> Shadow<'t> {
     /// Of a table that was baked from a file, whose checks are at least as strict as the estimator's.
     pub fn new(table: &'t Table<'t, Q>) -> Self {
         let estimator = Box::new(Estimator::new(table).expect("the file was checked"));
