@@ -92,7 +92,7 @@ impl Pace {
 
     /// The phases that belong to the newest sample: those of all samples from one complete value to the next are those
     /// from 0 to the sample rate, each once.
-    pub(crate) fn phases(&self, rule: &AnchorRule, slot: Slot) -> Range<u32> {
+    pub(crate) fn phases(self, rule: &AnchorRule, slot: Slot) -> Range<u32> {
         let first = if slot.is_complete() { 0 } else { self.phase };
         first..self.phase.saturating_add(rule.rate_millihertz)
     }

@@ -12,7 +12,7 @@ const OBSERVED_DEG: f64 = 0.1;
 /// which is this share of it.
 const ANCHORED_SHARE: f64 = 0.4;
 /// Share of the observer's variance that its bias is off by: it counts as noise what hysteresis takes back.
-const DRIFT_SHARE: f64 = 0.05;
+const DRIFT_SHARE: f64 = 0.055;
 /// Deviation of each heading behind the observer: its gyroscope's sensitivity. The anchor follows it.
 const HEADING_DEG: f64 = 0.55;
 /// Deviation of θ that a touch adds.

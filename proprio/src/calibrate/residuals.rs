@@ -1,10 +1,10 @@
 //! The filters' default parameters, from the errors of bend sensors and IMUs on the calibration session.
 //!
 //! R_bend is the mean square of the bend sensors' error, of each segment by itself. R_imu is R_bend times a ratio of two
-//! mean squares. Behind the anchor, the IMUs' error counts as what it would be if perfect bend sensors anchored them: what
-//! they really have on top of it is the slow part of the bend sensors' error, which the anchor passes on; it is in both
-//! measurements, no filter can remove it, and it must not count against one of them. The observer passes next to nothing of
-//! it on, and the error behind it counts as it is.
+//! mean squares, for which the IMUs' error is the one that they would have if perfect bend sensors anchored them. What they
+//! really have on top of it behind the anchor is the slow part of the bend sensors' error, which the anchor passes on; it is in
+//! both measurements, no filter can remove it, and it must not count against one of them. Behind the observer it is the
+//! drift that the observer has not learned yet, which a session of some minutes has too much of.
 //!
 //! For KF_coord these are the errors of a segment's end in its own frame. For KF_orient they are those of the headings
 //! that the bend angles add up to, the same for the whole arm: along the chain the errors of bend sensors grow, where
@@ -55,8 +55,8 @@ impl Errors {
 /// What is gathered of one segment while the session is replayed.
 struct Gatherer<'t> {
     segment: &'t Segment<f64>,
-    /// Anchors to the truth, as perfect bend sensors would be; none behind the observer.
-    anchor: Option<Anchor<{ MAX_WINDOW as usize }>>,
+    /// Anchors to the truth, as perfect bend sensors would be.
+    anchor: Anchor<{ MAX_WINDOW as usize }>,
     orient: Errors,
     coord: Errors,
 }
@@ -66,9 +66,9 @@ struct Gatherer<'t> {
 pub(super) fn set_filters(session: &Path, table: &mut NamedTable, rate_hz: f64) -> Result<f64, Error> {
     let baked = table.bake::<f64>(rate_hz)?;
     let baked = baked.table();
-    let anchor = if baked.observer.is_none() { Some(Anchor::new()) } else { None };
-    let coord_ratio = if anchor.is_some() { ANCHORED_COORD_RATIO } else { OBSERVED_COORD_RATIO };
-    let gatherer = |segment| Gatherer { segment, anchor, orient: Errors::default(), coord: Errors::default() };
+    let coord_ratio = if baked.observer.is_some() { OBSERVED_COORD_RATIO } else { ANCHORED_COORD_RATIO };
+    let gatherer =
+        |segment| Gatherer { segment, anchor: Anchor::new(), orient: Errors::default(), coord: Errors::default() };
     let mut gatherers: Vec<Gatherer> = baked.segments.iter().map(gatherer).collect();
     let mut headings = Errors::default();
     let (mut pace, mut misfit, mut tips) = (Pace::new(), 0.0, 0.0);
@@ -79,7 +79,7 @@ pub(super) fn set_filters(session: &Path, table: &mut NamedTable, rate_hz: f64) 
         if row.starts {
             pace = Pace::new();
             for gatherer in &mut gatherers {
-                gatherer.anchor = anchor;
+                gatherer.anchor = Anchor::new();
             }
         }
         let slot = pace.tick(&baked.anchor);
@@ -112,14 +112,9 @@ pub(crate) fn truth_misfit(row: &Row, segments: &[Segment<f64>]) -> Option<f64> 
 impl Gatherer<'_> {
     /// Adds one row; gives the errors of θ by the IMUs and by the bend sensors, rad, where both are known.
     fn add_row(&mut self, truth: Option<f64>, estimate: &SegmentEstimate<f64>, slot: Slot) -> Option<[f64; 2]> {
-        let imu = if let Some(anchor) = &mut self.anchor {
-            let imu = estimate.imu_o.map(Angle::rad);
-            anchor.push(slot, imu.zip(truth).map(|(imu, truth)| Turns::from_rad(imu - truth)));
-            imu.zip(anchor.offset()).map(|(imu, offset)| imu - offset.rad())
-        } else {
-            estimate.imu_c.map(|link| link.theta.rad())
-        };
-        let (truth, imu, bend) = (truth?, imu?, estimate.bend?);
+        let imu = estimate.imu_o.map(Angle::rad);
+        self.anchor.push(slot, imu.zip(truth).map(|(imu, truth)| Turns::from_rad(imu - truth)));
+        let (truth, imu, bend) = (truth?, imu? - self.anchor.offset()?.rad(), estimate.bend?);
 
         let errors = [imu - truth, bend.theta.rad() - truth];
         self.orient.add(errors[0].powi(2), errors[1].powi(2), 1.0);
