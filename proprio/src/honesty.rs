@@ -26,7 +26,7 @@ impl Ellipse {
     ///
     /// // 3 mm and 1 mm of standard deviation, along the diagonals.
     /// let Ellipse { major_mm, minor_mm } = Ellipse::of([5e-6, 4e-6, 5e-6]);
-    /// assert!((major_mm - 3.0 * 2.448).abs() < 1e-3 && (minor_mm - 2.448).abs() < 1e-3);
+    /// assert!((major_mm - 3.0 * 2.4477).abs() < 1e-3 && (minor_mm - 2.4477).abs() < 1e-3);
     /// ```
     #[must_use]
     pub fn of([xx, xy, yy]: [f64; 3]) -> Self {

@@ -269,7 +269,8 @@ fn a_table_of_an_aligned_sweep_is_as_good_as_one_of_the_true_truth() {
         )
     };
     let (found, expected) = (fusion("aligned.csv"), fusion("true.csv"));
-    assert!((found - expected).abs() < 0.02 * expected, "{found} mm, expected {expected} mm");
+    // 0.05 % of the arm's length, from the camera's noise in the maps.
+    assert!((found - expected).abs() < 0.3, "{found} mm, expected {expected} mm");
 }
 
 #[test]

@@ -97,7 +97,7 @@ fn nothing_but_the_filters_and_the_record_changes() {
 #[test]
 fn the_record_names_the_sessions_in_their_order() {
     let folder = Folder::with("b.csv", training().to_string());
-    folder.write("a.csv", simulate("--scenario 2 --seconds 60 --seed 53").to_string());
+    folder.write("a.csv", simulate("--scenario 2 --seconds 300 --seed 53").to_string());
     folder.done(&["tune", "b.csv", "a.csv", "--table", table(), "-o", "tuned.toml"]);
     let record = load(folder.path("tuned.toml")).tuning.expect("a record");
     assert_eq!(record.sessions, ["b.csv", "a.csv"]);
@@ -125,7 +125,7 @@ fn the_figures_and_the_time_of_an_iteration_are_printed() {
 #[test]
 fn the_same_sessions_give_the_same_bytes() {
     let folder = Folder::with("a.csv", training().to_string());
-    folder.write("b.csv", simulate("--scenario 2 --seconds 60 --seed 53").to_string());
+    folder.write("b.csv", simulate("--scenario 2 --seconds 300 --seed 53").to_string());
     let tune = |name: &str| {
         folder.done(&["tune", "a.csv", "b.csv", "--table", table(), "-o", name]);
         folder.read(name)
