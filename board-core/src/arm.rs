@@ -1,7 +1,7 @@
 //! The estimator between the sensors and the line: samples in, estimates out, and when it starts anew.
 
 use estimator_core::{Estimator, Q, Table};
-use telemetry::{Estimate, Event, SEGMENTS, Sample, Uncertainty, touched};
+use telemetry::{Estimate, Event, SEGMENTS, Sample, Uncertainty};
 
 /// Ticks of 10 ms until the first tare if an IMU does not come up.
 pub const TARE_TICKS: u32 = 200;
@@ -17,14 +17,14 @@ pub struct Arm {
     estimator: Estimator<'static, Q, SEGMENTS, WINDOW>,
     tare: u8,
     tared: bool,
-    /// The contact that was told last.
-    touched: [bool; SEGMENTS],
+    /// The contact that was told last, a bit a segment.
+    touched: u32,
 }
 
 impl Arm {
     /// Not started: it estimates nothing.
     pub const fn new(table: &'static Table<'static, Q>) -> Self {
-        Self { estimator: Estimator::unstarted(table), tare: 0, tared: false, touched: [false; SEGMENTS] }
+        Self { estimator: Estimator::unstarted(table), tare: 0, tared: false, touched: 0 }
     }
 
     /// Starts the estimator at boot. A table that has more segments or a longer window than there is room for gives no
@@ -59,8 +59,9 @@ impl Arm {
 
     /// Contact, where it has begun or ended with the newest sample, which was that of this tick.
     pub fn contact(&mut self, tick: u32) -> Option<Event> {
-        let touched = touched(&self.estimator.contacts());
-        (core::mem::replace(&mut self.touched, touched) != touched).then_some(Event::Contact(tick, touched))
+        let touched = self.estimator.touched();
+        let has_changed = core::mem::replace(&mut self.touched, touched) != touched;
+        has_changed.then(|| Event::Contact(tick, core::array::from_fn(|i| touched >> i & 1 != 0)))
     }
 
     /// How far the newest estimate, which was that of this tick, may be off. Not part of a step: it costs as much as a third

@@ -267,19 +267,23 @@ impl<'t, S: Scalar, const N: usize, const W: usize> Estimator<'t, S, N, W> {
         let Self { table, states, .. } = self;
         let touched = self.touched();
         let count = if table.contact.is_some() { states.len() } else { 0 };
-        all((0..count).map(|i| {
-            let watches = states.iter().zip(table.segments).enumerate();
-            let scores = watches.flat_map(|(k, (State { beyond: Beyond { touch, .. }, .. }, segment))| {
-                let is_like = k == i || segment.alike.is_some_and(|alike| usize::from(alike.segment) == i);
-                [(k == i).then_some(touch.bend()), is_like.then_some(touch.alike())]
-            });
-            let score_percent = scores.flatten().map(|contact| contact.score_percent).max().unwrap_or_default();
-            Contact { score_percent, is_touched: touched >> i & 1 != 0 }
-        }))
+        let mut contacts: Contacts<N> =
+            all((0..count).map(|i| Contact { score_percent: 0, is_touched: touched >> i & 1 != 0 }));
+        for (i, (state, segment)) in states.iter().zip(table.segments).enumerate() {
+            let [bend, alike] = [state.beyond.touch.bend(), state.beyond.touch.alike()].map(|of| of.score_percent);
+            let other = segment.alike.map(|alike| usize::from(alike.segment));
+            for (place, score) in [(Some(i), bend.max(alike)), (other, alike)] {
+                if let Some(contact) = place.and_then(|place| contacts.get_mut(place)) {
+                    contact.score_percent = contact.score_percent.max(score);
+                }
+            }
+        }
+        contacts
     }
 
-    /// A bit for each segment that something touches, the first in the lowest place.
-    fn touched(&self) -> u32 {
+    /// A bit for each segment that something touches, the first in the lowest place: less work than [`Self::contacts`].
+    #[must_use]
+    pub fn touched(&self) -> u32 {
         let Self { table, states, .. } = self;
         let mut touched = 0;
         for (i, (state, segment)) in states.iter().zip(table.segments).enumerate() {
