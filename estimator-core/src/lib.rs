@@ -51,6 +51,7 @@ mod pcc;
 mod q;
 mod sample;
 mod scalar;
+mod state;
 mod table;
 mod uncertainty;
 
