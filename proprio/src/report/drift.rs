@@ -151,7 +151,7 @@ pub fn figure<'s>(sessions: impl Iterator<Item = (&'s str, u64, &'s Drift)>) -> 
         title: "Drift of the IMUs and its correction",
         caption: format!(
             "Moving averages of the bend angles over the anchor's window, {window_s} s, {samples} samples in bins of equally many: raw IMUs \
-             (imu_o), IMUs anchored to the bend sensors (imu_c), bend sensors and truth, as far as they are known. Of each \
+             (imu_o), IMUs whose drift bend sensors correct (imu_c), bend sensors and truth, as far as they are known. Of each \
              session the segment that drifts most is large, with its last {END_S} s as they are. Drift is the largest \
              distance of imu_o's average from the truth's, or from the bend sensors' where there is no truth."
         ),

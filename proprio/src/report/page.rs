@@ -94,8 +94,8 @@ impl Report {
                     }
                 }
                 p.caption {
-                    "Against the truth, as far as it is known, over " (counted(samples, "sample")) ". bend: bend sensors alone; imu_o: raw IMUs; imu_c: IMUs anchored to the \
-                     bend sensors; fusion: Kalman filters over both. The best method is bold; a dash is what is not known."
+                    "Against the truth, as far as it is known, over " (counted(samples, "sample")) ". bend: bend sensors alone; imu_o: raw IMUs; imu_c: IMUs whose drift bend \
+                     sensors correct; fusion: Kalman filters over both. The best method is bold; a dash is what is not known."
                 }
             }
         }
