@@ -5,7 +5,6 @@ use estimator_core::{
     SENSORS_PER_SEGMENT, Scalar, Segment, Table, Turns, UncertaintyRule,
 };
 
-use crate::drift::DriftKind;
 use crate::file::{ArmFile, FileError, NoiseKeys, SegmentKeys, Side};
 use crate::uncertainty::{AlikeKeys, ContactKeys};
 
@@ -47,7 +46,7 @@ impl ArmFile {
         let references = self.tare.heading_deg.iter().copied().chain(std::iter::repeat(0.0));
         let segments = self.segments.iter().zip(references);
         let value_hz = self.anchor.rate_hz.min(rate_hz);
-        let observer = self.drift.as_ref().filter(|drift| drift.kind == DriftKind::Observer);
+        let observer = self.observer();
         let measurement_deg2 = observer.map_or(0.0, |drift| drift.measurement_deg2(value_hz));
         Ok(Baked {
             segments: segments.map(|(segment, reference)| segment.bake(reference, rate_hz)).collect(),

@@ -7,7 +7,7 @@ use serde::de::{DeserializeOwned, Error};
 use serde::{Deserialize, Deserializer, Serialize};
 use toml_edit::Item;
 
-use crate::drift::DriftKeys;
+use crate::drift::{DriftKeys, DriftKind};
 use crate::place::{line_and_column, line_of};
 use crate::tuning::TuningKeys;
 use crate::uncertainty::{AlikeKeys, ContactKeys, UncertaintyKeys};
@@ -276,6 +276,12 @@ impl ArmFile {
             };
         }
         document.to_string()
+    }
+
+    /// The drift observer, if that is what corrects the drift.
+    #[must_use]
+    pub fn observer(&self) -> Option<&DriftKeys> {
+        self.drift.as_ref().filter(|drift| drift.kind == DriftKind::Observer)
     }
 
     /// Length of the straight arm, mm.

@@ -47,7 +47,7 @@ pub use file::{
 };
 pub use noise::{LAG_S, RMSE_DEG_UNKNOWN};
 pub use tuning::{ObserverTuningKeys, RmseKeys, Stopped, TuningKeys};
-pub use uncertainty::{AlikeKeys, ContactKeys, UncertaintyKeys};
+pub use uncertainty::{AlikeKeys, ContactKeys, RATIO_RANGE, UncertaintyKeys};
 
 /// The reference arm's description, `arms/planar-6.toml`.
 pub const PLANAR_6_ARM: &str = include_str!("../arms/planar-6.toml");

@@ -1,6 +1,7 @@
 //! `[contact]` and `[uncertainty]`: when something touches the arm, and how far an estimate may be off.
 
 use std::f64::consts::TAU;
+use std::ops::RangeInclusive;
 
 use estimator_core::{Alike, ContactRule, SCALE, Scalar, Turns, UncertaintyRule};
 use serde::{Deserialize, Serialize};
@@ -64,6 +65,9 @@ impl ContactKeys {
     }
 }
 
+/// What the `ratio` of segments that bend alike may be.
+pub const RATIO_RANGE: RangeInclusive<f64> = -7.9..=7.9;
+
 /// Largest deviation of an angle.
 const LARGEST_DEG: f64 = 9.0;
 const LARGEST_SHARE: f64 = 10.0;
@@ -114,7 +118,7 @@ impl AlikeKeys {
     pub(crate) fn check(&self, key: &str, segment: usize) -> Result<(), FileError> {
         let is_earlier = (1..segment).contains(&self.segment);
         ensure(is_earlier, &format!("{key}.segment"), &self.segment, "the number of an earlier segment")?;
-        within(&format!("{key}.ratio"), self.ratio, -7.9..=7.9)
+        within(&format!("{key}.ratio"), self.ratio, RATIO_RANGE)
     }
 
     pub(crate) fn bake(self) -> Alike {

@@ -3,7 +3,7 @@
 //! Their parameters are those of the reference arm, but for what a sweep shows of its own: which segments bend alike, how
 //! wrong bend sensors are, and how far constant curvature is from the truth.
 
-use calibration_tables::{AlikeKeys, ArmFile, DriftKind, SegmentKeys, UncertaintyKeys};
+use calibration_tables::{AlikeKeys, ArmFile, RATIO_RANGE, SegmentKeys, UncertaintyKeys};
 
 use super::sweep::Sweep;
 
@@ -19,12 +19,10 @@ const HEADING_DEG: f64 = 0.55;
 const CONTACT_DEG: f64 = 1.0;
 /// Share of the sweep's distance from constant curvature that the angles' deviations do not cover.
 const END_SHARE: f64 = 0.9;
-/// The format's, of segments that bend alike.
-const LARGEST_RATIO: f64 = 7.9;
 
 /// Sets them for a table whose maps and filters are set. `misfit_m` is the distance of the true tip from constant curvature.
 pub(super) fn set(sweep: &Sweep, misfit_m: f64, table: &mut ArmFile) {
-    let is_observed = table.drift.as_ref().is_some_and(|drift| drift.kind == DriftKind::Observer);
+    let is_observed = table.observer().is_some();
     let bend_deg = bend_deg(&table.segments);
     let deviations = UncertaintyKeys {
         theta_deg: if is_observed { OBSERVED_DEG } else { ANCHORED_SHARE * bend_deg },
@@ -41,7 +39,7 @@ pub(super) fn set(sweep: &Sweep, misfit_m: f64, table: &mut ArmFile) {
     for segment in &mut table.segments {
         segment.alike = None;
     }
-    for like in sweep.alike().iter().filter(|like| like.ratio.abs() < LARGEST_RATIO) {
+    for like in sweep.alike().iter().filter(|like| RATIO_RANGE.contains(&like.ratio)) {
         let alike = &mut table.segments[like.second - 1].alike;
         alike.get_or_insert(AlikeKeys { segment: like.first, ratio: like.ratio });
     }

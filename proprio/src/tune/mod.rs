@@ -34,7 +34,7 @@ use crate::replay::{NamedTable, replay};
 use descent::{Iterate, MAX_ITERATIONS, descend};
 use errors::Errors;
 use objective::{Evaluation, Objective, SessionErrors};
-use observer::{MAX_RUNS, observer, observer_at, search};
+use observer::{MAX_RUNS, observer_at, search};
 use training::Training;
 
 /// Samples with truth that each part of a session needs.
@@ -115,7 +115,7 @@ impl<'t> Tuner<'t> {
     /// record of it.
     fn tune_observer(&mut self, is_interrupted: impl Fn() -> bool) -> (ArmFile, Option<ObserverTuningKeys>) {
         let mut table = self.table.file.clone();
-        let Some(start) = observer(&table).cloned() else { return (table, None) };
+        let Some(start) = table.observer().cloned() else { return (table, None) };
         let mut progress = Progress::new("tuning the observer".to_owned(), MAX_RUNS as u64);
         let mut runs = 0;
         let finds = search(self.before.clone(), |place| {

@@ -6,7 +6,7 @@
 use std::f64::consts::LN_10;
 use std::ops::RangeInclusive;
 
-use calibration_tables::{ArmFile, DriftKeys, DriftKind, NOISE_RANGE_DEG2_S, SLOPE_RANGE, WALK_RANGE_DEG_PER_S};
+use calibration_tables::{DriftKeys, NOISE_RANGE_DEG2_S, SLOPE_RANGE, WALK_RANGE_DEG_PER_S};
 
 use super::objective::Evaluation;
 
@@ -77,11 +77,6 @@ fn neighbours(place: Place, step: i32) -> impl Iterator<Item = Place> {
         place
     });
     places.filter(|[noise, walk, slope]| noise.abs().max(walk.abs()) <= DECADE && (0..=DECADE).contains(slope))
-}
-
-/// A table's observer, if that is what corrects the drift.
-pub(super) fn observer(table: &ArmFile) -> Option<&DriftKeys> {
-    table.drift.as_ref().filter(|drift| drift.kind == DriftKind::Observer)
 }
 
 /// The observer at a place as seen from `start`.

@@ -29,8 +29,8 @@ pub const ANCHOR: usize = 0;
 pub const OBSERVER: usize = 1;
 pub const HYSTERESIS: usize = 2;
 const TABLES: [(&str, DriftKind, Correct); 3] = [
-    ("anchor", DriftKind::Anchor, Correct::Never),
-    ("observer", DriftKind::Observer, Correct::Never),
+    ("anchor", DriftKind::Anchor, Correct::Auto),
+    ("observer", DriftKind::Observer, Correct::Auto),
     ("hysteresis", DriftKind::Observer, Correct::Always),
 ];
 
