@@ -36,7 +36,7 @@ fn table(path: &Path) -> Result<String, String> {
     let file = ArmFile::load(path).map_err(|error| format!("PROPRIO_TABLE {}: {error}", path.display()))?;
     let baked = file.bake::<Q>(RATE_HZ).map_err(|error| format!("PROPRIO_TABLE {}: {error}", path.display()))?;
     // The room that board-core's Arm has.
-    Estimator::<Q, 6, 100>::new(&baked.table())
+    Estimator::<Q, 6, 100>::new(&baked.config())
         .map_err(|error| format!("PROPRIO_TABLE {}: {error}", path.display()))?;
     Ok(format!(
         "{}\n/// Name of the arm.\npub const ARM: &str = {:?};\n\n/// Checksum of the table.\npub const CHECKSUM: u32 = {:#010x};\n",

@@ -1,6 +1,6 @@
 //! The estimator between the sensors and the line: samples in, estimates out, and when it starts anew.
 
-use estimator_core::{Estimator, Q, Table};
+use estimator_core::{ArmConfig, Estimator, Q};
 use telemetry::{Estimate, Event, SEGMENTS, Sample, Uncertainty};
 
 /// Ticks of 10 ms until the first tare if an IMU does not come up.
@@ -23,8 +23,8 @@ pub struct Arm {
 
 impl Arm {
     /// Not started: it estimates nothing.
-    pub const fn new(table: &'static Table<'static, Q>) -> Self {
-        Self { estimator: Estimator::unstarted(table), tare: 0, tared: false, touched: 0 }
+    pub const fn new(table: &'static ArmConfig<'static, Q>) -> Self {
+        Self { estimator: Estimator::const_new(table), tare: 0, tared: false, touched: 0 }
     }
 
     /// Starts the estimator at boot. A table that has more segments or a longer window than there is room for gives no
@@ -54,12 +54,12 @@ impl Arm {
 
     /// What the sample says of the arm.
     pub fn step(&mut self, sample: &Sample) -> Estimate {
-        Estimate::of(sample.tick, self.estimator.fuse(&sample.into()))
+        Estimate::of(sample.tick, self.estimator.update(&sample.into()))
     }
 
     /// Contact, where it has begun or ended with the newest sample, which was that of this tick.
     pub fn contact(&mut self, tick: u32) -> Option<Event> {
-        let touched = self.estimator.touched();
+        let touched = self.estimator.contact_mask();
         let has_changed = core::mem::replace(&mut self.touched, touched) != touched;
         has_changed.then(|| Event::Contact(tick, core::array::from_fn(|i| touched >> i & 1 != 0)))
     }

@@ -1,13 +1,14 @@
 //! When the estimator starts, that it starts anew, and what is told beside the estimates.
 
 use board_core::{Arm, TARE_TICKS};
-use estimator_core::{BendMap, ContactRule, Q, SCALE, Segment, Table, Turns, UncertaintyRule};
+use estimator_core::{ArmConfig, BendMap, ContactConfig, Q, SegmentConfig, Turns, UncertaintyConfig, VARIANCE_SCALE};
 use telemetry::{BEND_SENSORS, Event, SEGMENTS, Sample};
 
 /// Six segments without bend sensors, whose headings are absolute.
-fn table() -> &'static Table<'static, Q> {
-    let segments: &'static [Segment<Q>] = Box::leak(Box::new([Segment::bare(0.08, 0.017); SEGMENTS]));
-    Box::leak(Box::new(Table::bare(segments)))
+fn table() -> &'static ArmConfig<'static, Q> {
+    let segments: &'static [SegmentConfig<Q>] =
+        Box::leak(Box::new([SegmentConfig::uncalibrated(0.08, 0.017); SEGMENTS]));
+    Box::leak(Box::new(ArmConfig::uncalibrated(segments)))
 }
 
 fn sample(tick: u32) -> Sample {
@@ -59,13 +60,13 @@ fn an_estimate_carries_the_tick_of_its_sample() {
 }
 
 /// Six segments with bend sensors, straight at 1.5 V, and a table that tells of contact and of errors.
-fn feeling_table() -> &'static Table<'static, Q> {
+fn feeling_table() -> &'static ArmConfig<'static, Q> {
     let map = Some(BendMap::from_volts(0.0, 1.0, -1.5, [0.5, 2.5]));
-    let segment = Segment { bend: [map; 2], ..Segment::bare(0.08, 0.017) };
-    let segments: &'static [Segment<Q>] = Box::leak(Box::new([segment; SEGMENTS]));
+    let segment = SegmentConfig { bend: [map; 2], ..SegmentConfig::uncalibrated(0.08, 0.017) };
+    let segments: &'static [SegmentConfig<Q>] = Box::leak(Box::new([segment; SEGMENTS]));
     let turns = |degrees: f64| Turns::from_rad(degrees.to_radians());
-    let of = |value: f64| Q::from_f64(value * SCALE);
-    let errors = UncertaintyRule {
+    let of = |value: f64| Q::from_f64(value * VARIANCE_SCALE);
+    let errors = UncertaintyConfig {
         theta: of(1e-4),
         drift: of(0.0),
         bend: of(1e-3),
@@ -73,8 +74,8 @@ fn feeling_table() -> &'static Table<'static, Q> {
         heading: of(1e-4),
         end: of(1e-6),
     };
-    let contact = Some(ContactRule { bend: turns(5.0), alike: turns(4.0) });
-    Box::leak(Box::new(Table { contact, uncertainty: Some(errors), ..Table::bare(segments) }))
+    let contact = Some(ContactConfig { bend: turns(5.0), alike: turns(4.0) });
+    Box::leak(Box::new(ArmConfig { contact, uncertainty: Some(errors), ..ArmConfig::uncalibrated(segments) }))
 }
 
 /// All bend sensors straight, and all IMUs turned by this.
@@ -112,7 +113,7 @@ fn an_uncertainty_is_of_the_newest_estimate() {
     arm.step(&turned(20, 20.0));
     let touched = arm.uncertainty(20);
     assert_eq!((free.tick, touched.tick), (19, 20));
-    assert!(!free.segments[0].is_touched && touched.segments[0].is_touched);
+    assert!(!free.segments[0].in_contact && touched.segments[0].in_contact);
     assert!(touched.segments[0].theta > free.segments[0].theta && free.segments[0].theta.is_some());
     assert!(touched.segments[5].end.is_some());
 }

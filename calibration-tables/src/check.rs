@@ -2,7 +2,7 @@
 
 use std::ops::RangeInclusive;
 
-use estimator_core::{BendMap, H_LIMIT, PLAYS, SENSORS_PER_SEGMENT, VOLTS_PER_COUNT};
+use estimator_core::{H_LIMIT, PLAYS, QuadraticMap, SENSORS_PER_SEGMENT, VOLTS_PER_COUNT};
 
 use crate::drift::DriftKeys;
 use crate::file::{ArmFile, BendKeys, FileError, MAX_SEGMENTS, MAX_WINDOW, NoiseKeys, SegmentKeys};
@@ -20,7 +20,7 @@ const VARIANCE_RATIO: RangeInclusive<f64> = 1e-5..=1e5;
 /// H of a filter: a measurement that is a multiple of the state, but not another one.
 pub const H_RANGE: RangeInclusive<f64> = 0.5..=H_LIMIT;
 /// Voltages that the ADC can read, with some room for rounding.
-const ADC_VOLTS: RangeInclusive<f64> = -0.001..=3.301;
+pub(crate) const ADC_VOLTS: RangeInclusive<f64> = -0.001..=3.301;
 
 impl ArmFile {
     pub(crate) fn check(&self) -> Result<(), FileError> {
@@ -43,7 +43,9 @@ impl ArmFile {
         self.tuning.as_ref().map_or(Ok(()), TuningKeys::check)?;
         for (i, segment) in self.segments.iter().enumerate() {
             segment.check(&format!("segment[{}]", i + 1))?;
-            segment.alike.map_or(Ok(()), |alike| alike.check(&format!("segment[{}].alike", i + 1), i + 1))?;
+            segment
+                .coupled_to
+                .map_or(Ok(()), |coupled| coupled.check(&format!("segment[{}].coupled_to", i + 1), i + 1))?;
         }
         let length = self.length_mm();
         ensure(length <= MAX_ARM_MM, "segment", &format!("{length} mm of arm"), &format!("at most {MAX_ARM_MM} mm"))
@@ -63,9 +65,11 @@ impl SegmentKeys {
         let (plays, key_of_plays) = (&self.hysteresis, format!("{key}.hysteresis"));
         ensure(plays.len() <= PLAYS, &key_of_plays, &plays.len(), &format!("at most {PLAYS} plays"))?;
         for (j, play) in plays.iter().enumerate() {
-            within(&format!("{key_of_plays}[{}].half_width_deg", j + 1), play.half_width_deg, 0.0..=180.0)?;
+            within(&format!("{key_of_plays}[{}].radius_deg", j + 1), play.radius_deg, 0.0..=180.0)?;
             within(&format!("{key_of_plays}[{}].weight", j + 1), play.weight, -1.0..=1.0)?;
         }
+        within(&format!("{key}.imu_scale"), self.imu_scale.unwrap_or(1.0), 0.9..=1.1)?;
+        self.bend_error.as_ref().map_or(Ok(()), |error| error.check(&format!("{key}.bend_error")))?;
         self.orient.as_ref().map_or(Ok(()), |noise| noise.check(&format!("{key}.orient")))?;
         self.coord.as_ref().map_or(Ok(()), |noise| noise.check(&format!("{key}.coord")))
     }
@@ -80,7 +84,9 @@ impl BendKeys {
         if let Some(volts) = self.volts {
             self.check_within(key, volts)?;
         }
-        let map = BendMap::<f64>::from_volts(self.c2, self.c1, self.c0, self.range_volts());
+        self.curve.as_ref().map_or(Ok(()), |curve| curve.check(&format!("{key}.curve")))?;
+        self.memory.as_ref().map_or(Ok(()), |memory| memory.check(&format!("{key}.memory")))?;
+        let map = QuadraticMap::<f64>::from_volts(self.c2, self.c1, self.c0, self.range_volts());
         let largest = map.coefficients.into_iter().fold(0.0, |largest: f64, b| largest.max(b.abs()));
         ensure(
             largest < MAX_COEFFICIENT,

@@ -1,8 +1,7 @@
-//! `[drift]`: which correction takes the drift out of the IMUs, and the observer's parameters.
+//! `[drift]`: the drift correction of the IMUs, and the priors and noise of the bias filter.
 
-use std::ops::RangeInclusive;
-
-use estimator_core::{ObserverRule, Turns};
+use estimator_core::{BiasFilterConfig, Q, TIME_UNIT_S, VARIANCE_SCALE};
+use serde::de::IgnoredAny;
 use serde::{Deserialize, Serialize};
 
 use crate::check::within;
@@ -10,40 +9,93 @@ use crate::file::FileError;
 
 /// `[drift]`. Deviations are standard deviations.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(from = "DriftFile")]
 pub struct DriftKeys {
-    /// Which correction.
+    /// Drift correction.
     pub kind: DriftKind,
-    /// Density of the bend sensors' error: its variance times the time that it lasts, degrees² s.
-    #[serde(default = "DriftKeys::noise_deg2_s")]
-    pub noise_deg2_s: f64,
-    /// Deviation of the bias at the end of the tare.
-    #[serde(default = "DriftKeys::start_deg")]
+    /// Each heading's zero at the end of the tare.
     pub start_deg: f64,
-    /// Deviation of the drift's rate at the start.
-    #[serde(default = "DriftKeys::rate_deg_per_s")]
+    /// Each segment's bend angle in the reference pose.
+    pub straightness_deg: f64,
+    /// Turn-on bias of the gyroscopes: the drift's rate at the start.
     pub rate_deg_per_s: f64,
-    /// Deviation of what the rate changes by in a second.
-    #[serde(default = "DriftKeys::walk_deg_per_s")]
-    pub walk_deg_per_s: f64,
-    /// Deviation of the slope: how wrong a map's or a gyroscope's sensitivity is.
-    #[serde(default = "DriftKeys::slope")]
-    pub slope: f64,
-    /// Disagreements that are off by more are left out,
-    #[serde(default = "DriftKeys::gate_deg")]
-    pub gate_deg: f64,
-    /// for this time at most.
-    #[serde(default = "DriftKeys::patience_s")]
-    pub patience_s: f64,
-    /// A step of an IMU from one value to the next that is no motion.
-    #[serde(default = "DriftKeys::jump_deg")]
-    pub jump_deg: f64,
-    /// What is no motion yet.
-    #[serde(default = "DriftKeys::still_deg")]
-    pub still_deg: f64,
-    /// Deviation of the bias from which on an arm at rest teaches it, too: that of the bend sensors.
-    #[serde(default = "DriftKeys::doubt_deg")]
-    pub doubt_deg: f64,
+    /// Angle random walk (IEEE Std 952).
+    pub angle_random_walk_deg_per_sqrt_s: f64,
+    /// Rate random walk (IEEE Std 952).
+    pub rate_random_walk_deg_per_s_sqrt_s: f64,
+    /// Offset of a segment's bend sensors in a session, which the sweep cannot show.
+    pub offset_deg: f64,
+    /// Time constant of that offset.
+    pub offset_s: f64,
+}
+
+/// `[drift]` as it stands in files, those of version 0.1 among them.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct DriftFile {
+    kind: DriftKind,
+    #[serde(default = "DriftKeys::start_deg")]
+    start_deg: f64,
+    #[serde(default = "DriftKeys::straightness_deg")]
+    straightness_deg: f64,
+    #[serde(default = "DriftKeys::rate_deg_per_s")]
+    rate_deg_per_s: f64,
+    #[serde(default = "DriftKeys::angle_random_walk")]
+    angle_random_walk_deg_per_sqrt_s: f64,
+    #[serde(default = "DriftKeys::rate_random_walk", alias = "walk_deg_per_s")]
+    rate_random_walk_deg_per_s_sqrt_s: f64,
+    #[serde(default = "DriftKeys::offset_deg")]
+    offset_deg: f64,
+    #[serde(default = "DriftKeys::offset_s")]
+    offset_s: f64,
+    // Keys of version 0.1's observer, which the bias filter replaced.
+    #[serde(default)]
+    #[expect(dead_code, reason = "accepted, without effect")]
+    noise_deg2_s: IgnoredAny,
+    #[serde(default)]
+    #[expect(dead_code, reason = "accepted, without effect")]
+    slope: IgnoredAny,
+    #[serde(default)]
+    #[expect(dead_code, reason = "accepted, without effect")]
+    gate_deg: IgnoredAny,
+    #[serde(default)]
+    #[expect(dead_code, reason = "accepted, without effect")]
+    patience_s: IgnoredAny,
+    #[serde(default)]
+    #[expect(dead_code, reason = "accepted, without effect")]
+    jump_deg: IgnoredAny,
+    #[serde(default)]
+    #[expect(dead_code, reason = "accepted, without effect")]
+    still_deg: IgnoredAny,
+    #[serde(default)]
+    #[expect(dead_code, reason = "accepted, without effect")]
+    doubt_deg: IgnoredAny,
+}
+
+impl From<DriftFile> for DriftKeys {
+    fn from(file: DriftFile) -> Self {
+        let DriftFile {
+            kind,
+            start_deg,
+            straightness_deg,
+            rate_deg_per_s,
+            angle_random_walk_deg_per_sqrt_s,
+            rate_random_walk_deg_per_s_sqrt_s,
+            offset_deg,
+            offset_s,
+            ..
+        } = file;
+        Self {
+            kind,
+            start_deg,
+            straightness_deg,
+            rate_deg_per_s,
+            angle_random_walk_deg_per_sqrt_s,
+            rate_random_walk_deg_per_s_sqrt_s,
+            offset_deg,
+            offset_s,
+        }
+    }
 }
 
 /// `kind`.
@@ -52,46 +104,33 @@ pub struct DriftKeys {
 pub enum DriftKind {
     /// The paper's moving average.
     Anchor,
-    /// The observer of bias, rate and slope.
+    /// The Kalman filter over the biases of all headings.
+    Kalman,
+    /// The observer of version 0.1: such a table runs the bias filter.
     Observer,
 }
 
-/// What `noise_deg2_s` may be.
-pub const NOISE_RANGE_DEG2_S: RangeInclusive<f64> = 0.01..=1e6;
-/// What `walk_deg_per_s` may be.
-pub const WALK_RANGE_DEG_PER_S: RangeInclusive<f64> = 0.0..=1.0;
-/// What `slope` may be.
-pub const SLOPE_RANGE: RangeInclusive<f64> = 0.0..=1.0;
-
-/// One in the units of the observer's variances.
-const ONE: f64 = 1_073_741_824.0;
-/// Just under half: the observer's largest variance.
-const LARGEST: f64 = ONE / 2.0 - 1.0;
-
 impl DriftKeys {
-    /// The observer with the parameters of the reference arm.
+    /// The bias filter with the priors and noise of BNO055 units.
     #[must_use]
-    pub const fn observer() -> Self {
+    pub fn kalman() -> Self {
         Self {
-            kind: DriftKind::Observer,
-            noise_deg2_s: Self::noise_deg2_s(),
+            kind: DriftKind::Kalman,
             start_deg: Self::start_deg(),
+            straightness_deg: Self::straightness_deg(),
             rate_deg_per_s: Self::rate_deg_per_s(),
-            walk_deg_per_s: Self::walk_deg_per_s(),
-            slope: Self::slope(),
-            gate_deg: Self::gate_deg(),
-            patience_s: Self::patience_s(),
-            jump_deg: Self::jump_deg(),
-            still_deg: Self::still_deg(),
-            doubt_deg: Self::doubt_deg(),
+            angle_random_walk_deg_per_sqrt_s: Self::angle_random_walk(),
+            rate_random_walk_deg_per_s_sqrt_s: Self::rate_random_walk(),
+            offset_deg: Self::offset_deg(),
+            offset_s: Self::offset_s(),
         }
     }
 
-    const fn noise_deg2_s() -> f64 {
-        50.0
+    const fn start_deg() -> f64 {
+        0.1
     }
 
-    const fn start_deg() -> f64 {
+    const fn straightness_deg() -> f64 {
         0.3
     }
 
@@ -99,73 +138,48 @@ impl DriftKeys {
         0.05
     }
 
-    const fn walk_deg_per_s() -> f64 {
+    const fn angle_random_walk() -> f64 {
+        0.01
+    }
+
+    const fn rate_random_walk() -> f64 {
         2e-4
     }
 
-    const fn slope() -> f64 {
-        0.15
-    }
-
-    const fn gate_deg() -> f64 {
-        8.0
-    }
-
-    const fn patience_s() -> f64 {
-        30.0
-    }
-
-    const fn jump_deg() -> f64 {
-        12.0
-    }
-
-    const fn still_deg() -> f64 {
+    const fn offset_deg() -> f64 {
         1.0
     }
 
-    const fn doubt_deg() -> f64 {
-        2.5
+    const fn offset_s() -> f64 {
+        2000.0
     }
 
     pub(crate) fn check(&self) -> Result<(), FileError> {
-        within("drift.noise_deg2_s", self.noise_deg2_s, NOISE_RANGE_DEG2_S)?;
-        within("drift.start_deg", self.start_deg, 0.0..=360.0)?;
-        within("drift.rate_deg_per_s", self.rate_deg_per_s, 0.0..=10.0)?;
-        within("drift.walk_deg_per_s", self.walk_deg_per_s, WALK_RANGE_DEG_PER_S)?;
-        within("drift.slope", self.slope, SLOPE_RANGE)?;
-        within("drift.gate_deg", self.gate_deg, 0.1..=180.0)?;
-        within("drift.patience_s", self.patience_s, 0.0..=1e4)?;
-        within("drift.jump_deg", self.jump_deg, 0.1..=180.0)?;
-        within("drift.still_deg", self.still_deg, 0.0..=180.0)?;
-        within("drift.doubt_deg", self.doubt_deg, 0.0..=180.0)
+        within("drift.start_deg", self.start_deg, 0.0..=30.0)?;
+        within("drift.straightness_deg", self.straightness_deg, 0.0..=10.0)?;
+        within("drift.rate_deg_per_s", self.rate_deg_per_s, 1e-4..=0.2)?;
+        within("drift.angle_random_walk_deg_per_sqrt_s", self.angle_random_walk_deg_per_sqrt_s, 1e-3..=1.0)?;
+        within("drift.rate_random_walk_deg_per_s_sqrt_s", self.rate_random_walk_deg_per_s_sqrt_s, 1e-5..=0.01)?;
+        within("drift.offset_deg", self.offset_deg, 0.0..=20.0)?;
+        within("drift.offset_s", self.offset_s, 64.0..=1e6)
     }
 
-    /// R for values at `rate_hz`, degrees².
-    pub(crate) fn measurement_deg2(&self, rate_hz: f64) -> f64 {
-        self.noise_deg2_s * rate_hz
-    }
-
-    /// The observer's parameters for values at `rate_hz`.
-    pub(crate) fn bake(&self, rate_hz: f64) -> ObserverRule {
-        let measurement_deg2 = self.measurement_deg2(rate_hz);
-        let share = |variance_deg2: f64| (variance_deg2 / measurement_deg2 * ONE).round().min(LARGEST) as i32;
-        let variance = |deviation_deg: f64| share(deviation_deg * deviation_deg);
-        let degrees = |degrees: f64| Turns::from_rad(degrees.to_radians());
-        let walk_deg = self.walk_deg_per_s * ObserverRule::RATE_S;
-        ObserverRule {
-            step: (f64::powi(2.0, 32) / (rate_hz * ObserverRule::RATE_S)).round() as u32,
-            prior: [
-                variance(self.start_deg),
-                variance(self.rate_deg_per_s * ObserverRule::RATE_S),
-                variance(self.slope * 90.0),
-            ],
-            // A variance that never grows would come to nothing, and the observer to believe nobody.
-            growth: [0, share(walk_deg * walk_deg / rate_hz).max(1), 1],
-            gate: degrees(self.gate_deg),
-            patience: (self.patience_s * rate_hz).round() as u16,
-            jump: degrees(self.jump_deg),
-            still: degrees(self.still_deg),
-            doubt: variance(self.doubt_deg),
+    /// The bias filter's configuration.
+    pub(crate) fn bake(&self) -> BiasFilterConfig {
+        let root_unit = TIME_UNIT_S.sqrt();
+        BiasFilterConfig {
+            initial_bias: variance(self.start_deg),
+            straightness: variance(self.straightness_deg),
+            initial_rate: variance(self.rate_deg_per_s * TIME_UNIT_S),
+            bias_noise: variance(self.angle_random_walk_deg_per_sqrt_s * root_unit),
+            rate_noise: variance(self.rate_random_walk_deg_per_s_sqrt_s * TIME_UNIT_S * root_unit),
+            offset: variance(self.offset_deg),
+            offset_rate: Q::from_f64(TIME_UNIT_S / self.offset_s),
         }
     }
+}
+
+/// The scaled variance of a standard deviation in degrees.
+pub(crate) fn variance(deviation_deg: f64) -> Q {
+    Q::from_f64(deviation_deg.to_radians().powi(2) * VARIANCE_SCALE)
 }

@@ -7,10 +7,11 @@ use serde::de::{DeserializeOwned, Error};
 use serde::{Deserialize, Deserializer, Serialize};
 use toml_edit::Item;
 
+use crate::bend::{BendErrorKeys, CurveKeys, MemoryKeys};
 use crate::drift::{DriftKeys, DriftKind};
 use crate::place::{line_and_column, line_of};
 use crate::tuning::TuningKeys;
-use crate::uncertainty::{AlikeKeys, ContactKeys, UncertaintyKeys};
+use crate::uncertainty::{ContactKeys, CoupledKeys, UncertaintyKeys};
 
 /// The `format` that this crate reads and writes.
 const FORMAT: u32 = 1;
@@ -37,13 +38,13 @@ pub struct ArmFile {
     /// The drift anchor.
     #[serde(default)]
     pub anchor: AnchorKeys,
-    /// Which correction takes out the IMUs' drift; `None`: the anchor.
+    /// Drift correction of the IMUs; `None`: the anchor.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub drift: Option<DriftKeys>,
-    /// When something touches the arm; `None`: nobody looks.
+    /// Contact-detection thresholds; `None` disables detection.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub contact: Option<ContactKeys>,
-    /// How far an estimate may be off; `None`: nobody says.
+    /// Error sources of the estimates; `None`: no covariance is computed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub uncertainty: Option<UncertaintyKeys>,
     /// How the filters were tuned, where they were.
@@ -102,12 +103,18 @@ pub struct SegmentKeys {
     /// The bend sensors a and b, as many as there are; `None` in an arm description.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub bend: Option<Vec<BendKeys>>,
-    /// What corrects their angle for the way that they came, up to three plays; none where it does not help.
+    /// Hysteresis compensation of their mean, up to three plays.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub hysteresis: Vec<PlayKeys>,
-    /// The earlier segment that bends alike, where there is one.
+    /// Errors of the bend sensors, from the calibration sweep.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub alike: Option<AlikeKeys>,
+    pub bend_error: Option<BendErrorKeys>,
+    /// Sensitivity of the IMU's heading: what it reads of a turn.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub imu_scale: Option<f64>,
+    /// The earlier segment that bends alike, where there is one.
+    #[serde(default, skip_serializing_if = "Option::is_none", alias = "alike")]
+    pub coupled_to: Option<CoupledKeys>,
     /// KF_orient's parameters, rad² and rad²/s; derived from the maps' `rmse_deg` where there are none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub orient: Option<NoiseKeys>,
@@ -142,14 +149,21 @@ pub struct BendKeys {
     /// Lowest and highest voltage of the calibration, V; where it is not known, those of half a turn.
     #[serde(default, deserialize_with = "pair", skip_serializing_if = "Option::is_none")]
     pub volts: Option<[f64; 2]>,
+    /// A curve that takes the quadratic's place.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub curve: Option<CurveKeys>,
+    /// Creep and hysteresis of this sensor.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub memory: Option<MemoryKeys>,
 }
 
 /// One play of a segment's hysteresis.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PlayKeys {
-    /// From its middle to either edge.
-    pub half_width_deg: f64,
+    /// Radius: from its middle to either edge.
+    #[serde(alias = "half_width_deg")]
+    pub radius_deg: f64,
     /// Of the difference of the bend angle and the play, in the correction.
     pub weight: f64,
 }
@@ -278,10 +292,10 @@ impl ArmFile {
         document.to_string()
     }
 
-    /// The drift observer, if that is what corrects the drift.
+    /// The bias filter, if that corrects the drift.
     #[must_use]
-    pub fn observer(&self) -> Option<&DriftKeys> {
-        self.drift.as_ref().filter(|drift| drift.kind == DriftKind::Observer)
+    pub fn bias_filter(&self) -> Option<&DriftKeys> {
+        self.drift.as_ref().filter(|drift| drift.kind != DriftKind::Anchor)
     }
 
     /// Length of the straight arm, mm.
@@ -311,7 +325,7 @@ fn read<T: DeserializeOwned>(text: &str) -> Result<T, FileError> {
 }
 
 /// An array of two numbers, no more.
-fn pair<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<[f64; 2]>, D::Error> {
+pub(crate) fn pair<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<[f64; 2]>, D::Error> {
     let numbers = Vec::deserialize(deserializer)?;
     let found = numbers.len();
     let pair = numbers.try_into().map_err(|_: Vec<f64>| D::Error::custom(format!("{found} numbers, expected 2")))?;

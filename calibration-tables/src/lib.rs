@@ -4,7 +4,7 @@
 //! [`ArmFile`] is the TOML file as it stands, in the units that people read (mm, degrees, volts). [`ArmFile::load`]
 //! refuses what the estimator could not use and names the key. A file with geometry alone is an *arm description*, what
 //! a calibration starts from; once every segment says what bend sensors it has, it is a *table*, and
-//! [`ArmFile::bake`] turns it into an [`estimator_core::Table`] for one sample rate.
+//! [`ArmFile::bake`] turns it into an [`estimator_core::ArmConfig`] for one sample rate.
 //!
 //! ```
 //! use calibration_tables::ArmFile;
@@ -23,12 +23,13 @@
 //!     "#,
 //! )?;
 //! let baked = table.bake::<Q>(100.0)?;
-//! let table = baked.table();
-//! assert!(Estimator::<Q, 1, 100>::new(&table).is_ok());
+//! let config = baked.config();
+//! assert!(Estimator::<Q, 1, 100>::new(&config).is_ok());
 //! # Ok::<(), calibration_tables::FileError>(())
 //! ```
 
 mod bake;
+mod bend;
 mod check;
 mod drift;
 mod file;
@@ -39,15 +40,16 @@ mod tuning;
 mod uncertainty;
 
 pub use bake::Baked;
+pub use bend::{BendErrorKeys, CURVE_POINTS, CurveKeys, MemoryKeys};
 pub use check::H_RANGE;
-pub use drift::{DriftKeys, DriftKind, NOISE_RANGE_DEG2_S, SLOPE_RANGE, WALK_RANGE_DEG_PER_S};
+pub use drift::{DriftKeys, DriftKind};
 pub use file::{
     AnchorKeys, ArmFile, BendKeys, FileError, MAX_SEGMENTS, MAX_WINDOW, NoiseKeys, PlayKeys, SegmentKeys, Side,
     TareKeys,
 };
 pub use noise::{LAG_S, RMSE_DEG_UNKNOWN};
-pub use tuning::{ObserverTuningKeys, RmseKeys, Stopped, TuningKeys};
-pub use uncertainty::{AlikeKeys, ContactKeys, RATIO_RANGE, UncertaintyKeys};
+pub use tuning::{DriftTuningKeys, RmseKeys, Stopped, TuningKeys};
+pub use uncertainty::{ContactKeys, CoupledKeys, RATIO_RANGE, UncertaintyKeys};
 
 /// The reference arm's description, `arms/planar-6.toml`.
 pub const PLANAR_6_ARM: &str = include_str!("../arms/planar-6.toml");

@@ -1,9 +1,9 @@
 //! `[tuning]`: what a table was tuned on, and what came of it.
 
+use serde::de::IgnoredAny;
 use serde::{Deserialize, Serialize};
 
 use crate::check::{ensure, within};
-use crate::drift::{NOISE_RANGE_DEG2_S, SLOPE_RANGE, WALK_RANGE_DEG_PER_S};
 use crate::file::FileError;
 
 /// Largest RMSE that a table may record, mm or degrees.
@@ -24,9 +24,12 @@ pub struct TuningKeys {
     /// What all variances of `[uncertainty]` were multiplied by, as far as the format goes; `None` where the table has none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub variances: Option<f64>,
-    /// The drift observer's own parameters; `None` where the anchor corrects the drift.
+    /// Parameters of the bias filter; `None` where the anchor corrects the drift.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub observer: Option<ObserverTuningKeys>,
+    pub drift: Option<DriftTuningKeys>,
+    /// The record of version 0.1's observer: accepted, not kept.
+    #[serde(default, skip_serializing)]
+    pub observer: IgnoredAny,
     /// Errors on the sessions but for what was held back, with the table from before.
     pub before: RmseKeys,
     /// The same with this table.
@@ -37,18 +40,20 @@ pub struct TuningKeys {
     pub held_back_after: RmseKeys,
 }
 
-/// The observer's parameters, each before and after.
+/// The bias filter's parameters, each before and after.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct ObserverTuningKeys {
+pub struct DriftTuningKeys {
     /// Runs of the estimator that were tried.
     pub runs: u64,
     /// Of `[drift]`, as the others are.
-    pub noise_deg2_s: [f64; 2],
+    pub rate_deg_per_s: [f64; 2],
     /// Of `[drift]`.
-    pub walk_deg_per_s: [f64; 2],
+    pub rate_random_walk_deg_per_s_sqrt_s: [f64; 2],
     /// Of `[drift]`.
-    pub slope: [f64; 2],
+    pub angle_random_walk_deg_per_sqrt_s: [f64; 2],
+    /// Of `[drift]`.
+    pub offset_deg: [f64; 2],
 }
 
 /// Root mean square errors of fusion over all samples.
@@ -79,7 +84,6 @@ impl TuningKeys {
         let (kept, iterations) = (self.kept, self.iterations);
         ensure(kept <= iterations, "tuning.kept", &kept, &format!("at most the {iterations} of tuning.iterations"))?;
         within("tuning.variances", self.variances.unwrap_or(1.0), 1.0..=f64::MAX)?;
-        self.observer.as_ref().map_or(Ok(()), ObserverTuningKeys::check)?;
         let parts = [
             ("before", &self.before),
             ("after", &self.after),
@@ -87,19 +91,6 @@ impl TuningKeys {
             ("held_back_after", &self.held_back_after),
         ];
         parts.into_iter().try_for_each(|(name, part)| part.check(&format!("tuning.{name}")))
-    }
-}
-
-impl ObserverTuningKeys {
-    fn check(&self) -> Result<(), FileError> {
-        let keys = [
-            ("noise_deg2_s", self.noise_deg2_s, NOISE_RANGE_DEG2_S),
-            ("walk_deg_per_s", self.walk_deg_per_s, WALK_RANGE_DEG_PER_S),
-            ("slope", self.slope, SLOPE_RANGE),
-        ];
-        keys.into_iter().try_for_each(|(name, values, range)| {
-            values.into_iter().try_for_each(|value| within(&format!("tuning.observer.{name}"), value, range.clone()))
-        })
     }
 }
 

@@ -2,7 +2,9 @@
 
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
-use estimator_core::{AnchorRule, BendMap, Estimator, ImuReading, Phase, Q, Sample, Scalar, Segment, Table, Turns};
+use estimator_core::{
+    AnchorConfig, ArmConfig, BendMap, Estimator, ImuReading, Phase, Q, Sample, Scalar, SegmentConfig, Turns,
+};
 
 const SEGMENTS: [usize; 3] = [6, 12, 16];
 /// Longer than the anchor's window, so that its sums run as they do for hours.
@@ -12,9 +14,9 @@ fn main() {
     divan::main();
 }
 
-fn segments<S: Scalar>(count: usize) -> Vec<Segment<S>> {
+fn segments<S: Scalar>(count: usize) -> Vec<SegmentConfig<S>> {
     let map = BendMap::from_volts(0.1, 1.2, -2.0, [0.5, 2.5]);
-    (0..count).map(|_| Segment { bend: [Some(map); 2], ..Segment::bare(0.080, 0.017) }).collect()
+    (0..count).map(|_| SegmentConfig { bend: [Some(map); 2], ..SegmentConfig::uncalibrated(0.080, 0.017) }).collect()
 }
 
 /// An arm that swings, with drift; no two samples are the same.
@@ -34,19 +36,19 @@ fn samples(count: usize) -> Vec<Sample<16>> {
 
 fn steps<S: Scalar>(bencher: Bencher, count: usize) {
     let segments = segments::<S>(count);
-    let anchor = AnchorRule {
+    let anchor = AnchorConfig {
         window: 100,
         rate_millihertz: 10_000,
         sample_rate_millihertz: 100_000,
         threshold: Turns::from_bits(5_965_232),
     };
-    let table = Table { tare_samples: 100, anchor, ..Table::bare(&segments) };
+    let table = ArmConfig { tare_samples: 100, anchor, ..ArmConfig::uncalibrated(&segments) };
     let samples = samples(count);
     let mut estimator = Estimator::<S, 16, 100>::new(&table).expect("a valid table");
     // All samples at once, as one is shorter than the clock's own noise; the counter divides by them.
     bencher.counter(ItemsCount::new(SAMPLES)).bench_local(|| {
         for sample in &samples {
-            black_box(estimator.step(black_box(sample)));
+            black_box(estimator.update_full(black_box(sample)));
         }
     });
 }

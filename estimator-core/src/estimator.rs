@@ -1,343 +1,319 @@
-//! The pipeline: one [`Sample`] in, one [`Estimate`] out, by all four methods.
-
-use core::ops::Range;
+//! The pipeline: one [`Sample`] in, one [`Estimate`] or [`Shape`] out.
 
 use heapless::Vec;
 use nalgebra::Vector2;
 
-use crate::anchor::Pace;
-use crate::angle::Angle;
-use crate::beyond::{Beyond, Seen};
-use crate::contact::{Contact, ContactRule, Contacts};
-use crate::imu::Tangent;
-use crate::pcc::{Link, SegmentShape, chain};
-use crate::sample::{ImuReading, Sample};
-use crate::scalar::Scalar;
-use crate::state::{State, Thetas, bend_angle};
-use crate::table::{Segment, Table, TableError};
-use crate::uncertainty::{Sources, Spread, Uncertainties, Uncertainty};
+use crate::config::{ArmConfig, ConfigError, UncertaintyConfig};
+use crate::contact::monitor::ContactMonitor;
+use crate::drift::bias_filter::BiasFilter;
+use crate::drift::decimator::Decimator;
+use crate::drift::moving_average::MovingAverage;
+use crate::drift::{CorrectedArm, DriftCorrection, SensedArm};
+use crate::kinematics::covariance::{CovariancePropagation, lever_arm};
+use crate::kinematics::forward::forward_kinematics;
+use crate::numeric::fused::FusedOps;
+use crate::numeric::phase::Angle;
+use crate::numeric::q::Q;
+use crate::segment::SegmentState;
+use crate::sensing::bend_sensors::BendAngles;
+use crate::sensing::heading::SegmentHeading;
+use crate::types::{Contacts, Estimate, Method, Sample, SegmentShape, Shape, Uncertainties, Uncertainty};
 
-/// By what the shape is known.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Method {
-    /// Bend sensors alone.
-    Bend,
-    /// Raw IMUs, drift and all (the paper's IMU_O).
-    ImuO,
-    /// Drift-corrected IMUs (the paper's IMU_C).
-    ImuC,
-    /// Kalman-fused.
-    Fusion,
+/// State of the pipeline for an arm of up to `N` segments and an anchor of up to `W` values.
+///
+/// A method that cannot estimate anything yet, or not from this sample, gives `None`: imu_o and imu_c until the tare is
+/// complete, every method but fusion where a reading is missing. A table without any bend sensor has neither drift
+/// correction nor fusion, but imu_o alone. See the [crate's example](crate).
+#[derive(Debug, Clone)]
+pub struct Estimator<'t, S, const N: usize, const W: usize> {
+    config: &'t ArmConfig<'t, S>,
+    has_bend_sensors: bool,
+    decimator: Decimator,
+    segments: Vec<SegmentState<S>, N>,
+    drift: Drift<N, W>,
+    contact: ContactMonitor<N>,
+    /// Whether θ_c and θ_bend of each segment were known in the newest sample.
+    measured: [Measured; N],
+    fused: Shape<S, N>,
 }
 
-impl Method {
-    /// All methods, in the order of the files' columns.
-    pub const ALL: [Self; 4] = [Self::Bend, Self::ImuO, Self::ImuC, Self::Fusion];
+/// Drift correction by what the configuration asks for. The bias filter works in fixed point whatever `S` is, so that every
+/// number type takes the same decisions.
+#[derive(Debug, Clone)]
+#[expect(clippy::large_enum_variant, reason = "made in place, and never moved")]
+enum Drift<const N: usize, const W: usize> {
+    MovingAverage(MovingAverage<N, W>),
+    BiasFilter(BiasFilter<Q, N>),
+}
 
-    /// The method's name in files: `bend`, `imu_o`, `imu_c`, `fusion`.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
+/// Which of a segment's two angles a sample has.
+#[derive(Debug, Clone, Copy, Default)]
+struct Measured {
+    imu: bool,
+    bend: bool,
+}
+
+/// Angles of one sample, sensed and corrected.
+struct Processed<S, const N: usize> {
+    sensed: SensedArm<S, N>,
+    corrected: CorrectedArm<N>,
+}
+
+impl<const N: usize, const W: usize> Drift<N, W> {
+    fn correct<S: FusedOps>(&mut self, config: &ArmConfig<S>, sensed: &SensedArm<S, N>) -> CorrectedArm<N> {
         match self {
-            Self::Bend => "bend",
-            Self::ImuO => "imu_o",
-            Self::ImuC => "imu_c",
-            Self::Fusion => "fusion",
+            Self::MovingAverage(anchors) => anchors.correct(config, sensed),
+            Self::BiasFilter(filter) => filter.correct(config, sensed),
         }
     }
 }
 
-/// What one sample says of one segment.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SegmentEstimate<S> {
-    /// From the bend sensors that were read.
-    pub bend: Option<Link<S>>,
-    /// θ_imu,i from the raw IMUs; `None` until the tare is complete.
-    pub imu_o: Option<Angle<S>>,
-    /// From the drift-corrected IMUs.
-    pub imu_c: Option<Link<S>>,
-    /// From the filters; `None` before their first measurement.
-    pub fusion: Option<Fused<S>>,
-    /// How many of the segment's bend sensors were read.
-    pub bend_sensors_read: u8,
-    /// Whether the segment's IMU gave a heading.
-    pub imu_read: bool,
-}
-
-/// What the filters say of one segment.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Fused<S> {
-    /// θ_i of KF_orient and P_i of KF_coord.
-    pub link: Link<S>,
-    /// Variance of θ_i, as a ratio to the larger R of KF_orient.
-    pub theta_variance: S,
-    /// Variance of each of P_i's two coordinates, as a ratio to the larger R of KF_coord.
-    pub end_variance: S,
-}
-
-/// What one sample says of the arm.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Estimate<S, const N: usize> {
-    /// Time of the sample, µs.
-    pub time_us: u64,
-    /// The segments from the base to the tip.
-    pub segments: Vec<SegmentEstimate<S>, N>,
-}
-
-/// The arm's shape by one method, from the base to the tip.
-pub type Shape<S, const N: usize> = Vec<SegmentShape<S>, N>;
-
-/// The state of the pipeline for an arm of up to `N` segments and an anchor of up to `W` values.
-///
-/// A method that cannot say anything yet, or not of this sample, gives `None`: imu_o and imu_c until the tare is
-/// complete, every method but fusion where a reading is missing. A table without any bend sensor has neither anchor nor
-/// fusion, and only imu_o speaks. See the [crate's example](crate).
-#[derive(Debug, Clone)]
-pub struct Estimator<'t, S, const N: usize, const W: usize> {
-    table: &'t Table<'t, S>,
-    has_bend_sensors: bool,
-    is_beyond_the_paper: bool,
-    pace: Pace,
-    has_value: bool,
-    states: Vec<State<S, W>, N>,
-    fused: Shape<S, N>,
-}
-
-impl<'t, S: Scalar, const N: usize, const W: usize> Estimator<'t, S, N, W> {
+impl<'t, S: FusedOps, const N: usize, const W: usize> Estimator<'t, S, N, W> {
     /// An estimator at the start of a session.
     ///
     /// # Errors
-    /// [`TableError`] where the table has more segments or a longer window than there is room for, or none at all.
-    pub fn new(table: &'t Table<'t, S>) -> Result<Self, TableError> {
-        let mut estimator = Self::unstarted(table);
+    /// [`ConfigError`] where the arm has more segments or a longer window than there is room for, or none at all.
+    pub fn new(config: &'t ArmConfig<'t, S>) -> Result<Self, ConfigError> {
+        let mut estimator = Self::const_new(config);
         estimator.start()?;
         Ok(estimator)
     }
 
-    /// An estimator that knows no segment until it is [started](Self::start): the value of a static, where several
-    /// kilobytes are better made in place than moved over a small stack.
+    /// An estimator without segments until it is [started](Self::start): the value of a static, where several kilobytes are
+    /// better made in place than moved over a small stack.
     #[must_use]
-    pub const fn unstarted(table: &'t Table<'t, S>) -> Self {
+    pub const fn const_new(config: &'t ArmConfig<'t, S>) -> Self {
         Self {
-            table,
+            config,
             has_bend_sensors: false,
-            is_beyond_the_paper: false,
-            pace: Pace::new(),
-            has_value: false,
-            states: Vec::new(),
+            decimator: Decimator::new(),
+            segments: Vec::new(),
+            drift: Drift::MovingAverage(MovingAverage::new()),
+            contact: ContactMonitor::new(),
+            measured: [Measured { imu: false, bend: false }; N],
             fused: Vec::new(),
         }
     }
 
-    /// Begins a session, whatever was before.
+    /// Begins a session, and forgets the one before.
     ///
     /// # Errors
-    /// As [`Self::new`]; the estimator then knows no segment.
-    pub fn start(&mut self) -> Result<(), TableError> {
-        let Self { table, .. } = *self;
-        self.states.clear();
+    /// As [`Self::new`]; the estimator then has no segment.
+    pub fn start(&mut self) -> Result<(), ConfigError> {
+        let config = self.config;
+        self.segments.clear();
         self.fused.clear();
-        self.pace = Pace::new();
-        self.has_value = false;
-        let window = table.anchor.window;
+        self.decimator = Decimator::new();
+        self.contact = ContactMonitor::new();
+        self.measured = [Measured::default(); N];
+        let window = config.anchor.window;
         if window == 0 || usize::from(window) > W {
-            return Err(TableError::Window { found: window, room: W });
+            return Err(ConfigError::Window { found: window, room: W });
         }
-        let found = table.segments.len();
+        let found = config.segments.len();
         if found == 0 || found > N {
-            return Err(TableError::Segments { found, room: N });
+            return Err(ConfigError::Segments { found, room: N });
         }
-        self.has_bend_sensors = table.segments.iter().any(|segment| segment.bend.iter().any(Option::is_some));
-        self.is_beyond_the_paper = table.is_beyond_the_paper();
-        for (place, segment) in table.segments.iter().enumerate() {
+        self.has_bend_sensors = config.segments.iter().any(|segment| segment.bend.iter().any(Option::is_some));
+        self.drift = match config.bias_filter {
+            Some(_) => Drift::BiasFilter(BiasFilter::new()),
+            None => Drift::MovingAverage(MovingAverage::new()),
+        };
+        for segment in config.segments {
             // There is room: it was checked.
-            let _ = self.states.push(State::new(place, segment, table));
+            let _ = self.segments.push(SegmentState::new(segment, config.tare_samples));
             let _ = self.fused.push(SegmentShape { theta: None, end: None });
         }
         Ok(())
     }
 
-    /// Takes one sample. The cost is linear in the number of segments and allocates nothing.
-    pub fn step(&mut self, sample: &Sample<N>) -> Estimate<S, N> {
-        let mut segments = Vec::new();
-        self.take(sample, |state, thetas| {
-            let _ = segments.push(state.estimate(&thetas)); // There is room: `start` has checked.
-        });
-        self.chain_fused();
-        Estimate { time_us: sample.time_us, segments }
-    }
-
-    /// Takes one sample as [`Estimator::step`] does and gives the fused shape alone, which costs the board less than both.
+    /// Takes one sample; gives the fused shape. Allocates nothing.
     ///
-    /// The numbers are those of [`Estimator::shape`] by [`Method::Fusion`], to the bit.
-    #[inline(never)]
-    pub fn fuse(&mut self, sample: &Sample<N>) -> &Shape<S, N> {
-        self.take(sample, |_, _| ());
-        // Over the states again, which leaves more of the registers to each of the two.
-        self.chain_fused();
+    /// The numbers are those of [`Estimator::update_full`] and [`Estimator::shape`] by [`Method::Fusion`], to the bit.
+    pub fn update(&mut self, sample: &Sample<N>) -> &Shape<S, N> {
+        self.process(sample);
         &self.fused
     }
 
-    #[inline]
-    fn chain_fused(&mut self) {
-        let Self { states, fused, .. } = self;
-        let links = states.iter().map(|state| state.fused().map(|fused| fused.link));
-        for (segment, shape) in fused.iter_mut().zip(chain(links)) {
-            *segment = shape;
-        }
-    }
-
-    #[inline]
-    fn take(&mut self, sample: &Sample<N>, then: impl FnMut(&State<S, W>, Thetas<S>)) {
-        // Two copies of one function, so that the paper's method does not pay for what goes beyond it.
-        if self.is_beyond_the_paper {
-            self.take_by::<true>(sample, then);
-        } else {
-            self.take_by::<false>(sample, then);
-        }
-    }
-
-    /// Takes one sample, segment by segment from the base to the tip, and tells `then` of each.
-    #[inline]
-    fn take_by<const BEYOND: bool>(&mut self, sample: &Sample<N>, mut then: impl FnMut(&State<S, W>, Thetas<S>)) {
-        let Self { table, has_bend_sensors, pace, has_value, states, .. } = self;
-        let Table { anchor: rule, .. } = table;
-        let has_bend_sensors = *has_bend_sensors;
-        let slot = pace.tick(rule);
-        *has_value |= BEYOND && slot.is_complete();
-        let phases = if BEYOND && *has_value { pace.phases(rule, slot) } else { 0..0 };
-        let mut before = &Tangent::BASE;
-        let readings = sample.bend.iter().zip(&sample.imu);
-        for (state, (counts, imu)) in states.iter_mut().zip(readings) {
-            let imu_read = state.heading.read(imu.as_ref().and_then(ImuReading::heading)).is_some();
-            let (bend, bend_sensors_read) = bend_angle(&state.maps, *counts);
-            let bend = if BEYOND { bend.map(|theta| state.beyond.memory.correct(theta)) } else { bend };
-            let [difference, zero] = state.heading.tangent().minus(before);
+    /// Takes one sample; gives the estimate by every method.
+    pub fn update_full(&mut self, sample: &Sample<N>) -> Estimate<S, N> {
+        let Processed { sensed, corrected } = self.process(sample);
+        let mut segments = Vec::new();
+        let mut below = &SegmentHeading::BASE;
+        let angles = sensed.bend.iter().zip(&sensed.headings).zip(corrected.imu);
+        for (segment, ((bend, heading), imu_c)) in self.segments.iter().zip(angles) {
+            let [difference, zero] = heading.relative_to(below);
+            below = heading;
             let imu_o = difference.zip(zero).map(|(imu, zero)| Angle::from(imu - zero));
-            let imu_c = if BEYOND {
-                let theta_c = state.corrected(table, slot, &phases, [difference, zero], bend.map(S::to_turns));
-                theta_c.filter(|_| has_bend_sensors).map(Angle::<S>::from)
-            } else {
-                state.anchor.push(slot, difference.zip(bend).map(|(imu, bend)| imu - bend.to_turns()));
-                difference
-                    .zip(zero)
-                    .filter(|_| has_bend_sensors)
-                    .map(|(imu, zero)| Angle::<S>::from(imu - state.anchor.zero(rule, zero)))
-            };
-            state.fuse(imu_c.map(|theta| theta.rest), bend);
-            if BEYOND {
-                state.beyond.seen = Seen { imu: imu_c.is_some(), bend: bend.is_some() };
-            }
-            let state = &*state;
-            before = state.heading.tangent();
-            then(state, Thetas { bend, imu_o, imu_c, bend_sensors_read, imu_read });
+            let _ = segments.push(segment.estimate(bend, imu_o, imu_c)); // There is room: `start` has checked.
         }
-        if BEYOND && let Some(rule) = &table.contact {
-            compare(rule, &phases, table.segments, states);
+        Estimate { time_us: sample.time_us, segments }
+    }
+
+    /// The stages, in the order of the data.
+    fn process(&mut self, sample: &Sample<N>) -> Processed<S, N> {
+        let sensed = self.sense(sample);
+        let mut corrected = self.drift.correct(self.config, &sensed);
+        if !self.has_bend_sensors {
+            corrected = CorrectedArm::UNKNOWN;
+        }
+        self.fuse(&sensed, &corrected);
+        self.detect_contact(&sensed, &corrected);
+        Processed { sensed, corrected }
+    }
+
+    /// Sensing: counts to bend angles, IMU readings to headings.
+    fn sense(&mut self, sample: &Sample<N>) -> SensedArm<S, N> {
+        let unread = BendAngles { sensors: [None; 2], mean: None, is_extrapolated: false };
+        let mut sensed = SensedArm {
+            time_us: sample.time_us,
+            decimated: self.decimator.tick(&self.config.anchor),
+            bend: [unread; N],
+            headings: [SegmentHeading::BASE; N],
+        };
+        let readings = sample.bend.iter().zip(&sample.imu);
+        let angles = sensed.bend.iter_mut().zip(&mut sensed.headings);
+        let segments = self.segments.iter_mut().zip(self.config.segments);
+        for (((segment, config), (counts, imu)), (bend, heading)) in segments.zip(readings).zip(angles) {
+            (*bend, *heading) = segment.sense(config, *counts, imu.as_ref(), sample.time_us);
+        }
+        sensed
+    }
+
+    /// Fusion, and forward kinematics of what it gives.
+    fn fuse(&mut self, sensed: &SensedArm<S, N>, corrected: &CorrectedArm<N>) {
+        let filters = matches!(self.drift, Drift::MovingAverage(_));
+        let angles = sensed.bend.iter().zip(corrected.imu.iter().zip(corrected.fused)).zip(&mut self.measured);
+        for (segment, ((bend, (theta_c, fused)), measured)) in self.segments.iter_mut().zip(angles) {
+            if filters {
+                segment.filter(*theta_c, bend.mean);
+            } else {
+                segment.bend_to(fused);
+            }
+            *measured = Measured { imu: theta_c.is_some(), bend: bend.mean.is_some() };
+        }
+        let links = self.segments.iter().map(SegmentState::fused);
+        for (shape, segment) in self.fused.iter_mut().zip(forward_kinematics(links)) {
+            *shape = segment;
         }
     }
 
-    /// Whether something touches the segments, from the base to the tip; nothing where the table does not say how to tell.
+    fn detect_contact(&mut self, sensed: &SensedArm<S, N>, corrected: &CorrectedArm<N>) {
+        let Some(thresholds) = &self.config.contact else { return };
+        let mut angles = [None; N];
+        for ((both, theta_c), bend) in angles.iter_mut().zip(corrected.imu).zip(&sensed.bend) {
+            *both = theta_c.zip(bend.mean.map(S::to_turns));
+        }
+        self.contact.update(self.config, thresholds, self.decimator, sensed.decimated, &angles);
+    }
+
+    /// Contact of each segment, from the base to the tip; empty where the configuration disables detection.
     #[must_use]
     pub fn contacts(&self) -> Contacts<N> {
-        let Self { table, states, .. } = self;
-        let touched = self.touched();
-        let count = if table.contact.is_some() { states.len() } else { 0 };
-        let mut contacts: Contacts<N> =
-            all((0..count).map(|i| Contact { score_percent: 0, is_touched: touched >> i & 1 != 0 }));
-        for (i, (state, segment)) in states.iter().zip(table.segments).enumerate() {
-            let [bend, alike] = [state.beyond.touch.bend(), state.beyond.touch.alike()].map(|of| of.score_percent);
-            let other = segment.alike.map(|alike| usize::from(alike.segment));
-            for (place, score) in [(Some(i), bend.max(alike)), (other, alike)] {
-                if let Some(contact) = place.and_then(|place| contacts.get_mut(place)) {
-                    contact.score_percent = contact.score_percent.max(score);
-                }
-            }
+        match self.config.contact {
+            Some(_) => self.contact.contacts(self.config.segments),
+            None => Contacts::new(),
         }
-        contacts
     }
 
-    /// A bit for each segment that something touches, the first in the lowest place: less work than [`Self::contacts`].
+    /// A bit for each segment in contact, the first in the lowest place: less work than [`Self::contacts`].
     #[must_use]
-    pub fn touched(&self) -> u32 {
-        let Self { table, states, .. } = self;
-        let mut touched = 0;
-        for (i, (state, segment)) in states.iter().zip(table.segments).enumerate() {
-            let Beyond { touch, .. } = &state.beyond;
-            touched |= u32::from(touch.bend().is_touched) << i;
-            if touch.alike().is_touched {
-                let other = segment.alike.map_or(0, |alike| 1_u32.wrapping_shl(alike.segment.into()));
-                touched |= 1 << i | other;
-            }
-        }
-        touched
+    pub fn contact_mask(&self) -> u32 {
+        self.contact.contact_mask(self.config.segments)
     }
 
-    /// How far the fused shape of the newest sample may be off; empty where the table does not say what errors come from.
+    /// Uncertainty of the newest fused shape; empty where the configuration has no error sources.
     #[must_use]
-    pub fn uncertainties(&self) -> Uncertainties<S, N> {
-        let Self { table, states, fused, .. } = self;
-        let Some(rule) = &table.uncertainty else { return Vec::new() };
-        let touched = self.touched();
-        let mut spread = Spread::base(rule.heading, rule.end);
-        let (mut before, mut is_known) = (Vector2::zeros(), true);
-        // The base's heading has no error.
-        let mut headings = rule.heading;
+    pub fn uncertainties(&self) -> Uncertainties<N> {
+        let Some(sources) = &self.config.uncertainty else { return Vec::new() };
+        let headings = self.heading_covariance(sources);
+        let mut propagation = CovariancePropagation::new(headings, sources.end);
+        let zero = Q::from_f64(0.0);
+        let (mut before, mut is_known) = (Vector2::new(zero, zero), true);
         let mut uncertainties = Vec::new();
-        for (i, (state, shape)) in states.iter().zip(fused).enumerate() {
-            let Beyond { observer, seen, lever, .. } = &state.beyond;
-            let sources = Sources { seen: *seen, drift: observer.variance(), is_touched: touched >> i & 1 != 0 };
-            let theta = rule.theta(&sources);
-            let end = theta.zip(shape.end).filter(|_| is_known).map(|(theta, end)| {
-                spread.step(end - before, *lever, theta);
+        for (i, (shape, config)) in self.fused.iter().zip(self.config.segments).enumerate() {
+            let theta = shape.theta.map(|_| theta_variance(&headings, i)).filter(|_| self.is_measured(i));
+            let end = theta.zip(shape.end).filter(|_| is_known).map(|(_, end)| {
+                let end = Vector2::new(end.x.to_q(), end.y.to_q());
+                propagation.step(end - before, lever_arm(config));
                 before = end;
-                spread.end()
+                propagation.end()
             });
             is_known = end.is_some();
-            let _ = uncertainties.push(Uncertainty { theta: theta.map(|theta| theta + headings), end });
-            headings = rule.heading + rule.heading;
+            let _ = uncertainties.push(Uncertainty { theta, end });
         }
         uncertainties
+    }
+
+    fn is_measured(&self, i: usize) -> bool {
+        let measured = self.measured.get(i).is_some_and(|measured| measured.imu || measured.bend);
+        measured || matches!(self.drift, Drift::BiasFilter(_))
+    }
+
+    /// Covariance of all headings.
+    fn heading_covariance(&self, sources: &UncertaintyConfig) -> [[Q; N]; N] {
+        let mut headings = match &self.drift {
+            Drift::MovingAverage(_) => self.anchored_covariance(sources),
+            Drift::BiasFilter(filter) => self.filtered_covariance(sources, filter),
+        };
+        for (i, row) in headings.iter_mut().enumerate() {
+            if let Some(diagonal) = row.get_mut(i) {
+                *diagonal += sources.heading;
+            }
+        }
+        headings
+    }
+
+    /// Behind the anchors the errors of the bend angles are independent, and add up along the arm.
+    fn anchored_covariance(&self, sources: &UncertaintyConfig) -> [[Q; N]; N] {
+        let mask = self.contact_mask();
+        let mut sums = [Q::from_f64(0.0); N];
+        let mut sum = Q::from_f64(0.0);
+        for (i, (total, measured)) in sums.iter_mut().zip(&self.measured).enumerate() {
+            sum += if measured.imu { sources.theta } else { sources.bend };
+            if mask >> i & 1 != 0 {
+                sum += sources.contact;
+            }
+            *total = sum;
+        }
+        core::array::from_fn(|i| core::array::from_fn(|j| sums.get(i.min(j)).copied().unwrap_or(sum)))
+    }
+
+    /// The bias filter's covariance, and what absent headings add.
+    fn filtered_covariance(&self, sources: &UncertaintyConfig, filter: &BiasFilter<Q, N>) -> [[Q; N]; N] {
+        let mut headings =
+            core::array::from_fn(|i| core::array::from_fn(|j| sources.bias_share * filter.heading_covariance(i, j)));
+        for (i, (row, config)) in headings.iter_mut().zip(self.config.segments).enumerate() {
+            let row: &mut [Q; N] = row;
+            if let Some(diagonal) = row.get_mut(i) {
+                *diagonal += filter.absence_variance(&config.bend_error, i);
+            }
+        }
+        headings
     }
 
     /// The arm's shape by `method` at one of this estimator's estimates: bend angles, and the chain of the segments.
     #[must_use]
     pub fn shape(&self, estimate: &Estimate<S, N>, method: Method) -> Shape<S, N> {
-        let links = self.states.iter().zip(&estimate.segments).map(|(state, of)| match method {
+        let links = self.segments.iter().zip(&estimate.segments).map(|(segment, of)| match method {
             Method::Bend => of.bend,
-            Method::ImuO => of.imu_o.map(|theta| state.pcc.link(theta)),
+            Method::ImuO => of.imu_o.map(|theta| segment.link(theta)),
             Method::ImuC => of.imu_c,
-            Method::Fusion => of.fusion.map(|fused| fused.link),
+            Method::Fusion => of.fusion,
         });
-        all(chain(links))
-    }
-}
-
-/// One item a segment, for which there is room: [`Estimator::new`] has checked.
-#[inline]
-fn all<T, const N: usize>(segments: impl Iterator<Item = T>) -> Vec<T, N> {
-    let mut all = Vec::new();
-    for segment in segments {
-        let _ = all.push(segment);
-    }
-    all
-}
-
-/// Tells contact by the segments that bend alike: of each at its turn, which comes after that of the other.
-#[inline(never)]
-fn compare<S: Scalar, const W: usize>(
-    rule: &ContactRule,
-    phases: &Range<u32>,
-    segments: &[Segment<S>],
-    states: &mut [State<S, W>],
-) {
-    for (i, segment) in segments.iter().enumerate() {
-        if !states.get(i).is_some_and(|state| state.beyond.is_due(phases)) {
-            continue;
+        let mut shape = Vec::new();
+        for segment in forward_kinematics(links) {
+            let _ = shape.push(segment); // There is room: `start` has checked.
         }
-        let Some(alike) = segment.alike else { continue };
-        let there = states.get(usize::from(alike.segment)).and_then(|state| state.beyond.touch.theta);
-        let Some(State { beyond, .. }) = states.get_mut(i) else { continue };
-        let difference = beyond.touch.theta.zip(there).map(|(here, there)| alike.difference(here, there));
-        beyond.touch.compare(rule, difference);
+        shape
+    }
+}
+
+/// Variance of θ_i = Θ_i − Θ_{i−1}.
+fn theta_variance<const N: usize>(headings: &[[Q; N]; N], i: usize) -> Q {
+    let at = |i: usize, j: usize| headings.get(i).and_then(|row| row.get(j)).copied().unwrap_or(Q::from_f64(0.0));
+    match i.checked_sub(1) {
+        Some(below) => at(i, i) + at(below, below) - at(i, below) - at(i, below),
+        None => at(i, i),
     }
 }

@@ -8,22 +8,32 @@
 //! The crate is `no_std`, allocates nothing and knows no hardware, no file and no protocol. It is generic over its
 //! number ([`Scalar`]): a board without a float unit runs [`Q`], and a laptop that runs [`Q`] gets the same bits.
 //!
-//! | module | what it is for |
-//! |---|---|
-//! | [`Sample`], [`ImuReading`] | what a board reads in one tick |
-//! | [`Table`], [`Segment`] | an arm's geometry, maps and filter parameters |
-//! | [`Estimator`], [`Estimate`], [`Method`] | one step of all four methods, and the shape by each |
-//! | [`Arc`], [`Pcc`], [`Link`], [`chain`] | PCC kinematics |
-//! | [`Heading`], [`Pace`], [`Anchor`], [`Block`] | the stages, usable by themselves |
+//! # The pipeline
+//!
+//! A sample passes through the stages in this order; each is a module, and each equation stands in one function.
+//!
+//! | stage | equation | function |
+//! |---|---|---|
+//! | sensing | θ = c2 V² + c1 V + c0 (eq. 1), or a curve | [`BendMap::angle`] |
+//! | | heading of a quaternion, unwrapped, tared | [`ImuReading::heading`], [`HeadingTracker`] |
+//! | drift | offset_i = MA_W(θ_imu,i − θ_bend,i) (eq. 2, 3) | [`MovingAverageAnchor::push`] |
+//! | | x⁻ = A x, P⁻ = A P Aᵀ + Q (process noise) | [`BiasState::predict`] |
+//! | | ν = z − H x⁻ (innovation), K = P⁻Hᵀ/S, x = x⁻ + K ν | [`BiasState::innovation`], [`BiasState::update`] |
+//! | fusion | KF_orient and KF_coord (eq. 8 to 12) | [`KalmanFilter::step`] |
+//! | kinematics | PCC (eq. 4 to 6), forward kinematics (eq. 7) | [`Pcc::link`], [`forward_kinematics`] |
+//! | | C = J P Jᵀ along the chain (Jacobian J) | [`CovariancePropagation::step`] |
+//! | contact | contact detector: fast change of a residual | [`Estimator::contacts`] |
+//!
+//! [`ArmConfig`] selects the drift correction: the paper's moving average, or the bias filter.
 //!
 //! Units: rad, m and s; angles are clockwise positive (towards +x), headings count from the base's y axis.
 //!
 //! ```
-//! use estimator_core::{Estimator, ImuReading, Method, Phase, Q, Sample, Segment, Table};
+//! use estimator_core::{Estimator, ImuReading, Method, Phase, Q, Sample, SegmentConfig, ArmConfig};
 //!
 //! // One segment of 80 mm with a 17 mm connector and no bend sensor; headings are absolute.
-//! let segments = [Segment::<Q>::bare(0.080, 0.017)];
-//! let table = Table::bare(&segments);
+//! let segments = [SegmentConfig::<Q>::bare(0.080, 0.017)];
+//! let table = ArmConfig::bare(&segments);
 //! let mut estimator = Estimator::<Q, 1, 100>::new(&table)?;
 //!
 //! let mut sample = Sample::missing(0);
@@ -31,43 +41,44 @@
 //! let estimate = estimator.step(&sample);
 //! let tip = estimator.shape(&estimate, Method::ImuO)[0].end.expect("the IMU was read");
 //! assert!((tip.x.to_f64() - 0.02897).abs() < 1e-5 && (tip.y.to_f64() - 0.09111).abs() < 1e-5);
-//! # Ok::<(), estimator_core::TableError>(())
+//! # Ok::<(), estimator_core::ConfigError>(())
 //! ```
 #![no_std]
 
-mod anchor;
-mod angle;
-mod bend;
-mod beyond;
+mod config;
 mod contact;
+mod drift;
 mod estimator;
-mod filter;
-mod fixed;
-mod hysteresis;
-mod imu;
-mod observer;
-mod overflow;
-mod pcc;
-mod q;
-mod sample;
-mod scalar;
-mod state;
-mod table;
-mod uncertainty;
+mod fusion;
+mod kinematics;
+mod numeric;
+mod segment;
+mod sensing;
+mod types;
 
-pub use anchor::{Anchor, AnchorRule, Pace, Slot};
-pub use angle::{Angle, Phase, Turns};
-pub use bend::{BendMap, VOLTS_PER_COUNT};
-pub use contact::{Alike, Contact, ContactRule, Contacts};
-pub use estimator::{Estimate, Estimator, Fused, Method, SegmentEstimate, Shape};
-pub use filter::{Block, COVARIANCE_LIMIT, Gains, H_LIMIT, Noise};
-pub use hysteresis::{Hysteresis, PLAYS, Play};
-pub use imu::Heading;
-pub use observer::{Disagreement, Observer, ObserverRule};
-pub use overflow::saturations;
-pub use pcc::{Arc, Link, Pcc, SegmentShape, chain};
-pub use q::Q;
-pub use sample::{ImuReading, SENSORS_PER_SEGMENT, Sample};
-pub use scalar::{Constant, Scalar};
-pub use table::{OffsetAt, Segment, Table, TableError};
-pub use uncertainty::{Covariance, SCALE, Spread, Uncertainties, Uncertainty, UncertaintyRule};
+pub use config::{
+    AnchorConfig, ArmConfig, BendErrorConfig, BendMap, BendSensorConfig, BiasFilterConfig, ConfigError, ContactConfig,
+    CoupledSegment, CurveMap, KNOTS, KalmanParams, Lag, MemoryConfig, OffsetAt, PLAYS, Play, QuadraticMap,
+    SENSORS_PER_SEGMENT, SegmentConfig, UncertaintyConfig, VARIANCE_SCALE,
+};
+pub use drift::bias_state::{BiasState, Innovation, Row};
+pub use drift::decimator::{Decimated, Decimator};
+pub use drift::moving_average::MovingAverageAnchor;
+pub use drift::{CorrectedArm, DriftCorrection, SensedArm};
+pub use estimator::Estimator;
+pub use fusion::kalman::{COVARIANCE_LIMIT, H_LIMIT, KalmanFilter, KalmanGains};
+pub use kinematics::covariance::{CovariancePropagation, lever_arm};
+pub use kinematics::forward::forward_kinematics;
+pub use kinematics::pcc::{Link, Pcc, UnitArc};
+pub use numeric::fused::{FusedOps, plain};
+pub use numeric::phase::{Angle, Phase, Turns};
+pub use numeric::q::Q;
+pub use numeric::saturation::saturations;
+pub use numeric::scalar::{Constant, Scalar, TIME_UNIT_S};
+pub use sensing::bend_map::VOLTS_PER_COUNT;
+pub use sensing::bend_sensors::BendAngles;
+pub use sensing::heading::{HeadingTracker, SegmentHeading};
+pub use types::{
+    Contact, Contacts, Covariance, Estimate, ImuReading, Method, Sample, SegmentEstimate, SegmentShape, Shape,
+    Uncertainties, Uncertainty,
+};

@@ -1,11 +1,11 @@
 //! The drift anchor: exact means over windows with holes.
 
-use estimator_core::{Anchor, AnchorRule, Pace, Turns};
+use estimator_core::{AnchorConfig, Decimator, MovingAverageAnchor, Turns};
 use proptest::prelude::*;
 
-fn rule(window: u16, decimation: u16) -> AnchorRule {
+fn rule(window: u16, decimation: u16) -> AnchorConfig {
     let sample_rate_millihertz = 10_000 * u32::from(decimation);
-    AnchorRule { window, rate_millihertz: 10_000, sample_rate_millihertz, threshold: Turns::ZERO }
+    AnchorConfig { window, rate_millihertz: 10_000, sample_rate_millihertz, threshold: Turns::ZERO }
 }
 
 /// The mean of what is there, rounded down as [`Turns::mean_of`] is.
@@ -14,8 +14,8 @@ fn mean(values: &[Option<i64>]) -> Option<i64> {
     (!there.is_empty()).then(|| there.iter().sum::<i128>().div_euclid(there.len() as i128) as i64)
 }
 
-fn pushed<const W: usize>(rule: &AnchorRule, values: &[Option<i64>]) -> Vec<Option<i64>> {
-    let (mut pace, mut anchor) = (Pace::new(), Anchor::<W>::new());
+fn pushed<const W: usize>(rule: &AnchorConfig, values: &[Option<i64>]) -> Vec<Option<i64>> {
+    let (mut pace, mut anchor) = (Decimator::new(), MovingAverageAnchor::<W>::new());
     let push = |value: &Option<i64>| {
         anchor.push(pace.tick(rule), value.map(Turns::from_bits));
         anchor.offset().map(Turns::bits)
@@ -47,7 +47,7 @@ proptest! {
 
 #[test]
 fn there_is_no_offset_before_the_first_difference() {
-    assert_eq!(Anchor::<3>::new().offset(), None);
+    assert_eq!(MovingAverageAnchor::<3>::new().offset(), None);
     assert_eq!(pushed::<3>(&rule(3, 1), &[None, None, Some(5)]), [None, None, Some(5)]);
 }
 
@@ -89,7 +89,7 @@ fn decimation_averages_whole_groups() {
 
 #[test]
 fn a_rate_that_does_not_divide_keeps_its_pace() {
-    let rule = AnchorRule { sample_rate_millihertz: 25_000, ..rule(10, 1) };
+    let rule = AnchorConfig { sample_rate_millihertz: 25_000, ..rule(10, 1) };
     let values = [1, 2, 3, 10, 12, 1, 2, 3, 10, 12].map(Some);
     // 25 Hz to 10 Hz: groups of 3 and 2 in turn, of means 2 and 11.
     let expected = [None, None, Some(2), Some(2), Some(6), Some(6), Some(6), Some(5), Some(5), Some(6)];
@@ -98,7 +98,7 @@ fn a_rate_that_does_not_divide_keeps_its_pace() {
 
 #[test]
 fn a_rate_above_the_samples_takes_every_sample() {
-    let rule = AnchorRule { sample_rate_millihertz: 3_000, ..rule(2, 1) };
+    let rule = AnchorConfig { sample_rate_millihertz: 3_000, ..rule(2, 1) };
     assert_eq!(pushed::<2>(&rule, &[1, 3, 5].map(Some)), [Some(1), Some(2), Some(4)]);
 }
 
@@ -116,7 +116,7 @@ fn sums_stay_exact_over_100_million_samples() {
     const SAMPLES: u64 = 100_000_000;
     const WINDOW: u16 = 100;
     let rule = rule(WINDOW, 1);
-    let (mut pace, mut anchor) = (Pace::new(), Anchor::<{ WINDOW as usize }>::new());
+    let (mut pace, mut anchor) = (Decimator::new(), MovingAverageAnchor::<{ WINDOW as usize }>::new());
     let mut newest = [None; WINDOW as usize];
     let mut noise = 1_u64;
     for t in 0..SAMPLES {

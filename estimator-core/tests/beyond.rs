@@ -1,8 +1,8 @@
 //! Contact and uncertainty, from samples to what the estimator says of them.
 
 use estimator_core::{
-    Alike, AnchorRule, BendMap, ContactRule, Estimate, Estimator, ImuReading, ObserverRule, Phase, SCALE, Sample,
-    Segment, SegmentEstimate, Table, Turns, Uncertainty, UncertaintyRule,
+    AnchorConfig, ArmConfig, BendMap, BiasFilterConfig, ContactConfig, CoupledSegment, Estimate, Estimator, ImuReading,
+    Phase, Sample, SegmentConfig, SegmentEstimate, Turns, Uncertainty, UncertaintyConfig, VARIANCE_SCALE,
 };
 
 /// Deviations: of θ, of θ by bend sensors alone, and while something touches the segment, degrees.
@@ -15,32 +15,32 @@ fn turns(degrees: f64) -> Turns {
 }
 
 /// The second segment bends like the first.
-fn segments() -> [Segment<f64>; 2] {
+fn segments() -> [SegmentConfig<f64>; 2] {
     // θ = V − 1.5 rad.
     let map = Some(BendMap::from_volts(0.0, 1.0, -1.5, [0.5, 2.5]));
-    let first = Segment { bend: [map, map], ..Segment::bare(0.08, 0.017) };
-    [first, Segment { alike: Some(Alike { segment: 0, ratio: Alike::ONE as i32 }), ..first }]
+    let first = SegmentConfig { bend: [map, map], ..SegmentConfig::uncalibrated(0.08, 0.017) };
+    [first, SegmentConfig { alike: Some(CoupledSegment { segment: 0, ratio: CoupledSegment::ONE as i32 }), ..first }]
 }
 
-fn table(segments: &[Segment<f64>]) -> Table<'_, f64> {
-    let variance = |degrees: f64| degrees.to_radians().powi(2) * SCALE;
-    let rule = UncertaintyRule {
+fn table(segments: &[SegmentConfig<f64>]) -> ArmConfig<'_, f64> {
+    let variance = |degrees: f64| degrees.to_radians().powi(2) * VARIANCE_SCALE;
+    let rule = UncertaintyConfig {
         theta: variance(THETA_DEG),
         drift: 0.0,
         bend: variance(BEND_DEG),
         contact: variance(CONTACT_DEG),
         heading: 0.0,
-        end: 1e-8 * SCALE,
+        end: 1e-8 * VARIANCE_SCALE,
     };
-    let contact = ContactRule { bend: turns(5.0), alike: turns(4.0) };
-    Table { contact: Some(contact), uncertainty: Some(rule), ..Table::bare(segments) }
+    let contact = ContactConfig { bend: turns(5.0), alike: turns(4.0) };
+    ArmConfig { contact: Some(contact), uncertainty: Some(rule), ..ArmConfig::uncalibrated(segments) }
 }
 
 /// An observer of values at 10 Hz.
-fn observer() -> ObserverRule {
+fn observer() -> BiasFilterConfig {
     let one = f64::from(1 << 30);
-    ObserverRule {
-        step: (4_294_967_296.0 / (10.0 * ObserverRule::RATE_S)) as u32,
+    BiasFilterConfig {
+        step: (4_294_967_296.0 / (10.0 * BiasFilterConfig::RATE_S)) as u32,
         prior: [(1e-3 * one) as i32, (1e-2 * one) as i32, 1],
         growth: [0, 35, 1],
         gate: turns(8.0),
@@ -64,7 +64,10 @@ fn sample([first, second]: [f64; 2]) -> Sample<2> {
 /// Standard deviation of each angle, degrees, where it is known.
 fn deviations_deg(estimator: &Estimator<f64, 2, 100>) -> Vec<Option<f64>> {
     let known = estimator.uncertainties();
-    known.iter().map(|Uncertainty { theta, .. }| theta.map(|theta| (theta / SCALE).sqrt().to_degrees())).collect()
+    known
+        .iter()
+        .map(|Uncertainty { theta, .. }| theta.map(|theta| (theta / VARIANCE_SCALE).sqrt().to_degrees()))
+        .collect()
 }
 
 fn near(found: Option<f64>, expected: f64) {
@@ -79,13 +82,13 @@ fn a_push_on_one_of_two_alike_is_contact_of_both_within_half_a_second() {
     let mut estimator = Estimator::<_, 2, 100>::new(&table).expect("it fits");
     for k in 0..50 {
         // Free: both swing.
-        estimator.step(&sample([f64::from(k % 20); 2]));
-        assert!(estimator.contacts().iter().all(|contact| !contact.is_touched), "value {k}");
+        estimator.update_full(&sample([f64::from(k % 20); 2]));
+        assert!(estimator.contacts().iter().all(|contact| !contact.in_contact), "value {k}");
     }
     let pushed = |k: u32| [9.0, 9.0 + 2.0 * f64::from(k)];
     let found = (1..=5).find(|k| {
-        estimator.step(&sample(pushed(*k)));
-        estimator.contacts().iter().all(|contact| contact.is_touched)
+        estimator.update_full(&sample(pushed(*k)));
+        estimator.contacts().iter().all(|contact| contact.in_contact)
     });
     assert!(found.is_some(), "10 degrees of push are none");
 }
@@ -96,10 +99,10 @@ fn contact_widens_the_variance() {
     let table = table(&segments);
     let mut estimator = Estimator::<_, 2, 100>::new(&table).expect("it fits");
     for _ in 0..10 {
-        estimator.step(&sample([5.0; 2]));
+        estimator.update_full(&sample([5.0; 2]));
     }
     near(deviations_deg(&estimator)[1], THETA_DEG);
-    estimator.step(&sample([5.0, 15.0]));
+    estimator.update_full(&sample([5.0, 15.0]));
     near(deviations_deg(&estimator)[1], THETA_DEG.hypot(CONTACT_DEG));
 }
 
@@ -108,8 +111,8 @@ fn without_imu_the_variance_is_that_of_the_bend_sensors() {
     let segments = segments();
     let table = table(&segments);
     let mut estimator = Estimator::<_, 2, 100>::new(&table).expect("it fits");
-    estimator.step(&sample([5.0; 2]));
-    estimator.step(&Sample { imu: [sample([5.0; 2]).imu[0], None], ..sample([5.0; 2]) });
+    estimator.update_full(&sample([5.0; 2]));
+    estimator.update_full(&Sample { imu: [sample([5.0; 2]).imu[0], None], ..sample([5.0; 2]) });
     near(deviations_deg(&estimator)[0], THETA_DEG);
     near(deviations_deg(&estimator)[1], BEND_DEG);
 }
@@ -119,9 +122,9 @@ fn where_nothing_is_read_no_point_is_known_from_there_on() {
     let segments = segments();
     let table = table(&segments);
     let mut estimator = Estimator::<_, 2, 100>::new(&table).expect("it fits");
-    estimator.step(&sample([5.0; 2]));
+    estimator.update_full(&sample([5.0; 2]));
     let whole = sample([5.0; 2]);
-    estimator.step(&Sample { bend: [[None; 2], whole.bend[1]], imu: [None, whole.imu[1]], ..whole });
+    estimator.update_full(&Sample { bend: [[None; 2], whole.bend[1]], imu: [None, whole.imu[1]], ..whole });
     let known = estimator.uncertainties();
     assert!(known.iter().all(|segment| segment.end.is_none()), "{known:?}");
     assert!(known[0].theta.is_none() && known[1].theta.is_some(), "{known:?}");
@@ -130,16 +133,16 @@ fn where_nothing_is_read_no_point_is_known_from_there_on() {
 #[test]
 fn the_variance_grows_while_saturated_bend_sensors_leave_the_observer_alone() {
     let segments = segments();
-    let rule = UncertaintyRule { drift: 1.0, ..table(&segments).uncertainty.expect("it has one") };
-    let table = Table { observer: Some(observer()), uncertainty: Some(rule), ..table(&segments) };
+    let rule = UncertaintyConfig { drift: 1.0, ..table(&segments).uncertainty.expect("it has one") };
+    let table = ArmConfig { observer: Some(observer()), uncertainty: Some(rule), ..table(&segments) };
     let mut estimator = Estimator::<_, 2, 100>::new(&table).expect("it fits");
     for k in 0..600 {
-        estimator.step(&sample([30.0 * (f64::from(k) / 12.0).sin(); 2]));
+        estimator.update_full(&sample([30.0 * (f64::from(k) / 12.0).sin(); 2]));
     }
     let before = deviations_deg(&estimator)[0].expect("it is known");
     for k in 0..600 {
         let whole = sample([30.0 * (f64::from(k) / 12.0).sin(); 2]);
-        estimator.step(&Sample { bend: [[None; 2]; 2], ..whole });
+        estimator.update_full(&Sample { bend: [[None; 2]; 2], ..whole });
     }
     let after = deviations_deg(&estimator)[0].expect("it is known");
     assert!(after > 1.2 * before, "{before} and then {after} degrees");
@@ -148,13 +151,13 @@ fn the_variance_grows_while_saturated_bend_sensors_leave_the_observer_alone() {
 #[test]
 fn a_table_that_does_not_ask_gets_neither() {
     let segments = segments();
-    let table = Table { contact: None, uncertainty: None, ..table(&segments) };
+    let table = ArmConfig { contact: None, uncertainty: None, ..table(&segments) };
     let mut estimator = Estimator::<_, 2, 100>::new(&table).expect("it fits");
     for k in 0..10 {
-        estimator.step(&sample([5.0, 5.0 * f64::from(k)]));
+        estimator.update_full(&sample([5.0, 5.0 * f64::from(k)]));
     }
     assert!(estimator.uncertainties().is_empty());
-    assert!(estimator.contacts().iter().all(|contact| !contact.is_touched));
+    assert!(estimator.contacts().iter().all(|contact| !contact.in_contact));
 }
 
 /// What the observer takes from each θ_imu, degrees.
@@ -166,8 +169,9 @@ fn biases_deg(estimate: &Estimate<f64, 2>) -> Vec<f64> {
 #[test]
 fn ten_samples_a_value_teach_each_segment_what_one_does() {
     let segments = segments();
-    let at_10_hz = Table { observer: Some(observer()), ..table(&segments) };
-    let at_100_hz = Table { anchor: AnchorRule { sample_rate_millihertz: 100_000, ..at_10_hz.anchor }, ..at_10_hz };
+    let at_10_hz = ArmConfig { observer: Some(observer()), ..table(&segments) };
+    let at_100_hz =
+        ArmConfig { anchor: AnchorConfig { sample_rate_millihertz: 100_000, ..at_10_hz.anchor }, ..at_10_hz };
     let [mut slow, mut fast] =
         [&at_10_hz, &at_100_hz].map(|table| Estimator::<_, 2, 100>::new(table).expect("it fits"));
     let mut taught: Vec<f64> = Vec::new();

@@ -1,8 +1,8 @@
 //! The whole pipeline, one sample in and one estimate out.
 
 use estimator_core::{
-    AnchorRule, Angle, BendMap, Estimate, Estimator, ImuReading, Method, Noise, Phase, Q, Sample, Scalar, Segment,
-    Table, TableError, Turns,
+    AnchorConfig, Angle, ArmConfig, BendMap, ConfigError, Estimate, Estimator, ImuReading, KalmanParams, Method, Phase,
+    Q, Sample, Scalar, SegmentConfig, Turns,
 };
 use proptest::prelude::*;
 
@@ -23,19 +23,24 @@ fn bent(counts: u16) -> f64 {
     f64::from(counts) * 3.3 / 4095.0 - 1.5
 }
 
-fn segment<S: Scalar>(sensors: usize) -> Segment<S> {
-    let noise =
-        Noise { q: S::from_f64(0.5), r_imu: S::from_f64(0.25), r_bend: S::one(), h_imu: S::one(), h_bend: S::one() };
+fn segment<S: Scalar>(sensors: usize) -> SegmentConfig<S> {
+    let noise = KalmanParams {
+        q: S::from_f64(0.5),
+        r_imu: S::from_f64(0.25),
+        r_bend: S::one(),
+        h_imu: S::one(),
+        h_bend: S::one(),
+    };
     let map = |k| (k < sensors).then(sensor);
-    Segment { bend: [map(0), map(1)], orient: noise, coord: noise, ..Segment::bare(0.08, 0.017) }
+    SegmentConfig { bend: [map(0), map(1)], orient: noise, coord: noise, ..SegmentConfig::uncalibrated(0.08, 0.017) }
 }
 
-fn rule(window: u16) -> AnchorRule {
-    AnchorRule { window, rate_millihertz: 10_000, sample_rate_millihertz: 10_000, threshold: Turns::from_rad(0.01) }
+fn rule(window: u16) -> AnchorConfig {
+    AnchorConfig { window, rate_millihertz: 10_000, sample_rate_millihertz: 10_000, threshold: Turns::from_rad(0.01) }
 }
 
-fn table<S>(segments: &[Segment<S>]) -> Table<'_, S> {
-    Table { anchor: rule(10), ..Table::bare(segments) }
+fn table<S>(segments: &[SegmentConfig<S>]) -> ArmConfig<'_, S> {
+    ArmConfig { anchor: rule(10), ..ArmConfig::uncalibrated(segments) }
 }
 
 fn heading(rad: f64) -> ImuReading {
@@ -84,11 +89,11 @@ fn any_sample() -> impl Strategy<Value = Sample<3>> {
 /// Every number that an estimator says of these samples.
 fn numbers<S: Scalar>(samples: &[Sample<3>], tare_samples: u32) -> Vec<f64> {
     let segments = [segment::<S>(2), segment(0), segment(1)];
-    let table = Table { tare_samples, ..table(&segments) };
+    let table = ArmConfig { tare_samples, ..table(&segments) };
     let mut estimator = Estimator::<S, 3, 10>::new(&table).expect("a valid table");
     let mut numbers = Vec::new();
     for sample in samples {
-        let estimate = estimator.step(sample);
+        let estimate = estimator.update_full(sample);
         assert_eq!((estimate.time_us, estimate.segments.len()), (sample.time_us, 3));
         for shape in Method::ALL.map(|method| estimator.shape(&estimate, method)) {
             for segment in shape {
@@ -105,7 +110,7 @@ fn numbers<S: Scalar>(samples: &[Sample<3>], tare_samples: u32) -> Vec<f64> {
 /// Whether `fuse` says the very same of these samples as `step` and `shape`.
 fn fuses_as_it_steps<S: Scalar>(samples: &[Sample<3>], tare_samples: u32) -> bool {
     let segments = [segment::<S>(2), segment(0), segment(1)];
-    let table = Table { tare_samples, ..table(&segments) };
+    let table = ArmConfig { tare_samples, ..table(&segments) };
     let mut stepped = Estimator::<S, 3, 10>::new(&table).expect("a valid table");
     let mut fused = stepped.clone();
     samples.iter().all(|sample| {
@@ -158,7 +163,7 @@ proptest! {
         let mut estimator = Estimator::<f64, 1, 10>::new(&table).expect("a valid table");
         let mut sample = Sample::missing(0);
         sample.bend[0] = [a, b];
-        let estimate = estimator.step(&sample).segments[0];
+        let estimate = estimator.update_full(&sample).segments[0];
         let read: Vec<_> = [a, b].into_iter().flatten().map(bent).collect();
         prop_assert_eq!(usize::from(estimate.bend_sensors_read), read.len());
         let expected = (!read.is_empty()).then(|| read.iter().sum::<f64>() / read.len() as f64);
@@ -178,7 +183,7 @@ fn a_missing_imu_leaves_two_angles_unknown_for_that_sample_only() {
     let mut without = sample(0.3);
     without.imu[1] = None;
     for (sample, known) in [(sample(0.2), [true; 4]), (without, [true, false, false, true]), (sample(0.4), [true; 4])] {
-        let estimate = estimator.step(&sample);
+        let estimate = estimator.update_full(&sample);
         assert_eq!(knows(&estimator, &estimate, Method::ImuO), known);
         assert_eq!(knows(&estimator, &estimate, Method::ImuC), known);
         assert_eq!(knows(&estimator, &estimate, Method::Bend), [true; 4]);
@@ -190,12 +195,12 @@ fn a_missing_imu_leaves_two_angles_unknown_for_that_sample_only() {
 
 #[test]
 fn a_segment_with_the_second_sensor_alone_reads_that() {
-    let segments = [Segment { bend: [None, Some(sensor())], ..segment::<f64>(0) }];
+    let segments = [SegmentConfig { bend: [None, Some(sensor())], ..segment::<f64>(0) }];
     let table = table(&segments);
     let mut estimator = Estimator::<f64, 1, 10>::new(&table).expect("a valid table");
     let mut sample = Sample::missing(0);
     sample.bend[0] = [Some(counts(-1.0)), Some(counts(0.5))];
-    let estimate = estimator.step(&sample).segments[0];
+    let estimate = estimator.update_full(&sample).segments[0];
     assert!((rad(estimate.bend.map(|link| link.theta)) - bent(counts(0.5))).abs() < 1e-12);
     assert_eq!(estimate.bend_sensors_read, 1);
 }
@@ -207,7 +212,7 @@ fn a_rejected_quaternion_is_a_missing_reading() {
     let mut estimator = Estimator::<f64, 2, 10>::new(&table).expect("a valid table");
     let mut zeroed = sample(0.3);
     zeroed.imu[1] = Some(ImuReading::from_bno055([0; 4]));
-    let estimate = estimator.step(&zeroed);
+    let estimate = estimator.update_full(&zeroed);
     assert_eq!(knows(&estimator, &estimate, Method::ImuO), [true, false]);
     assert!(!estimate.segments[1].imu_read);
 }
@@ -219,7 +224,7 @@ fn the_imus_angle_is_the_difference_of_neighbouring_headings() {
     let mut estimator = Estimator::<f64, 3, 10>::new(&table).expect("a valid table");
     let mut sample = Sample::missing(0);
     sample.imu = [0.5, -0.25, 1.0].map(|rad| Some(heading(rad)));
-    let angles = estimator.step(&sample).segments.iter().map(|segment| rad(segment.imu_o)).collect::<Vec<_>>();
+    let angles = estimator.update_full(&sample).segments.iter().map(|segment| rad(segment.imu_o)).collect::<Vec<_>>();
     for (angle, expected) in angles.iter().zip([0.5, -0.75, 1.25]) {
         assert!((angle - expected).abs() < 2e-9, "{angle} instead of {expected}: a unit of 2⁻³² turns is 1.5e-9");
     }
@@ -228,10 +233,10 @@ fn the_imus_angle_is_the_difference_of_neighbouring_headings() {
 #[test]
 fn imus_are_silent_until_the_last_sample_of_the_tare() {
     let segments = [segment::<f64>(2); 2];
-    let table = Table { tare_samples: 3, ..table(&segments) };
+    let table = ArmConfig { tare_samples: 3, ..table(&segments) };
     let mut estimator = Estimator::<f64, 2, 10>::new(&table).expect("a valid table");
     for known in [false, false, true, true] {
-        let estimate = estimator.step(&sample(0.1));
+        let estimate = estimator.update_full(&sample(0.1));
         assert_eq!(knows(&estimator, &estimate, Method::ImuO), [known; 2]);
         assert_eq!(knows(&estimator, &estimate, Method::ImuC), [known; 2]);
         assert_eq!(knows(&estimator, &estimate, Method::Bend), [true; 2]);
@@ -242,11 +247,11 @@ fn imus_are_silent_until_the_last_sample_of_the_tare() {
 /// θ_c of one segment at these bend and IMU angles, held for the whole window.
 fn corrected(threshold: Turns, bend: f64, imu: f64) -> f64 {
     let segments = [segment::<f64>(1)];
-    let table = Table { anchor: AnchorRule { threshold, ..rule(10) }, ..table(&segments) };
+    let table = ArmConfig { anchor: AnchorConfig { threshold, ..rule(10) }, ..table(&segments) };
     let mut estimator = Estimator::<f64, 1, 10>::new(&table).expect("a valid table");
     let mut sample = Sample::missing(0);
     (sample.bend[0][0], sample.imu[0]) = (Some(counts(bend)), Some(heading(imu)));
-    rad(estimator.step(&sample).segments[0].imu_c.map(|link| link.theta))
+    rad(estimator.update_full(&sample).segments[0].imu_c.map(|link| link.theta))
 }
 
 #[test]
@@ -270,7 +275,7 @@ fn a_segment_without_bend_sensors_has_its_raw_imus_and_a_fusion_of_them() {
     let mut estimator = Estimator::<f64, 2, 10>::new(&table).expect("a valid table");
     let mut drifted = sample(0.2);
     drifted.imu = [0.5, 1.2].map(|rad| Some(heading(rad)));
-    let estimate = estimator.step(&drifted);
+    let estimate = estimator.update_full(&drifted);
     assert_eq!(knows(&estimator, &estimate, Method::Bend), [true, false]);
     let bare = estimate.segments[1];
     assert_eq!(bare.bend_sensors_read, 0);
@@ -286,7 +291,7 @@ fn a_table_without_bend_sensors_says_imu_o_alone() {
     let segments = [segment::<f64>(0); 2];
     let table = table(&segments);
     let mut estimator = Estimator::<f64, 2, 10>::new(&table).expect("a valid table");
-    let estimate = estimator.step(&sample(0.2));
+    let estimate = estimator.update_full(&sample(0.2));
     let known = Method::ALL.map(|method| knows(&estimator, &estimate, method)[0]);
     assert_eq!(known, [false, true, false, false]);
 }
@@ -296,9 +301,9 @@ fn fusion_outlives_its_measurements_with_a_growing_variance() {
     let segments = [segment::<f64>(2)];
     let table = table(&segments);
     let mut estimator = Estimator::<f64, 1, 10>::new(&table).expect("a valid table");
-    assert_eq!(estimator.step(&Sample::missing(0)).segments[0].fusion, None);
-    let measured = estimator.step(&sample(0.4)).segments[0].fusion.expect("it was measured");
-    let later = estimator.step(&Sample::missing(0)).segments[0].fusion.expect("it was measured");
+    assert_eq!(estimator.update_full(&Sample::missing(0)).segments[0].fusion, None);
+    let measured = estimator.update_full(&sample(0.4)).segments[0].fusion.expect("it was measured");
+    let later = estimator.update_full(&Sample::missing(0)).segments[0].fusion.expect("it was measured");
     assert_eq!((later.link.theta, later.link.end), (measured.link.theta, measured.link.end));
     assert!((later.theta_variance - measured.theta_variance - 0.5).abs() < 1e-12);
     assert!((later.end_variance - measured.end_variance - 0.5).abs() < 1e-12);
@@ -309,8 +314,8 @@ fn the_fused_world_shape_chains_the_fused_points_by_the_fused_angles() {
     let segments = [segment::<f64>(2); 2];
     let table = table(&segments);
     let mut estimator = Estimator::<f64, 2, 10>::new(&table).expect("a valid table");
-    estimator.step(&sample(0.2));
-    let estimate = estimator.step(&sample(0.6));
+    estimator.update_full(&sample(0.2));
+    let estimate = estimator.update_full(&sample(0.6));
     let [first, second] = [0, 1].map(|i| estimate.segments[i].fusion.expect("it was measured").link);
     let tip = estimator.shape(&estimate, Method::Fusion)[1].end.expect("all is known");
     let (sin, cos) = first.theta.rad().sin_cos();
@@ -322,23 +327,23 @@ fn the_fused_world_shape_chains_the_fused_points_by_the_fused_angles() {
 #[test]
 fn a_table_of_no_segments_is_refused() {
     let error = Estimator::<f64, 6, 10>::new(&table(&[])).err();
-    assert_eq!(error, Some(TableError::Segments { found: 0, room: 6 }));
+    assert_eq!(error, Some(ConfigError::Segments { found: 0, room: 6 }));
 }
 
 #[test]
 fn a_table_of_too_many_segments_is_refused() {
     let error = Estimator::<f64, 6, 10>::new(&table(&[segment(2); 7])).err();
-    assert_eq!(error, Some(TableError::Segments { found: 7, room: 6 }));
+    assert_eq!(error, Some(ConfigError::Segments { found: 7, room: 6 }));
     assert_eq!(error.map(|error| error.to_string()).as_deref(), Some("the table has 7 segments, expected 1 to 6"));
 }
 
 #[test]
 fn a_window_that_is_empty_or_too_long_is_refused() {
     let segments = [segment::<f64>(2)];
-    let error = |window| Estimator::<f64, 6, 10>::new(&Table { anchor: rule(window), ..table(&segments) }).err();
-    assert_eq!(error(0), Some(TableError::Window { found: 0, room: 10 }));
+    let error = |window| Estimator::<f64, 6, 10>::new(&ArmConfig { anchor: rule(window), ..table(&segments) }).err();
+    assert_eq!(error(0), Some(ConfigError::Window { found: 0, room: 10 }));
     assert_eq!(error(10), None);
-    assert_eq!(error(11), Some(TableError::Window { found: 11, room: 10 }));
+    assert_eq!(error(11), Some(ConfigError::Window { found: 11, room: 10 }));
     let text = error(11).map(|error| error.to_string());
     assert_eq!(text.as_deref(), Some("the anchor's window is 11 values, expected 1 to 10"));
 }

@@ -1,6 +1,6 @@
 //! One filter block against the textbook's matrices.
 
-use estimator_core::{Block, COVARIANCE_LIMIT, Gains, H_LIMIT, Noise, Q, Scalar};
+use estimator_core::{COVARIANCE_LIMIT, H_LIMIT, KalmanFilter, KalmanGains, KalmanParams, Q, Scalar};
 use nalgebra::{Matrix2, Matrix4, Matrix4x2, SVector, Vector2, Vector4};
 use proptest::prelude::*;
 
@@ -12,24 +12,24 @@ fn point(x: f64, y: f64) -> SVector<f64, 2> {
 }
 
 /// Parameters for a Q, and h and r of the IMU and of the bend sensors.
-fn gains<S: Scalar>(q: f64, imu: (f64, f64), bend: (f64, f64)) -> Gains<S> {
+fn gains<S: Scalar>(q: f64, imu: (f64, f64), bend: (f64, f64)) -> KalmanGains<S> {
     let [q, h_imu, r_imu, h_bend, r_bend] = [q, imu.0, imu.1, bend.0, bend.1].map(S::from_f64);
-    Gains::new(&Noise { q, r_imu, r_bend, h_imu, h_bend })
+    KalmanGains::new(&KalmanParams { q, r_imu, r_bend, h_imu, h_bend })
 }
 
 /// Parameters for a Q, and h and r of one sensor, whichever that is.
-fn alone<S: Scalar>(q: f64, h: f64, r: f64) -> Gains<S> {
+fn alone<S: Scalar>(q: f64, h: f64, r: f64) -> KalmanGains<S> {
     gains(q, (h, r), (h, r))
 }
 
 /// A filter that was started at a point with this covariance.
-fn started(x: Vector2<f64>, p: f64) -> Block<f64, 2> {
-    let mut block = Block::new();
+fn started(x: Vector2<f64>, p: f64) -> KalmanFilter<f64, 2> {
+    let mut block = KalmanFilter::new();
     block.step(&alone(0.0, 1.0, p), Some(x), None);
     block
 }
 
-fn scalar(block: &Block<f64, 1>) -> (f64, f64) {
+fn scalar(block: &KalmanFilter<f64, 1>) -> (f64, f64) {
     let (x, p) = block.state().expect("it was measured");
     (x.x, p)
 }
@@ -87,7 +87,7 @@ proptest! {
         both.step(&gains, Some(imu.2), Some(bend.2));
         let (x, p_both) = both.state().expect("it was measured");
         for (axis, start) in [(0, 0.5), (1, -0.5)] {
-            let mut one = Block::<f64, 1>::new();
+            let mut one = KalmanFilter::<f64, 1>::new();
             one.step(&alone(0.0, 1.0, p), Some(SVector::from([start])), None);
             one.step(&gains, Some(SVector::from([imu.2[axis]])), Some(SVector::from([bend.2[axis]])));
             prop_assert_eq!(scalar(&one), (x[axis], p_both));
@@ -96,7 +96,7 @@ proptest! {
 
     #[test]
     fn the_first_measurement_starts_the_filter((h, r, z) in measurement()) {
-        let mut block = Block::new();
+        let mut block = KalmanFilter::new();
         block.step(&alone(1.0, h, r), None, Some(z));
         let (x, p) = block.state().expect("it was measured");
         prop_assert!((x - z / h).norm() < 1e-12 && (p - r / (h * h)).abs() < 1e-12);
@@ -105,7 +105,7 @@ proptest! {
     #[test]
     fn two_first_measurements_start_it_at_their_weighed_mean(imu in measurement(), bend in measurement()) {
         let ((h1, r1, z1), (h2, r2, z2)) = (imu, bend);
-        let mut block = Block::new();
+        let mut block = KalmanFilter::new();
         block.step(&gains(1.0, (h1, r1), (h2, r2)), Some(z1), Some(z2));
         let (x, p) = block.state().expect("it was measured");
         let information = h1 * h1 / r1 + h2 * h2 / r2;
@@ -134,7 +134,7 @@ proptest! {
     #[test]
     fn a_fixed_point_update_is_the_floats(p in 0.1..10.0, h in 0.5..1.5, r in 0.1..5.0, x in -2.0..2.0, z in -2.0..2.0) {
         fn run<S: Scalar>(x: f64, p: f64, z: f64, h: f64, r: f64) -> [f64; 2] {
-            let mut block = Block::<S, 1>::new();
+            let mut block = KalmanFilter::<S, 1>::new();
             block.step(&alone(0.0, 1.0, p), Some(SVector::from([S::from_f64(x)])), None);
             block.step(&alone(0.0, h, r), Some(SVector::from([S::from_f64(z)])), None);
             let (x, p) = block.state().expect("it was measured");
@@ -148,14 +148,14 @@ proptest! {
 
 #[test]
 fn a_filter_without_a_measurement_has_no_state() {
-    let mut block = Block::<f64, 1>::new();
+    let mut block = KalmanFilter::<f64, 1>::new();
     block.step(&alone(1.0, 1.0, 1.0), None, None);
     assert_eq!(block.state(), None);
 }
 
 #[test]
 fn time_before_the_first_measurement_does_not_count() {
-    let mut block = Block::<f64, 1>::new();
+    let mut block = KalmanFilter::<f64, 1>::new();
     block.step(&alone(5.0, 1.0, 0.5), None, None);
     block.step(&alone(5.0, 1.0, 0.5), Some(SVector::from([0.25])), None);
     assert_eq!(scalar(&block), (0.25, 0.5));
@@ -163,7 +163,7 @@ fn time_before_the_first_measurement_does_not_count() {
 
 #[test]
 fn the_covariance_grows_to_the_limit_and_no_further() {
-    let mut block = Block::<f64, 1>::new();
+    let mut block = KalmanFilter::<f64, 1>::new();
     let step = COVARIANCE_LIMIT * 0.4;
     block.step(&alone(step, 1.0, 1.0), Some(SVector::from([0.0])), None);
     let growth = [0; 5].map(|_| {
@@ -176,7 +176,7 @@ fn the_covariance_grows_to_the_limit_and_no_further() {
 
 #[test]
 fn fixed_point_covariance_reaches_the_limit_however_large_its_growth() {
-    let mut block = Block::<Q, 1>::new();
+    let mut block = KalmanFilter::<Q, 1>::new();
     let gains = alone(Q::MAX.to_f64(), 1.0, 1.0);
     block.step(&gains, Some(SVector::from([Q::from_f64(0.5)])), None);
     for _ in 0..3 {
@@ -189,7 +189,7 @@ fn fixed_point_covariance_reaches_the_limit_however_large_its_growth() {
 /// With P and H at their limits, H² P + R is 26 of the 32 that Q holds.
 #[test]
 fn after_an_outage_fixed_point_takes_a_measurement_as_floats_do() {
-    let mut block = Block::<Q, 1>::new();
+    let mut block = KalmanFilter::<Q, 1>::new();
     block.step(&alone(0.0, 1.0, 1.0), Some(SVector::from([Q::from_f64(0.0)])), None);
     block.step(&alone(COVARIANCE_LIMIT, H_LIMIT, 1.0), Some(SVector::from([Q::from_f64(1.0)])), None);
     let (x, _) = block.state().expect("it was measured");

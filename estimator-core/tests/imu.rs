@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use estimator_core::{Heading, ImuReading, Phase, Q, Scalar, Turns};
+use estimator_core::{HeadingTracker, ImuReading, Phase, Q, Scalar, Turns};
 use proptest::prelude::*;
 
 /// One unit of 2⁻³² turns, rad.
@@ -121,7 +121,7 @@ fn tare_error<S: Scalar>(around: f64, off: &[f64]) -> f64 {
     apart(zero.rad(), sin.atan2(cos))
 }
 
-fn read_degrees(imu: &mut Heading<Q>, degrees: f64) -> f64 {
+fn read_degrees(imu: &mut HeadingTracker<Q>, degrees: f64) -> f64 {
     imu.read(Some(Phase::from_degrees(degrees))).expect("it was read").rad().to_degrees()
 }
 

@@ -2,7 +2,7 @@
 
 use std::f64::consts::{FRAC_2_PI, FRAC_PI_2, PI, TAU};
 
-use estimator_core::{Angle, Arc, Link, OffsetAt, Pcc, Q, Scalar, Segment, Turns, chain};
+use estimator_core::{Angle, Link, OffsetAt, Pcc, Q, Scalar, SegmentConfig, Turns, UnitArc, chain};
 use nalgebra::Vector2;
 use proptest::prelude::*;
 
@@ -16,7 +16,7 @@ const FIXED_ERROR: f64 = 4.0 * LSB;
 /// Beyond, the polynomials' terms add up and θ multiplies them; swept over ±1000 rad, the worst are 15.3 steps at π.
 const FIXED_ERROR_FAR: f64 = 16.0 * LSB;
 
-fn numbers<S: Scalar>(arc: Arc<S>) -> [f64; 4] {
+fn numbers<S: Scalar>(arc: UnitArc<S>) -> [f64; 4] {
     [arc.lateral, arc.axial, arc.cos, arc.sin].map(S::to_f64)
 }
 
@@ -32,7 +32,7 @@ fn differ(one: [f64; 4], other: [f64; 4]) -> f64 {
 
 /// θ on both sides of a seam, so close that the arc itself changes by less than `LSB`.
 fn step_across<S: Scalar>(seam: f64) -> f64 {
-    let sides = [-LSB / 2.0, LSB].map(|off| numbers(Arc::new(Angle::from(S::from_f64(seam + off)))));
+    let sides = [-LSB / 2.0, LSB].map(|off| numbers(UnitArc::new(Angle::from(S::from_f64(seam + off)))));
     differ(sides[0], sides[1])
 }
 
@@ -42,31 +42,31 @@ proptest! {
     #[test]
     fn a_float_arc_is_the_formula_up_to_1000_rad(rad in prop_oneof![-2.0..2.0, -7.0..7.0, -1000.0..1000.0]) {
         let turns = Turns::from_rad(rad);
-        let error = differ(numbers(Arc::<f64>::new(Angle::from(turns))), formula(turns.rad()));
+        let error = differ(numbers(UnitArc::<f64>::new(Angle::from(turns))), formula(turns.rad()));
         prop_assert!(error <= FLOAT_ERROR, "{} at {} rad", error, rad);
     }
 
     #[test]
     fn a_fixed_point_arc_is_the_formula_up_to_1000_rad(rad in prop_oneof![-1.5..1.5, -7.0..7.0, -1000.0..1000.0]) {
         let turns = Turns::from_rad(rad);
-        let error = differ(numbers(Arc::<Q>::new(Angle::from(turns))), formula(turns.rad()));
+        let error = differ(numbers(UnitArc::<Q>::new(Angle::from(turns))), formula(turns.rad()));
         prop_assert!(error <= if rad.abs() <= 1.5 { FIXED_ERROR } else { FIXED_ERROR_FAR }, "{} at {} rad", error, rad);
     }
 
     /// A bend sensor may say any angle without turns.
     #[test]
     fn an_angle_without_turns_is_reduced(rad in -31.9..31.9_f64) {
-        let float = Arc::<f64>::new(Angle::from(rad));
+        let float = UnitArc::<f64>::new(Angle::from(rad));
         prop_assert!(differ(numbers(float), formula(rad)) <= FLOAT_ERROR);
         let rounded = Q::from_f64(rad);
-        let error = differ(numbers(Arc::new(Angle::from(rounded))), formula(rounded.to_f64()));
+        let error = differ(numbers(UnitArc::new(Angle::from(rounded))), formula(rounded.to_f64()));
         prop_assert!(error <= FIXED_ERROR_FAR, "{} at {} rad", error, rad);
     }
 
     #[test]
     fn arcs_to_the_left_mirror_arcs_to_the_right(rad in -9.0..9.0_f64) {
-        let [lateral, axial, cos, sin] = numbers(Arc::<f64>::new(Angle::from(rad)));
-        let mirrored = numbers(Arc::<f64>::new(Angle::from(-rad)));
+        let [lateral, axial, cos, sin] = numbers(UnitArc::<f64>::new(Angle::from(rad)));
+        let mirrored = numbers(UnitArc::<f64>::new(Angle::from(-rad)));
         prop_assert_eq!(mirrored.map(f64::to_bits), [-lateral, axial, cos, -sin].map(f64::to_bits));
     }
 
@@ -74,7 +74,7 @@ proptest! {
     fn a_straight_arm_is_as_long_as_its_parts(parts in prop::collection::vec((0.01..0.2, 0.0..0.05, any::<bool>()), 1..=16)) {
         let segments: Vec<_> = parts.iter().map(|&(length, offset, start)| segment::<Q>(length, offset, start)).collect();
         let straight = segments.iter().map(|segment| Some(link(Q::from_bits(0), segment)));
-        let tip = chain(straight).last().and_then(|segment| segment.end).expect("all links are known");
+        let tip = forward_kinematics(straight).last().and_then(|segment| segment.end).expect("all links are known");
         let length = segments.iter().fold(Q::from_bits(0), |sum, segment| sum + segment.length + segment.offset);
         prop_assert_eq!(tip, Vector2::new(Q::from_bits(0), length));
     }
@@ -84,7 +84,7 @@ proptest! {
     #[test]
     fn a_chain_is_the_sum_of_rotated_links(links in prop::collection::vec((0.01..0.2, 0.0..0.05, any::<bool>(), -3.0..3.0_f64), 1..=16)) {
         let link = |&(length, offset, start, theta)| Some(link::<f64>(theta, &segment(length, offset, start)));
-        let ends: Vec<_> = chain(links.iter().map(link)).map(|segment| segment.end).collect();
+        let ends: Vec<_> = forward_kinematics(links.iter().map(link)).map(|segment| segment.end).collect();
         let (mut heading, mut x, mut y) = (0.0_f64, 0.0, 0.0);
         for (end, &(length, offset, start, theta)) in ends.iter().zip(&links) {
             let [lateral, axial, cos, sin] = formula(theta);
@@ -127,13 +127,13 @@ fn end_by_formula(theta: f64, (length, offset, start): (f64, f64, bool)) -> Vect
     Vector2::new(length * lateral, length * axial) + connector
 }
 
-fn link<S: Scalar>(theta: S, segment: &Segment<S>) -> Link<S> {
+fn link<S: Scalar>(theta: S, segment: &SegmentConfig<S>) -> Link<S> {
     Pcc::new(segment).link(Angle::from(theta))
 }
 
-fn segment<S: Scalar>(length: f64, offset: f64, start: bool) -> Segment<S> {
+fn segment<S: Scalar>(length: f64, offset: f64, start: bool) -> SegmentConfig<S> {
     let offset_at = if start { OffsetAt::Start } else { OffsetAt::End };
-    Segment { offset_at, ..Segment::bare(length, offset) }
+    SegmentConfig { offset_at, ..SegmentConfig::uncalibrated(length, offset) }
 }
 
 #[test]
@@ -156,8 +156,8 @@ fn a_fixed_point_arc_does_not_step_at_its_seams() {
 #[test]
 fn whole_turns_beside_the_remainder_join_where_it_wraps() {
     for turns in [-1000, -1, 0, 5, 1000] {
-        let below = Arc::new(Angle { rest: Q::from_f64(PI - 1e-8), turns });
-        let above = Arc::new(Angle { rest: Q::from_f64(1e-8 - PI), turns: turns + 1 });
+        let below = UnitArc::new(Angle { rest: Q::from_f64(PI - 1e-8), turns });
+        let above = UnitArc::new(Angle { rest: Q::from_f64(1e-8 - PI), turns: turns + 1 });
         let step = differ(numbers(below), numbers(above));
         assert!(step <= 2.0 * LSB + FIXED_ERROR, "a step of {step} after {turns} turns");
     }
@@ -166,12 +166,12 @@ fn whole_turns_beside_the_remainder_join_where_it_wraps() {
 #[test]
 fn a_vanishing_arc_is_exact() {
     for bits in -3..=3 {
-        let arc = Arc::new(Angle::from(Q::from_bits(bits)));
+        let arc = UnitArc::new(Angle::from(Q::from_bits(bits)));
         assert_eq!((arc.axial.to_f64(), arc.cos.to_f64(), arc.sin.to_bits()), (1.0, 1.0, bits));
         assert!((arc.lateral.to_f64() - f64::from(bits) * LSB / 2.0).abs() <= LSB / 2.0);
     }
     for theta in [1e-300, 1e-12, 1e-8] {
-        let arc = Arc::new(Angle::from(theta));
+        let arc = UnitArc::new(Angle::from(theta));
         assert!((arc.lateral / theta - 0.5).abs() < 1e-10 && (arc.axial - 1.0).abs() < 1e-10);
     }
 }
@@ -193,7 +193,8 @@ fn a_link_does_not_step_where_its_polynomials_end() {
 /// Where a segment ends that is bent by a quarter turn, and by how much a straight one of 1 m leads on from there.
 fn quarter_turn(start: bool) -> [Vector2<f64>; 2] {
     let links = [link(FRAC_PI_2, &segment(0.1, 0.02, start)), link(0.0, &segment(1.0, 0.0, false))];
-    let ends: Vec<_> = chain(links.into_iter().map(Some)).map(|segment| segment.end.expect("all is known")).collect();
+    let ends: Vec<_> =
+        forward_kinematics(links.into_iter().map(Some)).map(|segment| segment.end.expect("all is known")).collect();
     [ends[0], ends[1] - ends[0]]
 }
 
@@ -218,6 +219,6 @@ fn a_connector_at_the_start_keeps_the_bases_tangent() {
 fn beyond_an_unknown_link_every_end_is_unknown() {
     let link = |theta: f64| Some(link(theta, &segment(0.1, 0.0, false)));
     let links = [link(0.1), link(0.2), None, link(0.3)];
-    let known: Vec<_> = chain(links.into_iter()).map(|segment| segment.end.is_some()).collect();
+    let known: Vec<_> = forward_kinematics(links.into_iter()).map(|segment| segment.end.is_some()).collect();
     assert_eq!(known, [true, true, false, false]);
 }

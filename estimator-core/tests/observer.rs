@@ -1,6 +1,6 @@
 //! The drift observer against the same Kalman filter in floats, and against what happens on arms.
 
-use estimator_core::{Disagreement, Observer, ObserverRule, Turns};
+use estimator_core::{BiasFilterConfig, Disagreement, Observer, Turns};
 use nalgebra::{Matrix3, RowVector3, Vector3};
 
 /// Values a second.
@@ -15,9 +15,9 @@ fn degrees(degrees: f64) -> Turns {
     Turns::from_rad(degrees.to_radians())
 }
 
-fn rule() -> ObserverRule {
-    ObserverRule {
-        step: (4_294_967_296.0 / (HZ * ObserverRule::RATE_S)).round() as u32,
+fn rule() -> BiasFilterConfig {
+    BiasFilterConfig {
+        step: (4_294_967_296.0 / (HZ * BiasFilterConfig::RATE_S)).round() as u32,
         prior: PRIOR.map(|sigma| (sigma * sigma / R * UNIT) as i32),
         growth: [0, 35, 5],
         gate: degrees(8.0),
@@ -40,7 +40,7 @@ impl Book {
     }
 
     fn step(&mut self, imu: f64, bend: f64) {
-        let a = Matrix3::new(1.0, 1.0 / (HZ * ObserverRule::RATE_S), 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0);
+        let a = Matrix3::new(1.0, 1.0 / (HZ * BiasFilterConfig::RATE_S), 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0);
         let growth = Vector3::from(rule().growth.map(|growth| f64::from(growth) / UNIT * R));
         let h = RowVector3::new(1.0, 0.0, bend / 90.0);
         self.x = a * self.x;

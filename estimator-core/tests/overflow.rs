@@ -3,7 +3,8 @@
 use std::sync::{Mutex, PoisonError};
 
 use estimator_core::{
-    AnchorRule, BendMap, Estimator, ImuReading, Phase, Q, Sample, Scalar, Segment, Table, Turns, saturations,
+    AnchorConfig, ArmConfig, BendMap, Estimator, ImuReading, Phase, Q, Sample, Scalar, SegmentConfig, Turns,
+    saturations,
 };
 use num_traits::Zero;
 
@@ -57,14 +58,14 @@ fn floats_from_tables_saturate_uncounted() {
 /// Steps of an arm with one sensor of θ = 1.2 (V − 1.5) at these counts.
 fn run(counts: u16, steps: u32) {
     let map = BendMap::from_volts(0.0, 1.2, -1.8, [0.5, 2.5]);
-    let segments = [Segment { bend: [Some(map), None], ..Segment::<Q>::bare(0.08, 0.017) }; 3];
-    let anchor = AnchorRule {
+    let segments = [SegmentConfig { bend: [Some(map), None], ..SegmentConfig::<Q>::uncalibrated(0.08, 0.017) }; 3];
+    let anchor = AnchorConfig {
         window: 10,
         rate_millihertz: 10_000,
         sample_rate_millihertz: 10_000,
         threshold: Turns::from_rad(0.01),
     };
-    let table = Table { tare_samples: 10, anchor, ..Table::bare(&segments) };
+    let table = ArmConfig { tare_samples: 10, anchor, ..ArmConfig::uncalibrated(&segments) };
     let mut estimator = Estimator::<Q, 3, 10>::new(&table).expect("a valid table");
     for step in 0..steps {
         let mut sample = Sample::missing(0);
@@ -72,7 +73,7 @@ fn run(counts: u16, steps: u32) {
         // 20 turns and more of drift.
         let heading = Phase::from_degrees(f64::from(step) * 7.0);
         sample.imu = [Some(ImuReading::Heading(heading)); 3];
-        let estimate = estimator.step(&sample);
+        let estimate = estimator.update_full(&sample);
         for method in estimator_core::Method::ALL {
             let _ = estimator.shape(&estimate, method);
         }
@@ -86,7 +87,8 @@ fn a_session_with_turns_and_turns_of_drift_counts_nothing() {
 
 #[test]
 fn a_table_out_of_range_is_noticed() {
-    let segment = Segment { length: Q::from_f64(30.0), offset: Q::from_f64(30.0), ..Segment::bare(1.0, 1.0) };
+    let segment =
+        SegmentConfig { length: Q::from_f64(30.0), offset: Q::from_f64(30.0), ..SegmentConfig::uncalibrated(1.0, 1.0) };
     let straight = || {
         let _ = estimator_core::Pcc::new(&segment).link(estimator_core::Angle::from(Q::zero()));
     };

@@ -1,6 +1,6 @@
 //! The covariance along the chain against its derivatives by finite differences, and in fixed point against floats.
 
-use estimator_core::{Angle, OffsetAt, Pcc, Q, SCALE, Scalar, Segment, Spread, chain};
+use estimator_core::{Angle, CovariancePropagation, OffsetAt, Pcc, Q, Scalar, SegmentConfig, VARIANCE_SCALE, chain};
 use nalgebra::Vector2;
 
 const BENDS: [f64; 6] = [0.3, -0.5, 0.8, 0.4, -0.2, 0.6];
@@ -12,10 +12,10 @@ const HEADING: f64 = 0.01;
 const POINT: f64 = 0.001;
 
 /// The reference arm: connectors behind and before the curves in turn.
-fn segments() -> [Segment<f64>; 6] {
-    core::array::from_fn(|i| Segment {
+fn segments() -> [SegmentConfig<f64>; 6] {
+    core::array::from_fn(|i| SegmentConfig {
         offset_at: if i % 2 == 0 { OffsetAt::End } else { OffsetAt::Start },
-        ..Segment::bare(0.080, 0.017)
+        ..SegmentConfig::uncalibrated(0.080, 0.017)
     })
 }
 
@@ -23,19 +23,19 @@ fn segments() -> [Segment<f64>; 6] {
 fn ends(bends: &[f64]) -> Vec<Vector2<f64>> {
     let links = segments().into_iter().zip(bends.to_vec());
     let links = links.map(|(segment, bend)| Some(Pcc::new(&segment).link(Angle::from(bend))));
-    chain(links).map(|segment| segment.end.expect("all links are known")).collect()
+    forward_kinematics(links).map(|segment| segment.end.expect("all links are known")).collect()
 }
 
 /// Deviations of each end along x and y, mm, and their correlation.
 fn spread<S: Scalar>() -> Vec<[f64; 3]> {
-    let [heading, point] = [HEADING, POINT].map(|deviation| S::from_f64(deviation.powi(2) * SCALE));
-    let mut spread = Spread::<S>::base(heading, point);
+    let [heading, point] = [HEADING, POINT].map(|deviation| S::from_f64(deviation.powi(2) * VARIANCE_SCALE));
+    let mut spread = CovariancePropagation::<S>::base(heading, point);
     let mut before = Vector2::zeros();
     let of = |(i, end): (usize, Vector2<f64>)| {
         let chord: Vector2<f64> = end - before;
         before = end;
         let lever = if i % 2 == 0 { 57.0 / 97.0 } else { 40.0 / 97.0 };
-        let [lever, theta] = [lever, DEVIATIONS[i].powi(2) * SCALE].map(<S as Scalar>::from_f64);
+        let [lever, theta] = [lever, DEVIATIONS[i].powi(2) * VARIANCE_SCALE].map(<S as Scalar>::from_f64);
         spread.step(chord.map(<S as Scalar>::from_f64), lever, theta);
         deviations(spread.end().square_metres())
     };

@@ -50,7 +50,7 @@ impl Run {
     /// If the table is larger than any estimator.
     pub fn new(table: &ArmFile, scenario: Scenario, seed: u64, seconds: f64) -> Result<Self, FileError> {
         let baked = table.bake::<Q>(RATE_HZ)?;
-        let table = baked.table();
+        let table = baked.config();
         let mut estimator: Box<HostEstimator<Q>> =
             Box::new(Estimator::new(&table).expect("there is room for any table"));
         let (mut rig, program) = (Rig::new(scenario, seed), Program::new(scenario, seed));
@@ -63,9 +63,9 @@ impl Run {
             for (i, registers) in rig.imu_quaternions().into_iter().enumerate() {
                 sample.imu[i] = Some(ImuReading::from_bno055(registers));
             }
-            estimator.step(&sample);
+            estimator.update_full(&sample);
             let contacts = estimator.contacts();
-            told.push(core::array::from_fn(|i| contacts[i].is_touched));
+            told.push(core::array::from_fn(|i| contacts[i].in_contact));
             bends_rad.push(rig.contact_bends_rad());
             for _ in 0..TICKS {
                 rig.step(1.0 / RATE_HZ / f64::from(TICKS), program.duties(rig.time_s()));

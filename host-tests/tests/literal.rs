@@ -5,7 +5,7 @@
 
 mod synthetic;
 
-use estimator_core::{Estimator, Method, Q, Scalar, Table};
+use estimator_core::{ArmConfig, Estimator, FusedOps, Method, Q, Scalar};
 use host_tests::literal::{self, Answer, Shape};
 use synthetic::{Kind, NoiseRanges, Random};
 
@@ -13,17 +13,17 @@ use synthetic::{Kind, NoiseRanges, Random};
 const BRINK: f64 = 1e-6;
 
 /// The estimator's answers in the oracle's form.
-fn estimated<S: Scalar>(arm: &literal::Arm, samples: &[estimator_core::Sample<16>]) -> Vec<[Shape; 4]> {
+fn estimated<S: FusedOps>(arm: &literal::Arm, samples: &[estimator_core::Sample<16>]) -> Vec<[Shape; 4]> {
     let segments = synthetic::segments::<S>(arm);
     let (anchor, tare_samples) = synthetic::rule(arm);
-    let table = Table { tare_samples, anchor, ..Table::bare(&segments) };
+    let table = ArmConfig { tare_samples, anchor, ..ArmConfig::uncalibrated(&segments) };
     let mut estimator = Estimator::<S, 16, 100>::new(&table).expect("a table within capacity");
     let shape = |shape: estimator_core::Shape<S, 16>| Shape {
         theta: shape.iter().map(|segment| segment.theta.map(estimator_core::Angle::rad)).collect(),
         end: shape.iter().map(|segment| segment.end.map(|end| [end.x.to_f64(), end.y.to_f64()])).collect(),
     };
     let step = |sample| {
-        let estimate = estimator.step(sample);
+        let estimate = estimator.update_full(sample);
         Method::ALL.map(|method| shape(estimator.shape(&estimate, method)))
     };
     samples.iter().map(step).collect()

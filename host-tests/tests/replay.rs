@@ -5,7 +5,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use estimator_core::{Q, Scalar};
+use estimator_core::{FusedOps, Q, Scalar};
 use proprio::estimates::{write_header, write_row};
 use proprio::replay::{NamedTable, Outcome, replay};
 use proprio::score::Score;
@@ -31,7 +31,7 @@ fn reference_table() -> PathBuf {
     here("../calibration-tables/planar-6.toml")
 }
 
-fn outcomes<S: Scalar>(session: &Path) -> Vec<Outcome<S>> {
+fn outcomes<S: FusedOps>(session: &Path) -> Vec<Outcome<S>> {
     let mut outcomes = Vec::new();
     let path = reference_table();
     let table = NamedTable::load(&path).expect("the table is good");

@@ -7,7 +7,7 @@ use std::path::Path;
 
 use divan::Bencher;
 use divan::counter::ItemsCount;
-use estimator_core::{Q, Scalar};
+use estimator_core::{FusedOps, Q, Scalar};
 use proprio::replay::replay;
 use proprio::score::{Figures, Score};
 
@@ -24,7 +24,7 @@ fn main() {
     divan::main();
 }
 
-fn score<S: Scalar>(session: &Path, samples: u32) -> [Figures; 4] {
+fn score<S: FusedOps>(session: &Path, samples: u32) -> [Figures; 4] {
     let table = common::table();
     let mut score = Score::new(table.file.length_mm());
     let extent = replay::<S>(session, &table, |row, outcome| {
@@ -35,7 +35,7 @@ fn score<S: Scalar>(session: &Path, samples: u32) -> [Figures; 4] {
     score.figures()
 }
 
-fn replays<S: Scalar>(bencher: Bencher) {
+fn replays<S: FusedOps>(bencher: Bencher) {
     let (session, samples) = (common::session(SECONDS, RATE_HZ), SECONDS * RATE_HZ);
     bencher.counter(ItemsCount::new(samples)).bench_local(|| score::<S>(&session, samples));
 }

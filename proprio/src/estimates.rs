@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 
 use calibration_tables::ArmFile;
-use estimator_core::{Method, Scalar, SegmentShape};
+use estimator_core::{FusedOps, Method, SegmentShape};
 
 use crate::error::Error;
 use crate::output::OutputFile;
@@ -28,7 +28,7 @@ impl EstimateWriter {
     ///
     /// # Errors
     /// [`Error::Output`].
-    pub fn write<S: Scalar>(&mut self, outcome: &Outcome<S>) -> Result<(), Error> {
+    pub fn write<S: FusedOps>(&mut self, outcome: &Outcome<S>) -> Result<(), Error> {
         write_row(&mut self.file, outcome).map_err(|error| self.file.error(error))
     }
 
@@ -59,7 +59,7 @@ pub fn write_header(sink: &mut impl Write, segments: usize) -> io::Result<()> {
 ///
 /// # Errors
 /// Those of `sink`.
-pub fn write_row<S: Scalar>(sink: &mut impl Write, outcome: &Outcome<S>) -> io::Result<()> {
+pub fn write_row<S: FusedOps>(sink: &mut impl Write, outcome: &Outcome<S>) -> io::Result<()> {
     write!(sink, "{}", outcome.estimate.time_us as f64 / 1e6)?;
     for SegmentShape { theta, end } in outcome.shapes.iter().flatten() {
         match theta {

@@ -1,6 +1,6 @@
 //! How honest the estimates' covariances are: errors against truth, as the covariances would have them.
 
-use estimator_core::{Method, SCALE, Scalar};
+use estimator_core::{FusedOps, Method, VARIANCE_SCALE};
 use serde::Serialize;
 
 use crate::replay::Outcome;
@@ -89,13 +89,13 @@ pub struct HonestyFigures {
 
 impl Honesty {
     /// Adds one row, as far as it has truth and covariances.
-    pub fn add<S: Scalar>(&mut self, row: &Row, outcome: &Outcome<S>) {
+    pub fn add<S: FusedOps>(&mut self, row: &Row, outcome: &Outcome<S>) {
         let shape = &outcome.shapes[Method::Fusion as usize];
         let count = shape.len();
         for (i, (segment, uncertainty)) in shape.iter().zip(&outcome.uncertainties).enumerate() {
             let theta = segment.theta.zip(row.true_theta(i)).zip(uncertainty.theta);
             if let Some(((theta, truth), variance)) = theta {
-                self.thetas.add((theta.rad() - truth).powi(2) * SCALE / variance.to_f64());
+                self.thetas.add((theta.rad() - truth).powi(2) * VARIANCE_SCALE / variance.to_f64());
             }
             let end = segment.end.zip(row.truth[i]).zip(uncertainty.end);
             if let Some(((end, truth), covariance)) = end {

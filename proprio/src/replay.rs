@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use calibration_tables::{ArmFile, Baked, FileError, MAX_SEGMENTS, MAX_WINDOW};
-use estimator_core::{Contacts, Estimate, Estimator, Method, Q, Scalar, Shape, Uncertainties};
+use estimator_core::{Contacts, Estimate, Estimator, FusedOps, Method, Q, Shape, Uncertainties};
 use telemetry::{Hello, TICK_HZ};
 
 use crate::error::Error;
@@ -52,7 +52,7 @@ impl<'p> NamedTable<'p> {
     ///
     /// # Errors
     /// [`Error::Table`] on an arm description.
-    pub fn bake<S: Scalar>(&self, rate_hz: f64) -> Result<Baked<S>, Error> {
+    pub fn bake<S: FusedOps>(&self, rate_hz: f64) -> Result<Baked<S>, Error> {
         self.file.bake(rate_hz).map_err(|source| self.error(source))
     }
 
@@ -69,7 +69,7 @@ pub struct Outcome<S> {
     /// The shape by each of [`Method::ALL`].
     pub shapes: [Shape<S, MAX_SEGMENTS>; Method::ALL.len()],
     /// How far the fused shape may be off; empty where the table does not say what errors come from.
-    pub uncertainties: Uncertainties<S, MAX_SEGMENTS>,
+    pub uncertainties: Uncertainties<MAX_SEGMENTS>,
     /// What touches the segments.
     pub contacts: Contacts<MAX_SEGMENTS>,
 }
@@ -112,14 +112,14 @@ impl Recording {
 ///
 /// # Panics
 /// Never: the checks of the table's file are at least as strict as the estimator's.
-pub fn replay<S: Scalar>(
+pub fn replay<S: FusedOps>(
     session: &Path,
     table: &NamedTable,
     mut visit: impl FnMut(&Row, &Outcome<S>) -> Result<(), Error>,
 ) -> Result<Extent, Error> {
     let mut reader = SessionReader::open(session, &table.needs()?)?;
     let baked = table.bake::<S>(reader.rate_hz(table.file.rate_hz))?;
-    let baked = baked.table();
+    let baked = baked.config();
     let mut estimator: Box<HostEstimator<S>> = Box::new(Estimator::new(&baked).expect("the file was checked"));
 
     let mut progress = Progress::new(format!("replaying {}", session.display()), reader.progress().1);
@@ -128,7 +128,7 @@ pub fn replay<S: Scalar>(
         if row.starts {
             estimator.start().expect("the file was checked");
         }
-        let estimate = estimator.step(&row.sample);
+        let estimate = estimator.update_full(&row.sample);
         let shapes = Method::ALL.map(|method| estimator.shape(&estimate, method));
         let (uncertainties, contacts) = (estimator.uncertainties(), estimator.contacts());
         visit(&row, &Outcome { estimate, shapes, uncertainties, contacts })?;

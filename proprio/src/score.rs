@@ -1,6 +1,6 @@
 //! Errors against truth: world-frame tip distance and bend angle, by method.
 
-use estimator_core::{Method, Scalar};
+use estimator_core::{FusedOps, Method};
 use serde::Serialize;
 
 use crate::distances::Distances;
@@ -39,7 +39,7 @@ pub struct Figures {
 
 /// Distance of the tip from its true place by each of [`Method::ALL`], where both are known, m.
 #[must_use]
-pub fn tip_errors_m<S: Scalar>(row: &Row, outcome: &Outcome<S>) -> [Option<f64>; Method::ALL.len()] {
+pub fn tip_errors_m<S: FusedOps>(row: &Row, outcome: &Outcome<S>) -> [Option<f64>; Method::ALL.len()] {
     outcome.shapes.each_ref().map(|shape| {
         let tip = shape.last()?.end?;
         let truth = row.truth.get(shape.len() - 1).copied().flatten()?;
@@ -56,7 +56,7 @@ impl Score {
     }
 
     /// Adds one row, as far as it has truth.
-    pub fn add<S: Scalar>(&mut self, row: &Row, outcome: &Outcome<S>) {
+    pub fn add<S: FusedOps>(&mut self, row: &Row, outcome: &Outcome<S>) {
         for (errors, shape) in self.errors.iter_mut().zip(&outcome.shapes) {
             for (i, segment) in shape.iter().enumerate() {
                 if let Some((theta, truth)) = segment.theta.zip(row.true_theta(i)) {

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use calibration_tables::{ObserverTuningKeys, RmseKeys, Stopped, TuningKeys};
+use calibration_tables::{DriftTuningKeys, RmseKeys, Stopped, TuningKeys};
 use comfy_table::presets::NOTHING;
 use comfy_table::{CellAlignment, Table};
 use estimator_core::Method;
@@ -49,13 +49,18 @@ pub fn tuning(record: &TuningKeys, iteration_time: Duration) -> String {
         "{}\n{stopped} after {iterations} iterations of {each_s:.3} s; the table has iteration {kept}\n",
         text(&mut table)
     );
-    filters + &record.observer.as_ref().map_or_else(String::new, observer) + &variances(record)
+    filters + &record.drift.as_ref().map_or_else(String::new, observer) + &variances(record)
 }
 
 /// The drift observer's parameters, before and after.
-fn observer(of: &ObserverTuningKeys) -> String {
+fn observer(of: &DriftTuningKeys) -> String {
     let mut table = table(&["drift observer", "before", "after"]);
-    let keys = [("noise_deg2_s", of.noise_deg2_s), ("walk_deg_per_s", of.walk_deg_per_s), ("slope", of.slope)];
+    let keys = [
+        ("rate_deg_per_s", of.rate_deg_per_s),
+        ("rate_random_walk_deg_per_s_sqrt_s", of.rate_random_walk_deg_per_s_sqrt_s),
+        ("angle_random_walk_deg_per_sqrt_s", of.angle_random_walk_deg_per_sqrt_s),
+        ("offset_deg", of.offset_deg),
+    ];
     for (name, values) in keys {
         table.add_row([name.to_owned()].into_iter().chain(values.map(|value| format!("{value:.3e}"))));
     }

@@ -1,6 +1,6 @@
 //! Between messages and `estimator-core`: the one way for board and host.
 
-use estimator_core::{Contact, ImuReading, Q, SCALE, SegmentShape, Shape};
+use estimator_core::{Contact, ImuReading, Q, SegmentShape, Shape, VARIANCE_SCALE};
 
 use crate::message::{Estimate, SEGMENTS, Sample, SegmentEstimate, SegmentUncertainty, Uncertainty};
 
@@ -36,7 +36,7 @@ impl Uncertainty {
     /// How far the shape after the sample of this tick may be off, and what touches the arm. Of what the table does not say
     /// how to tell, nothing is known.
     #[must_use]
-    pub fn of(tick: u32, errors: &[estimator_core::Uncertainty<Q>], contacts: &[Contact]) -> Self {
+    pub fn of(tick: u32, errors: &[estimator_core::Uncertainty], contacts: &[Contact]) -> Self {
         let mut segments = [SegmentUncertainty::default(); SEGMENTS];
         for (segment, error) in segments.iter_mut().zip(errors) {
             segment.theta = error.theta.map(Q::to_bits);
@@ -44,7 +44,7 @@ impl Uncertainty {
         }
         for (segment, contact) in segments.iter_mut().zip(contacts) {
             segment.contact_percent = contact.score_percent.min(u8::MAX.into()) as u8;
-            segment.is_touched = contact.is_touched;
+            segment.is_touched = contact.in_contact;
         }
         Self { tick, segments }
     }
@@ -65,13 +65,13 @@ impl SegmentUncertainty {
 }
 
 fn variance(bits: i32) -> f64 {
-    Q::from_bits(bits).to_f64() / SCALE
+    Q::from_bits(bits).to_f64() / VARIANCE_SCALE
 }
 
 /// Which segments something touches.
 #[must_use]
 pub fn touched(contacts: &[Contact]) -> [bool; SEGMENTS] {
     let mut touched = [false; SEGMENTS];
-    touched.iter_mut().zip(contacts).for_each(|(touched, contact)| *touched = contact.is_touched);
+    touched.iter_mut().zip(contacts).for_each(|(touched, contact)| *touched = contact.in_contact);
     touched
 }

@@ -1,12 +1,12 @@
 //! From a table to the estimator's parameters.
 
 use calibration_tables::{ArmFile, FileError};
-use estimator_core::{Estimator, Method, ObserverRule, OffsetAt, Q, SENSORS_PER_SEGMENT, Sample, Segment};
+use estimator_core::{BiasFilterConfig, Estimator, Method, OffsetAt, Q, SENSORS_PER_SEGMENT, Sample, SegmentConfig};
 
 use super::common::{DESCRIPTION, TABLE, edited, parse};
 
 /// The first segment, baked in floats.
-fn first(text: &str, rate_hz: f64) -> Segment<f64> {
+fn first(text: &str, rate_hz: f64) -> SegmentConfig<f64> {
     parse(text).bake::<f64>(rate_hz).expect("it is a table").table().segments[0]
 }
 
@@ -32,7 +32,7 @@ fn a_table_of_which_one_segment_is_missing_names_that_segment() {
 fn an_arm_without_bend_sensors_bakes() {
     let file = parse(&format!("{DESCRIPTION}bend = []\n"));
     let baked = file.bake::<Q>(10.0).expect("it is a table");
-    let table = baked.table();
+    let table = baked.config();
     assert_eq!(table.segments[0].bend, [None; SENSORS_PER_SEGMENT]);
     assert!(Estimator::<Q, 1, 100>::new(&table).is_ok());
 }
@@ -49,7 +49,7 @@ fn geometry_is_in_metres() {
 #[test]
 fn reference_headings_are_baked() {
     let baked = parse(TABLE).bake::<f64>(10.0).expect("a table");
-    let found: Vec<f64> = baked.table().segments.iter().map(|segment| segment.reference.rad().to_degrees()).collect();
+    let found: Vec<f64> = baked.config().segments.iter().map(|segment| segment.reference.rad().to_degrees()).collect();
     // Turns are whole units of 2⁻³² turns.
     assert!((found[0] - 5.0).abs() < 1e-7 && (found[1] + 5.0).abs() < 1e-7, "{found:?}");
 }
@@ -173,11 +173,11 @@ fn the_reference_table_runs() {
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("planar-6.toml");
     let file = ArmFile::load(&path).expect("the reference table is committed");
     let baked = file.bake::<Q>(100.0).expect("a table");
-    let table = baked.table();
+    let table = baked.config();
     let mut estimator = Estimator::<Q, 6, 100>::new(&table).expect("it has six segments");
     let mut sample = Sample::missing(0);
     sample.bend = [[Some(2300); SENSORS_PER_SEGMENT]; 6];
-    let estimate = estimator.step(&sample);
+    let estimate = estimator.update_full(&sample);
     let tip = estimator.shape(&estimate, Method::Fusion)[5].end.expect("every bend sensor was read");
     assert!(tip.x.to_f64().hypot(tip.y.to_f64()) < 0.5821, "no farther than the straight arm is long");
 }
@@ -199,7 +199,7 @@ fn the_checksum_tells_the_smallest_change_of_a_parameter() {
 }
 
 /// The observer of the table with `[drift]` of these lines.
-fn observer(drift: &str, rate_hz: f64) -> Option<ObserverRule> {
+fn observer(drift: &str, rate_hz: f64) -> Option<BiasFilterConfig> {
     let text = edited("[[segment]]", &format!("[drift]\n{drift}\n[[segment]]"));
     parse(&text).bake::<Q>(rate_hz).expect("a table").table().observer
 }

@@ -36,7 +36,7 @@ pub struct Replayed {
 /// If the reference table is none.
 pub fn replay<'s>(samples: impl Iterator<Item = &'s Sample>) -> Vec<Replayed> {
     let baked = table().bake::<Q>(RATE_HZ).expect("the reference table bakes");
-    let table = baked.table();
+    let table = baked.config();
     let start = || Estimator::<Q, SEGMENTS, 100>::new(&table).expect("the reference arm has six segments");
     let (mut estimator, mut tare, mut touched_before) = (start(), 0, [false; SEGMENTS]);
     let mut replayed = Vec::new();
@@ -44,7 +44,7 @@ pub fn replay<'s>(samples: impl Iterator<Item = &'s Sample>) -> Vec<Replayed> {
         if sample.tare != tare {
             (estimator, tare) = (start(), sample.tare);
         }
-        let estimate = estimator.step(&sample.into());
+        let estimate = estimator.update_full(&sample.into());
         let (errors, contacts) = (estimator.uncertainties(), estimator.contacts());
         let touched = touched(&contacts);
         replayed.push(Replayed {

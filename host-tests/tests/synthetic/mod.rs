@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use estimator_core::{AnchorRule, BendMap, Noise, OffsetAt, Phase, Sample, Scalar, Segment, Turns};
+use estimator_core::{AnchorConfig, BendMap, FusedOps, Noise, OffsetAt, Phase, Sample, Scalar, SegmentConfig, Turns};
 use host_tests::literal;
 
 /// Volts between which all sensors are calibrated.
@@ -74,7 +74,7 @@ pub fn arm(kind: &Kind, random: &mut Random) -> literal::Arm {
         let fewest = if i == 0 { fewest.max(most.min(1)) } else { fewest }; // or the arm could be without any
         let sensors = fewest + random.bits() % (most - fewest + 1);
         heading += random.or_zero(-0.3, 0.3);
-        literal::Segment {
+        literal::SegmentConfig {
             length: random.within(0.03, 0.12),
             offset: random.or_zero(0.005, 0.03),
             offset_at_end: random.chance(0.5),
@@ -216,7 +216,7 @@ fn board_reading(kind: &Kind, heading: f64, random: &mut Random) -> estimator_co
 }
 
 /// The arm's segments as the estimator takes them: process noise per sample, covariances as ratios to the larger R.
-pub fn segments<S: Scalar>(arm: &literal::Arm) -> Vec<Segment<S>> {
+pub fn segments<S: FusedOps>(arm: &literal::Arm) -> Vec<SegmentConfig<S>> {
     let noise = |noise: &literal::Noise| {
         let unit = noise.r_imu.max(noise.r_bend);
         Noise {
@@ -229,7 +229,7 @@ pub fn segments<S: Scalar>(arm: &literal::Arm) -> Vec<Segment<S>> {
     };
     let segment = |segment: &literal::Segment| {
         let map = |k: usize| segment.bend.get(k).map(|s| BendMap::from_volts(s.c2, s.c1, s.c0, VOLTS));
-        Segment {
+        SegmentConfig {
             length: S::from_f64(segment.length),
             offset: S::from_f64(segment.offset),
             offset_at: if segment.offset_at_end { OffsetAt::End } else { OffsetAt::Start },
@@ -245,8 +245,8 @@ pub fn segments<S: Scalar>(arm: &literal::Arm) -> Vec<Segment<S>> {
 }
 
 /// The anchor's rule and the tare in samples.
-pub fn rule(arm: &literal::Arm) -> (AnchorRule, u32) {
-    let anchor = AnchorRule {
+pub fn rule(arm: &literal::Arm) -> (AnchorConfig, u32) {
+    let anchor = AnchorConfig {
         window: arm.window as u16,
         rate_millihertz: (arm.anchor_rate * 1000.0) as u32,
         sample_rate_millihertz: (arm.rate * 1000.0) as u32,

@@ -3,7 +3,7 @@
 //! Their parameters are those of the reference arm, but for what a sweep shows of its own: which segments bend alike, how
 //! wrong bend sensors are, and how far constant curvature is from the truth.
 
-use calibration_tables::{AlikeKeys, ArmFile, RATIO_RANGE, SegmentKeys, UncertaintyKeys};
+use calibration_tables::{ArmFile, CoupledKeys, RATIO_RANGE, SegmentKeys, UncertaintyKeys};
 
 use super::sweep::Sweep;
 
@@ -11,8 +11,6 @@ use super::sweep::Sweep;
 const OBSERVED_DEG: f64 = 0.1;
 /// which is this share of it.
 const ANCHORED_SHARE: f64 = 0.4;
-/// Share of the observer's variance that its bias is off by: it counts as noise what hysteresis takes back.
-const DRIFT_SHARE: f64 = 0.055;
 /// Deviation of each heading behind the observer: its gyroscope's sensitivity. The anchor follows it.
 const HEADING_DEG: f64 = 0.55;
 /// Deviation of θ that a touch adds.
@@ -22,11 +20,12 @@ const END_SHARE: f64 = 0.9;
 
 /// Sets them for a table whose maps and filters are set. `misfit_m` is the distance of the true tip from constant curvature.
 pub(super) fn set(sweep: &Sweep, misfit_m: f64, table: &mut ArmFile) {
-    let is_observed = table.observer().is_some();
+    let is_observed = table.bias_filter().is_some();
     let bend_deg = bend_deg(&table.segments);
     let deviations = UncertaintyKeys {
         theta_deg: if is_observed { OBSERVED_DEG } else { ANCHORED_SHARE * bend_deg },
-        drift_share: DRIFT_SHARE,
+        bias_share: UncertaintyKeys::bias_share(),
+        retired: Default::default(),
         bend_deg,
         contact_deg: CONTACT_DEG,
         heading_deg: if is_observed { HEADING_DEG } else { 0.0 },
@@ -37,11 +36,11 @@ pub(super) fn set(sweep: &Sweep, misfit_m: f64, table: &mut ArmFile) {
     table.uncertainty = Some(deviations.scaled(1.0));
     table.contact.get_or_insert_default();
     for segment in &mut table.segments {
-        segment.alike = None;
+        segment.coupled_to = None;
     }
     for like in sweep.alike().iter().filter(|like| RATIO_RANGE.contains(&like.ratio)) {
-        let alike = &mut table.segments[like.second - 1].alike;
-        alike.get_or_insert(AlikeKeys { segment: like.first, ratio: like.ratio });
+        let alike = &mut table.segments[like.second - 1].coupled_to;
+        alike.get_or_insert(CoupledKeys { segment: like.first, ratio: like.ratio });
     }
 }
 

@@ -45,6 +45,8 @@ pub(super) fn quadratic(pairs: &[(u16, f64)]) -> Option<Fit> {
         c2: curve,
         rmse_deg: Some(residual.sqrt().to_degrees()),
         volts: Some([lo, hi]),
+        curve: None,
+        memory: None,
     };
     Some(Fit { map, samples: pairs.len(), rmse: residual.sqrt(), unexplained: residual / variance })
 }

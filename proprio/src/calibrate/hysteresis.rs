@@ -66,7 +66,7 @@ fn apply(rows: &Rows, weights: Weights, segment: &mut SegmentKeys) {
     }
     let plays = rows.half_widths.iter().zip(weights.iter());
     let play = |(half_width, weight): (&f64, &f64)| PlayKeys {
-        half_width_deg: (half_width * scale).to_degrees(),
+        radius_deg: (half_width * scale).to_degrees(),
         weight: weight / scale,
     };
     segment.hysteresis = plays.map(play).collect();

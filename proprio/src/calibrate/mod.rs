@@ -76,7 +76,7 @@ pub fn calibrate(session: &Path, arm: &NamedTable, hysteresis: Correct) -> Resul
         (segment.orient, segment.coord) = (None, None);
     }
     hysteresis::set(&sweep, &mut table.segments, hysteresis);
-    table.drift.get_or_insert_with(DriftKeys::observer);
+    table.drift.get_or_insert_with(DriftKeys::kalman);
     let mut table = NamedTable { file: table, path: arm.path };
     let misfit_m = residuals::set_filters(session, &mut table, sweep.rate_hz)?;
     let percent = misfit_m * 1e5 / table.file.length_mm();

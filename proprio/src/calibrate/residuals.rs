@@ -13,7 +13,9 @@
 use std::path::Path;
 
 use calibration_tables::{MAX_WINDOW, NoiseKeys};
-use estimator_core::{Anchor, Angle, Pace, Pcc, Segment, SegmentEstimate, Slot, Turns, chain};
+use estimator_core::{
+    Angle, Decimated, Decimator, MovingAverageAnchor, Pcc, SegmentConfig, SegmentEstimate, Turns, forward_kinematics,
+};
 use nalgebra::Vector2;
 
 use crate::error::Error;
@@ -54,9 +56,9 @@ impl Errors {
 
 /// What is gathered of one segment while the session is replayed.
 struct Gatherer<'t> {
-    segment: &'t Segment<f64>,
+    segment: &'t SegmentConfig<f64>,
     /// Anchors to the truth, as perfect bend sensors would be.
-    anchor: Anchor<{ MAX_WINDOW as usize }>,
+    anchor: MovingAverageAnchor<{ MAX_WINDOW as usize }>,
     orient: Errors,
     coord: Errors,
 }
@@ -65,21 +67,25 @@ struct Gatherer<'t> {
 /// tip from the chain of the true bend angles.
 pub(super) fn set_filters(session: &Path, table: &mut NamedTable, rate_hz: f64) -> Result<f64, Error> {
     let baked = table.bake::<f64>(rate_hz)?;
-    let baked = baked.table();
-    let coord_ratio = if baked.observer.is_some() { OBSERVED_COORD_RATIO } else { ANCHORED_COORD_RATIO };
-    let gatherer =
-        |segment| Gatherer { segment, anchor: Anchor::new(), orient: Errors::default(), coord: Errors::default() };
+    let baked = baked.config();
+    let coord_ratio = if baked.bias_filter.is_some() { OBSERVED_COORD_RATIO } else { ANCHORED_COORD_RATIO };
+    let gatherer = |segment| Gatherer {
+        segment,
+        anchor: MovingAverageAnchor::new(),
+        orient: Errors::default(),
+        coord: Errors::default(),
+    };
     let mut gatherers: Vec<Gatherer> = baked.segments.iter().map(gatherer).collect();
     let mut headings = Errors::default();
-    let (mut pace, mut misfit, mut tips) = (Pace::new(), 0.0, 0.0);
+    let (mut pace, mut misfit, mut tips) = (Decimator::new(), 0.0, 0.0);
     replay::<f64>(session, table, |row, outcome| {
         if let Some(distance) = truth_misfit(row, baked.segments) {
             (misfit, tips) = (misfit + distance * distance, tips + 1.0);
         }
         if row.starts {
-            pace = Pace::new();
+            pace = Decimator::new();
             for gatherer in &mut gatherers {
-                gatherer.anchor = Anchor::new();
+                gatherer.anchor = MovingAverageAnchor::new();
             }
         }
         let slot = pace.tick(&baked.anchor);
@@ -101,17 +107,17 @@ pub(super) fn set_filters(session: &Path, table: &mut NamedTable, rate_hz: f64) 
 }
 
 /// Distance of the true tip from the chain of the true bend angles, m.
-pub(crate) fn truth_misfit(row: &Row, segments: &[Segment<f64>]) -> Option<f64> {
+pub(crate) fn truth_misfit(row: &Row, segments: &[SegmentConfig<f64>]) -> Option<f64> {
     let thetas = segments.iter().enumerate().map(|(i, segment)| (row.true_theta(i), segment));
     let links = thetas.map(|(theta, segment)| theta.map(|theta| Pcc::new(segment).link(Angle::from(theta))));
-    let tip = chain(links).last()?.end?;
+    let tip = forward_kinematics(links).last()?.end?;
     let truth = row.truth.get(segments.len() - 1)?.as_ref()?;
     Some((tip - Vector2::new(truth.x_m, truth.y_m)).norm())
 }
 
 impl Gatherer<'_> {
     /// Adds one row; gives the errors of θ by the IMUs and by the bend sensors, rad, where both are known.
-    fn add_row(&mut self, truth: Option<f64>, estimate: &SegmentEstimate<f64>, slot: Slot) -> Option<[f64; 2]> {
+    fn add_row(&mut self, truth: Option<f64>, estimate: &SegmentEstimate<f64>, slot: Decimated) -> Option<[f64; 2]> {
         let imu = estimate.imu_o.map(Angle::rad);
         self.anchor.push(slot, imu.zip(truth).map(|(imu, truth)| Turns::from_rad(imu - truth)));
         let (truth, imu, bend) = (truth?, imu? - self.anchor.offset()?.rad(), estimate.bend?);

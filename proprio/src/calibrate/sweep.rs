@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use calibration_tables::{ArmFile, MAX_SEGMENTS};
-use estimator_core::{Heading, ImuReading, Phase, SENSORS_PER_SEGMENT, Turns};
+use estimator_core::{HeadingTracker, ImuReading, Phase, SENSORS_PER_SEGMENT, Turns};
 
 use super::error::{CalibrationError, Warning};
 use crate::error::Error;
@@ -57,8 +57,8 @@ pub(super) struct Like {
 
 /// Headings come within one turn, from cameras as from IMUs.
 struct Unwrap {
-    imu: [Heading<f64>; MAX_SEGMENTS],
-    truth: [Heading<f64>; MAX_SEGMENTS],
+    imu: [HeadingTracker<f64>; MAX_SEGMENTS],
+    truth: [HeadingTracker<f64>; MAX_SEGMENTS],
 }
 
 impl Sweep {
@@ -79,7 +79,7 @@ impl Sweep {
             imu: vec![Vec::new(); n],
             sensors: sensor_columns(&reader).map_err(refuse)?,
         };
-        let unread = [Heading::new(0, Turns::ZERO); MAX_SEGMENTS];
+        let unread = [HeadingTracker::new(0, Turns::ZERO); MAX_SEGMENTS];
         let mut unwrap = Unwrap { imu: unread, truth: unread };
         let mut progress = Progress::new(format!("reading {}", session.display()), reader.progress().1);
         while let Some(row) = reader.next_row()? {

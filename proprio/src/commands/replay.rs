@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use estimator_core::{Q, Scalar, saturations};
+use estimator_core::{FusedOps, Q, saturations};
 use proprio::error::Error;
 use proprio::estimates::EstimateWriter;
 use proprio::figures::{AllFigures, ByMethod, SessionFigures};
@@ -55,7 +55,7 @@ fn tell(path: &Path, recorded: &Comparison, firmware: Option<&str>) {
 /// Compares what the board has estimated of a row.
 type Compare<S> = fn(&mut Comparison, &Row, &Outcome<S>);
 
-fn replay_all<S: Scalar>(
+fn replay_all<S: FusedOps>(
     sessions: &[PathBuf],
     table: &NamedTable,
     mut out: Option<&mut EstimateWriter>,

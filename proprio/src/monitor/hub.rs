@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use estimator_core::Table;
+use estimator_core::ArmConfig;
 
 use super::feed::{Batch, Feed, Status, Uncertainty};
 use super::live::{Live, Taken};
@@ -31,7 +31,7 @@ pub(super) struct Hub<'t> {
 }
 
 impl<'t> Hub<'t> {
-    pub fn new(shared: Arc<Shared>, events: Subscription, table: Option<&'t Table<'t, estimator_core::Q>>) -> Self {
+    pub fn new(shared: Arc<Shared>, events: Subscription, table: Option<&'t ArmConfig<'t, estimator_core::Q>>) -> Self {
         let live = Live::new(table.map(Shadow::new));
         let now = Instant::now();
         Self { shared, events, live, batch: Batch::default(), batched: now, told: now, notes: Vec::new() }

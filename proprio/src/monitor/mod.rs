@@ -169,7 +169,7 @@ fn shared(link: Option<Link>, options: Options) -> Shared {
 }
 
 fn hub(shared: &Arc<Shared>, events: Subscription, baked: Option<&Baked<Q>>, stop: &AtomicBool) {
-    let table = baked.map(Baked::table);
+    let table = baked.map(Baked::config);
     let table = table.as_ref().filter(|table| table.segments.len() == SEGMENTS);
     if let Some(link) = &shared.link {
         Hub::new(Arc::clone(shared), events, table).run(link, stop);

@@ -120,7 +120,7 @@ impl Sessions {
         let segments = file.segments.len();
         let mut reader = SessionReader::open(path, &table.needs()?)?;
         let baked = table.bake::<Q>(reader.rate_hz(file.rate_hz))?;
-        let baked = baked.table();
+        let baked = baked.config();
         let mut shadow = Shadow::new(&baked);
         let mut history = History::new(row::names(segments).len());
         let (mut samples, mut every) = (0, 1);

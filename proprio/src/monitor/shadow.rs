@@ -1,7 +1,7 @@
 //! The estimator beside the board's: it tells what the board does not send: drift and innovations.
 
 use calibration_tables::MAX_SEGMENTS;
-use estimator_core::{Estimator, Method, Q, Sample, Table};
+use estimator_core::{ArmConfig, Estimator, Method, Q, Sample};
 
 use super::row::{Group, Row};
 use crate::replay::HostEstimator;
@@ -9,14 +9,14 @@ use crate::replay::HostEstimator;
 /// The board's estimator once more, over the samples that it sends.
 pub(super) struct Shadow<'t> {
     estimator: Box<HostEstimator<'t, Q>>,
-    table: &'t Table<'t, Q>,
+    table: &'t ArmConfig<'t, Q>,
     /// x⁻ of KF_orient, rad: with A = I the state after the sample before.
     predicted_rad: [Option<f64>; MAX_SEGMENTS],
 }
 
 impl<'t> Shadow<'t> {
     /// Of a table that was baked from a file, whose checks are at least as strict as the estimator's.
-    pub fn new(table: &'t Table<'t, Q>) -> Self {
+    pub fn new(table: &'t ArmConfig<'t, Q>) -> Self {
         let estimator = Box::new(Estimator::new(table).expect("the file was checked"));
         Self { estimator, table, predicted_rad: [None; MAX_SEGMENTS] }
     }
@@ -29,7 +29,7 @@ impl<'t> Shadow<'t> {
 
     /// Takes one sample and sets what it knows of it.
     pub fn step(&mut self, sample: &Sample<MAX_SEGMENTS>, row: &mut Row) {
-        let estimate = self.estimator.step(sample);
+        let estimate = self.estimator.update_full(sample);
         let shape = self.estimator.shape(&estimate, Method::Fusion);
         for (i, (of, noise)) in estimate.segments.iter().zip(self.table.segments).enumerate() {
             let fused = shape.get(i);
@@ -49,7 +49,7 @@ impl<'t> Shadow<'t> {
             row.set(Group::InnovationImu, i, innovation(z_imu, noise.orient.h_imu));
             let z_bend = of.bend.map(|link| link.theta.rest.to_f64());
             row.set(Group::InnovationBend, i, innovation(z_bend, noise.orient.h_bend));
-            self.predicted_rad[i] = of.fusion.map(|fused| fused.link.theta.rest.to_f64());
+            self.predicted_rad[i] = of.fusion.map(|fused| fused.theta.rest.to_f64());
         }
     }
 }

@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 
 use calibration_tables::{AnchorKeys, ArmFile, MAX_SEGMENTS};
-use estimator_core::{Method, Scalar};
+use estimator_core::{FusedOps, Method};
 
 use super::average::MovingAverage;
 use super::plot::{Axis, Colour, Figure, Marks, Panel, Series, Size, extent, padded, rounded};
@@ -47,7 +47,7 @@ impl Drift {
         Self { window_s: f64::from(window) / rate_hz, segments, end: VecDeque::new() }
     }
 
-    pub fn add<S: Scalar>(&mut self, row: &Row, outcome: &Outcome<S>) {
+    pub fn add<S: FusedOps>(&mut self, row: &Row, outcome: &Outcome<S>) {
         let time_us = row.sample.time_us;
         let mut angles = [[None; CURVES.len()]; MAX_SEGMENTS];
         for (i, (segment, angles)) in self.segments.iter_mut().zip(&mut angles).enumerate() {

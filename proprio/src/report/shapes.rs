@@ -1,7 +1,7 @@
 //! Snapshots of the arm's shape, estimated and true.
 
 use calibration_tables::{ArmFile, MAX_SEGMENTS};
-use estimator_core::{Angle, Arc, Method, Scalar};
+use estimator_core::{Angle, FusedOps, Method, UnitArc};
 
 use super::plot::{Axis, Colour, Figure, Marks, Panel, Series, Size, extent, padded, rounded};
 use super::thin::Thinned;
@@ -55,7 +55,7 @@ impl Shapes {
         }
     }
 
-    pub fn add<S: Scalar>(&mut self, row: &Row, outcome: &Outcome<S>) {
+    pub fn add<S: FusedOps>(&mut self, row: &Row, outcome: &Outcome<S>) {
         let error_m = tip_errors_m(row, outcome)[self.leading as usize];
         let snapshot = || Snapshot::new(row, outcome, error_m);
         if error_m > self.worst.as_ref().and_then(|worst| worst.error_m) {
@@ -95,7 +95,7 @@ impl Shapes {
 }
 
 impl Snapshot {
-    fn new<S: Scalar>(row: &Row, outcome: &Outcome<S>, error_m: Option<f64>) -> Self {
+    fn new<S: FusedOps>(row: &Row, outcome: &Outcome<S>, error_m: Option<f64>) -> Self {
         let shapes = outcome.shapes.each_ref().map(|shape| {
             let mut heading_rad = 0.0;
             let end = |segment: &estimator_core::SegmentShape<S>| {
@@ -182,7 +182,7 @@ fn curve(ends: impl Iterator<Item = Option<End>>, lengths_m: &[f64]) -> Vec<(f64
     let mut before = End { x_m: 0.0, y_m: 0.0, heading_rad: 0.0 };
     for (end, length_m) in ends.map_while(|end| end).zip(lengths_m) {
         let [from, to] = [before, end].map(|end| {
-            let Arc { sin, cos, .. } = Arc::new(Angle::from(end.heading_rad));
+            let UnitArc { sin, cos, .. } = UnitArc::new(Angle::from(end.heading_rad));
             (end.x_m, end.y_m, sin * length_m, cos * length_m)
         });
         points.extend((1..=SEGMENT_POINTS).map(|k| {

@@ -1,6 +1,6 @@
 //! The tip's error against time.
 
-use estimator_core::{Method, Scalar};
+use estimator_core::{FusedOps, Method};
 
 use super::plot::{Axis, Colour, Figure, Marks, Panel, Series, Size, extent, rounded};
 use super::thin::Timeline;
@@ -20,7 +20,7 @@ impl TipErrors {
         Self(Timeline::new(BINS))
     }
 
-    pub fn add<S: Scalar>(&mut self, row: &Row, outcome: &Outcome<S>) {
+    pub fn add<S: FusedOps>(&mut self, row: &Row, outcome: &Outcome<S>) {
         self.0.add(row.sample.time_us, tip_errors_m(row, outcome).map(|error| error.map(|m| m * 1e3)));
     }
 

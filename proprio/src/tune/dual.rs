@@ -3,7 +3,7 @@
 use std::cmp::Ordering;
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
-use estimator_core::{Constant, Phase, Scalar, Turns};
+use estimator_core::{Constant, FusedOps, Phase, Q, Scalar, Turns};
 use num_dual::Dual64;
 use num_traits::{One, Zero};
 
@@ -131,4 +131,18 @@ impl Scalar for Dual {
     fn to_turns(self) -> Turns {
         Turns::from_rad(self.0.re)
     }
+
+    fn from_q(value: Q) -> Self {
+        Self::from_f64(value.to_f64())
+    }
+
+    fn to_q(self) -> Q {
+        Q::from_f64(self.0.re)
+    }
+
+    fn from_micros(us: u32) -> Self {
+        Self::from_f64(f64::from_micros(us))
+    }
 }
+
+impl FusedOps for Dual {}

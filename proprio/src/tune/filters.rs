@@ -1,6 +1,6 @@
 //! The estimator's own filters in dual numbers.
 
-use estimator_core::{Angle, Block, Gains, Link, Noise, Pcc, Scalar};
+use estimator_core::{Angle, KalmanFilter, KalmanGains, KalmanParams, Link, Pcc, Scalar};
 use nalgebra::{SVector, Vector2};
 
 use super::Dual;
@@ -8,7 +8,7 @@ use super::parameters::PARAMETERS;
 use super::training::Measured;
 
 /// KF_orient's and KF_coord's parameters of one segment, once for each derivative.
-pub(super) type SegmentNoises = [[Noise<Dual>; PARAMETERS]; 2];
+pub(super) type SegmentNoises = [[KalmanParams<Dual>; PARAMETERS]; 2];
 
 /// Sums of derivatives by KF_orient's and KF_coord's parameters of one segment.
 pub(super) type SegmentGradient = [[f64; PARAMETERS]; 2];
@@ -24,8 +24,8 @@ pub(super) struct Filters {
 /// One filter, as many times as it has parameters: its state, each time with the derivative by one of them.
 #[derive(Debug, Clone)]
 struct Filter<const D: usize> {
-    gains: [Gains<Dual>; PARAMETERS],
-    blocks: [Block<Dual, D>; PARAMETERS],
+    gains: [KalmanGains<Dual>; PARAMETERS],
+    blocks: [KalmanFilter<Dual, D>; PARAMETERS],
 }
 
 impl Filters {
@@ -50,8 +50,8 @@ impl Filters {
 }
 
 impl<const D: usize> Filter<D> {
-    fn new(noises: &[Noise<Dual>; PARAMETERS]) -> Self {
-        Self { gains: noises.each_ref().map(Gains::new), blocks: [Block::new(); PARAMETERS] }
+    fn new(noises: &[KalmanParams<Dual>; PARAMETERS]) -> Self {
+        Self { gains: noises.each_ref().map(KalmanGains::new), blocks: [KalmanFilter::new(); PARAMETERS] }
     }
 
     fn step(&mut self, measurements: [Option<SVector<f64, D>>; 2]) -> Option<SVector<f64, D>> {

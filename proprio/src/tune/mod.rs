@@ -22,7 +22,7 @@ mod training;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use calibration_tables::{ArmFile, ObserverTuningKeys, Stopped, TuningKeys};
+use calibration_tables::{ArmFile, DriftTuningKeys, Stopped, TuningKeys};
 
 pub use dual::Dual;
 pub use error::TuningError;
@@ -70,7 +70,7 @@ impl<'t> Tuner<'t> {
             return Err(Error::Tuning { path: table.path.to_owned(), source: TuningError::NoBendSensors });
         }
         let sessions = sessions.iter().map(|path| Training::read(path, table)).collect::<Result<Vec<_>, _>>()?;
-        let objective = Objective::new(sessions, table.bake::<f64>(table.file.rate_hz)?.table().segments);
+        let objective = Objective::new(sessions, table.bake::<f64>(table.file.rate_hz)?.config().segments);
         let before = objective.of_table(&table.file);
         for (session, errors) in objective.sessions().iter().zip(&before.sessions) {
             errors.check_count().and_then(|()| session.check_truth()).map_err(|source| session.error(source))?;
@@ -102,7 +102,8 @@ impl<'t> Tuner<'t> {
             kept,
             stopped,
             variances,
-            observer,
+            drift: observer,
+            observer: Default::default(),
             before: pooled(&self.before, |session| &session.training).keys(),
             after: pooled(&after, |session| &session.training).keys(),
             held_back_before: pooled(&self.before, |session| &session.held_back).keys(),
@@ -113,9 +114,9 @@ impl<'t> Tuner<'t> {
 
     /// The table with the best observer that is no worse on what is held back, which the sessions are measured with, and the
     /// record of it.
-    fn tune_observer(&mut self, is_interrupted: impl Fn() -> bool) -> (ArmFile, Option<ObserverTuningKeys>) {
+    fn tune_observer(&mut self, is_interrupted: impl Fn() -> bool) -> (ArmFile, Option<DriftTuningKeys>) {
         let mut table = self.table.file.clone();
-        let Some(start) = table.observer().cloned() else { return (table, None) };
+        let Some(start) = table.bias_filter().cloned() else { return (table, None) };
         let mut progress = Progress::new("tuning the observer".to_owned(), MAX_RUNS as u64);
         let mut runs = 0;
         let finds = search(self.before.clone(), |place| {
@@ -128,11 +129,18 @@ impl<'t> Tuner<'t> {
         });
         let kept = finds.iter().rev().find(|find| find.found.held_back_loss <= self.before.held_back_loss);
         let tuned = kept.map_or(start.clone(), |kept| observer_at(&start, &kept.place));
-        let record = ObserverTuningKeys {
+        let record = DriftTuningKeys {
             runs,
-            noise_deg2_s: [start.noise_deg2_s, tuned.noise_deg2_s],
-            walk_deg_per_s: [start.walk_deg_per_s, tuned.walk_deg_per_s],
-            slope: [start.slope, tuned.slope],
+            rate_deg_per_s: [start.rate_deg_per_s, tuned.rate_deg_per_s],
+            rate_random_walk_deg_per_s_sqrt_s: [
+                start.rate_random_walk_deg_per_s_sqrt_s,
+                tuned.rate_random_walk_deg_per_s_sqrt_s,
+            ],
+            angle_random_walk_deg_per_sqrt_s: [
+                start.angle_random_walk_deg_per_sqrt_s,
+                tuned.angle_random_walk_deg_per_sqrt_s,
+            ],
+            offset_deg: [start.offset_deg, tuned.offset_deg],
         };
         table.drift = Some(tuned);
         self.objective.measure(&table);

@@ -11,7 +11,7 @@ use std::panic::resume_unwind;
 use std::thread;
 
 use calibration_tables::ArmFile;
-use estimator_core::{Angle, Arc, Link, Pcc, Segment, chain};
+use estimator_core::{Angle, Link, Pcc, SegmentConfig, UnitArc, forward_kinematics};
 use nalgebra::Vector2;
 
 use super::Dual;
@@ -51,7 +51,7 @@ pub(super) struct SessionErrors {
 
 impl Objective {
     /// For sessions of an arm of these segments.
-    pub fn new(sessions: Vec<Training>, segments: &[Segment<f64>]) -> Self {
+    pub fn new(sessions: Vec<Training>, segments: &[SegmentConfig<f64>]) -> Self {
         let ranges = Ranges::new(sessions.iter().map(|session| session.rate_hz).fold(0.0, f64::max));
         let lever_m = segments.iter().map(|segment| segment.length + segment.offset).sum();
         Self { sessions, ranges, pccs: segments.iter().map(Pcc::new).collect(), lever_m }
@@ -73,7 +73,7 @@ impl Objective {
     pub fn of_table(&self, table: &ArmFile) -> Evaluation {
         self.evaluate(|rate_hz| {
             let baked = table.bake::<Dual>(rate_hz).expect("it is a table");
-            let segments = baked.table().segments.iter();
+            let segments = baked.config().segments.iter();
             segments.map(|segment| [[segment.orient; PARAMETERS], [segment.coord; PARAMETERS]]).collect()
         })
     }
@@ -145,7 +145,7 @@ impl Objective {
             }
             links.clear();
             links.extend(filters.iter_mut().zip(measured).map(|(filters, measured)| filters.step(measured)));
-            let ends = ends(chain(links.iter().copied()), measured);
+            let ends = ends(forward_kinematics(links.iter().copied()), measured);
             if is_held_back {
                 errors.held_back.add(&ends, filters.len());
             } else {
@@ -185,7 +185,7 @@ impl Gradient {
                 moment += clockwise(end.point, error.point);
                 turn += error.heading;
             }
-            let start = Arc::new(Angle::from(if i == 0 { 0.0 } else { ends[i - 1].heading }));
+            let start = UnitArc::new(Angle::from(if i == 0 { 0.0 } else { ends[i - 1].heading }));
             let in_segment =
                 Vector2::new(pull.x * start.cos - pull.y * start.sin, pull.x * start.sin + pull.y * start.cos);
             let moment_here = moment - clockwise(end.point, pull);

@@ -6,11 +6,11 @@
 use std::f64::consts::LN_10;
 use std::ops::RangeInclusive;
 
-use calibration_tables::{DriftKeys, NOISE_RANGE_DEG2_S, SLOPE_RANGE, WALK_RANGE_DEG_PER_S};
+use calibration_tables::DriftKeys;
 
 use super::objective::Evaluation;
 
-/// Noise, walk and slope.
+/// Rate, rate random walk and offset.
 const PARAMETERS: usize = 3;
 /// Where the search is: shares of a decade, in units of 1/[`DECADE`], from the table's own parameters.
 pub(super) type Place = [i32; PARAMETERS];
@@ -76,16 +76,16 @@ fn neighbours(place: Place, step: i32) -> impl Iterator<Item = Place> {
         place[k] += step;
         place
     });
-    places.filter(|[noise, walk, slope]| noise.abs().max(walk.abs()) <= DECADE && (0..=DECADE).contains(slope))
+    places.filter(|place| place.iter().all(|steps| steps.abs() <= DECADE))
 }
 
 /// The observer at a place as seen from `start`.
 pub(super) fn observer_at(start: &DriftKeys, place: &Place) -> DriftKeys {
-    let [noise, walk, slope] = place.map(|steps| libm::pow(10.0, f64::from(steps) / f64::from(DECADE)));
+    let [rate, walk, offset] = place.map(|steps| libm::pow(10.0, f64::from(steps) / f64::from(DECADE)));
     DriftKeys {
-        noise_deg2_s: within(start.noise_deg2_s * noise, &NOISE_RANGE_DEG2_S),
-        walk_deg_per_s: within(start.walk_deg_per_s * walk, &WALK_RANGE_DEG_PER_S),
-        slope: within(start.slope * slope, &SLOPE_RANGE),
+        rate_deg_per_s: within(start.rate_deg_per_s * rate, &(1e-4..=0.2)),
+        rate_random_walk_deg_per_s_sqrt_s: within(start.rate_random_walk_deg_per_s_sqrt_s * walk, &(1e-5..=0.01)),
+        offset_deg: within(start.offset_deg * offset, &(0.0..=20.0)),
         ..start.clone()
     }
 }

@@ -1,7 +1,7 @@
 //! The parameters of one filter, and the coordinates in which descent is free.
 
 use calibration_tables::{H_RANGE, NoiseKeys};
-use estimator_core::{COVARIANCE_LIMIT, Noise, Scalar};
+use estimator_core::{COVARIANCE_LIMIT, KalmanParams, Scalar};
 
 use super::Dual;
 
@@ -59,7 +59,7 @@ impl Ranges {
 
     /// The filter's parameters at a place and sample rate, as many times as there are coordinates: each time with the
     /// derivatives by one of them.
-    pub fn noises(&self, place: &Place, rate_hz: f64) -> [Noise<Dual>; PARAMETERS] {
+    pub fn noises(&self, place: &Place, rate_hz: f64) -> [KalmanParams<Dual>; PARAMETERS] {
         let one = Dual::from_f64(1.0);
         each(|direction| {
             let [ratio, q, h_imu, h_bend] = each(|k| {
@@ -70,7 +70,13 @@ impl Ranges {
             let larger = if ratio > one { ratio } else { one };
             let q = q * (ratio + one) / (larger * Dual::from_f64(rate_hz));
             let limit = Dual::from_f64(COVARIANCE_LIMIT);
-            Noise { q: if q < limit { q } else { limit }, r_imu: ratio / larger, r_bend: one / larger, h_imu, h_bend }
+            KalmanParams {
+                q: if q < limit { q } else { limit },
+                r_imu: ratio / larger,
+                r_bend: one / larger,
+                h_imu,
+                h_bend,
+            }
         })
     }
 

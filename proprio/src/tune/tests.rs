@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use calibration_tables::{ArmFile, DriftKeys, NoiseKeys, Stopped};
 use estimator_core::{
-    BendMap, Estimator, ImuReading, Method, Noise, Phase, Q, Sample, Scalar, Segment as CoreSegment, Table,
+    ArmConfig, BendMap, Estimator, ImuReading, KalmanParams, Method, Phase, Q, Sample, Scalar, Segment as CoreSegment,
 };
 use rig_twin::Scenario;
 
@@ -139,7 +139,7 @@ fn every_place_is_a_table_in_which_fixed_point_keeps_its_digits() {
             let file = ArmFile::parse(&file.to_toml()).unwrap_or_else(|error| panic!("{r} {q} {h} {r_bend}: {error}"));
             for rate_hz in [10.0, 100.0] {
                 let baked = file.bake::<Q>(rate_hz).expect("a table");
-                let noise = baked.table().segments[2].coord;
+                let noise = baked.config().segments[2].coord;
                 assert!(noise.q.to_f64() > 0.999e-3, "{r} {q}: {} a sample", noise.q.to_f64());
             }
         }
@@ -249,13 +249,13 @@ fn an_observer_at_any_place_is_one_that_the_format_takes() {
 }
 
 /// Fusion's tip after two seconds of bending, for filters with this R_imu.
-fn tip<S: Scalar>(r_imu: S) -> [S; 2] {
+fn tip<S: FusedOps>(r_imu: S) -> [S; 2] {
     let one = S::one();
-    let noise = Noise { q: S::from_f64(0.2), r_imu, r_bend: one, h_imu: one, h_bend: one };
+    let noise = KalmanParams { q: S::from_f64(0.2), r_imu, r_bend: one, h_imu: one, h_bend: one };
     let map = BendMap::from_volts(0.1, 1.2, -2.0, [0.5, 2.5]);
     let segment = CoreSegment { bend: [Some(map); 2], orient: noise, coord: noise, ..CoreSegment::bare(0.080, 0.017) };
     let segments = [segment; 3];
-    let table = Table::bare(&segments);
+    let table = ArmConfig::uncalibrated(&segments);
     let mut estimator = Estimator::<S, 3, 100>::new(&table).expect("a valid table");
     let mut ends = [S::zero(); 2];
     for k in 0..20_u16 {
@@ -264,7 +264,7 @@ fn tip<S: Scalar>(r_imu: S) -> [S; 2] {
             sample.bend[i] = [Some(1800 + 10 * k), Some(1850 + 9 * k)];
             sample.imu[i] = Some(ImuReading::Heading(Phase::from_degrees(f64::from(k) * (i + 1) as f64)));
         }
-        let estimate = estimator.step(&sample);
+        let estimate = estimator.update_full(&sample);
         let end = estimator.shape(&estimate, Method::Fusion)[2].end.expect("the filters have begun");
         ends = [end.x, end.y];
     }

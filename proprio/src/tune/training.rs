@@ -64,7 +64,7 @@ impl Training {
         let mut reader = SessionReader::open(session, &Needs { truth: true, ..table.needs()? })?;
         let rate_hz = reader.rate_hz(table.file.rate_hz);
         let baked = table.bake::<f64>(rate_hz)?;
-        let segments = baked.table().segments;
+        let segments = baked.config().segments;
 
         let mut progress = Progress::new(format!("reading {}", session.display()), reader.progress().1);
         let (mut samples, mut measured, mut starts) = (Vec::new(), Vec::new(), Vec::new());
@@ -95,14 +95,14 @@ impl Training {
     /// Runs the samples through that part of the estimator on which no filter's parameters act.
     pub fn measure(&mut self, table: &ArmFile) {
         let baked = table.bake::<f64>(self.rate_hz).expect("it is a table");
-        let baked = baked.table();
+        let baked = baked.config();
         let mut estimator: Box<HostEstimator<f64>> = Box::new(Estimator::new(&baked).expect("the file was checked"));
         let rows = self.measured.chunks_exact_mut(self.segments).zip(&self.samples).zip(&self.starts);
         for ((measured, sample), starts) in rows {
             if *starts {
                 estimator.start().expect("the file was checked");
             }
-            let estimate = estimator.step(sample);
+            let estimate = estimator.update_full(sample);
             for (measured, segment) in measured.iter_mut().zip(&estimate.segments) {
                 // Without whole turns, as the filters take them.
                 let thetas = [segment.imu_c, segment.bend].map(|link| link.map(|link| link.theta.rest));

@@ -31,7 +31,7 @@ impl SyntheticBoard {
         let file = ArmFile::load(table().as_ref()).expect("the reference table");
         let baked = Box::leak(Box::new(file.bake::<Q>(TICK_HZ).expect("it bakes")));
         let checksum = baked.checksum();
-        let mut arm = Arm::new(Box::leak(Box::new(baked.table())));
+        let mut arm = Arm::new(Box::leak(Box::new(baked.config())));
         arm.start();
         let simulation = Simulation::new(Scenario::One, 77 + u64::from(boot), seconds, TICK_HZ).expect("a valid run");
         Self { arm, encoder: Encoder::new(), simulation, boot, tick: 0, table: checksum }

@@ -1,6 +1,6 @@
 //! Board and host make the same of a sample.
 
-use estimator_core::{Contact, Covariance, Estimator, ImuReading, Method, Q, Segment, Table};
+use estimator_core::{ArmConfig, Contact, Covariance, Estimator, ImuReading, Method, Q, SegmentConfig};
 use proptest::prelude::*;
 use telemetry::{Estimate, Sample, SegmentUncertainty, Uncertainty};
 
@@ -20,14 +20,14 @@ proptest! {
 
 #[test]
 fn an_estimate_has_the_bits_of_the_shape_and_ends_where_it_is_unknown() {
-    let segments = [Segment::<Q>::bare(0.080, 0.017); 6];
-    let table = Table::bare(&segments);
+    let segments = [SegmentConfig::<Q>::uncalibrated(0.080, 0.017); 6];
+    let table = ArmConfig::uncalibrated(&segments);
     let mut estimator = Estimator::<Q, 6, 100>::new(&table).expect("six segments");
     // 90° about z, -90°, none; the fifth is not read.
     let (left, right, straight) = ([11585, 0, 0, 11585], [11585, 0, 0, -11585], [16384, 0, 0, 0]);
     let imu = [Some(left), Some(straight), Some(right), Some(straight), None, Some(straight)];
     let sample = Sample { tick: 7, time_us: 70_000, tare: 0, bend: [None; 12], imu };
-    let raw = estimator.step(&(&sample).into());
+    let raw = estimator.update_full(&(&sample).into());
     let shape = estimator.shape(&raw, Method::ImuO);
 
     let estimate = Estimate::of(sample.tick, &shape);
@@ -47,12 +47,12 @@ fn an_uncertainty_has_the_bits_of_the_covariances_and_the_segments_that_are_touc
         estimator_core::Uncertainty { theta: Some(theta), end: Some(Covariance { xx, xy, yy }) },
         estimator_core::Uncertainty { theta: Some(theta), end: None },
     ];
-    let contacts = [Contact { score_percent: 300, is_touched: true }, Contact { score_percent: 99, is_touched: false }];
+    let contacts = [Contact { score_percent: 300, in_contact: true }, Contact { score_percent: 99, in_contact: false }];
 
     let found = Uncertainty::of(7, &errors, &contacts);
     assert_eq!(found.tick, 7);
     // 0.5 in units of 2⁻²⁶, and so on; 300 is more than a byte holds.
-    let of = |theta, end, contact_percent, is_touched| SegmentUncertainty { theta, end, contact_percent, is_touched };
+    let of = |theta, end, contact_percent, in_contact| SegmentUncertainty { theta, end, contact_percent, in_contact };
     assert_eq!(found.segments[0], of(Some(1 << 25), Some([3 << 25, -(1 << 24), 1 << 27]), 255, true));
     assert_eq!((found.segments[0].theta_rad2(), found.segments[1].end_m2()), (Some(0.5 / 64.0), None));
     assert_eq!(found.segments[0].end_m2(), Some([1.5 / 64.0, -0.25 / 64.0, 2.0 / 64.0]));

@@ -4,8 +4,9 @@ use crate::random::Random;
 use atsam3x8e_hal::pac::Peripherals;
 use atsam3x8e_hal::watchdog;
 use estimator_core::{
-    Alike, AnchorRule, Angle, Arc, BendMap, ContactRule, Estimator, ImuReading, Noise, ObserverRule, OffsetAt, Phase,
-    Play, Q, SENSORS_PER_SEGMENT, Sample, Scalar, Segment, Table, Turns, UncertaintyRule,
+    AnchorConfig, Angle, Arc, ArmConfig, BendMap, BiasFilterConfig, ContactConfig, CoupledSegment, Estimator,
+    ImuReading, Noise, OffsetAt, Phase, Play, Q, SENSORS_PER_SEGMENT, Sample, Scalar, SegmentConfig, Turns,
+    UncertaintyConfig,
 };
 
 /// Samples of each arm, those of the tare included.
@@ -33,7 +34,7 @@ const NOISE: Noise<Q> = Noise {
     h_bend: Q::from_f64(1.02),
 };
 
-const SEGMENT: Segment<Q> = Segment {
+const SEGMENT: SegmentConfig<Q> = SegmentConfig {
     length: Q::from_f64(0.080),
     offset: Q::from_f64(0.017),
     offset_at: OffsetAt::End,
@@ -45,27 +46,27 @@ const SEGMENT: Segment<Q> = Segment {
     coord: NOISE,
 };
 
-static SEGMENTS: [Segment<Q>; 16] = [SEGMENT; 16];
+static SEGMENTS: [SegmentConfig<Q>; 16] = [SEGMENT; 16];
 
-const fn table(segments: usize) -> Table<'static, Q> {
-    let anchor = AnchorRule {
+const fn table(segments: usize) -> ArmConfig<'static, Q> {
+    let anchor = AnchorConfig {
         window: WINDOW as u16,
         rate_millihertz: 10_000,
         sample_rate_millihertz: 100_000,
         threshold: Turns::from_bits(5_965_232),
     };
-    Table { tare_samples: TARE, anchor, ..Table::bare(SEGMENTS.split_at(segments).0) }
+    ArmConfig { tare_samples: TARE, anchor, ..ArmConfig::uncalibrated(SEGMENTS.split_at(segments).0) }
 }
 
 /// Half a degree a play, and a tenth of it in the correction.
 const PLAY: Play<Q> = Play { half_width: Q::from_f64(0.01), weight: Q::from_f64(0.1) };
 
 /// Segments of which all is asked that a table can ask beyond the paper's method.
-static SEGMENTS_BEYOND: [Segment<Q>; 6] = {
-    let first = Segment { hysteresis: Some([PLAY; 3]), ..SEGMENT };
-    let second = Segment { alike: Some(Alike { segment: 0, ratio: 1 << 28 }), ..first };
-    let fourth = Segment { alike: Some(Alike { segment: 2, ratio: 1 << 28 }), ..first };
-    let sixth = Segment { alike: Some(Alike { segment: 4, ratio: 1 << 28 }), ..first };
+static SEGMENTS_BEYOND: [SegmentConfig<Q>; 6] = {
+    let first = SegmentConfig { hysteresis: Some([PLAY; 3]), ..SEGMENT };
+    let second = SegmentConfig { alike: Some(CoupledSegment { segment: 0, ratio: 1 << 28 }), ..first };
+    let fourth = SegmentConfig { alike: Some(CoupledSegment { segment: 2, ratio: 1 << 28 }), ..first };
+    let sixth = SegmentConfig { alike: Some(CoupledSegment { segment: 4, ratio: 1 << 28 }), ..first };
     [first, second, first, fourth, first, sixth]
 };
 
@@ -74,9 +75,9 @@ const fn degrees(degrees: i64) -> Turns {
 }
 
 /// The table of six segments with the observer, contact and uncertainty.
-pub static TABLE_BEYOND: Table<'static, Q> = Table {
+pub static TABLE_BEYOND: ArmConfig<'static, Q> = ArmConfig {
     segments: &SEGMENTS_BEYOND,
-    observer: Some(ObserverRule {
+    observer: Some(BiasFilterConfig {
         step: 6_710_886,
         prior: [193_273, 21_990_233, 391_378_894],
         growth: [0, 35, 1],
@@ -86,8 +87,8 @@ pub static TABLE_BEYOND: Table<'static, Q> = Table {
         still: degrees(1),
         doubt: 13_421_773,
     }),
-    contact: Some(ContactRule { bend: degrees(5), alike: degrees(4) }),
-    uncertainty: Some(UncertaintyRule {
+    contact: Some(ContactConfig { bend: degrees(5), alike: degrees(4) }),
+    uncertainty: Some(UncertaintyConfig {
         theta: Q::from_f64(0.001),
         drift: Q::from_f64(0.6),
         bend: Q::from_f64(0.2),
@@ -99,21 +100,21 @@ pub static TABLE_BEYOND: Table<'static, Q> = Table {
 };
 
 /// Tables of 1, 2, 6, 12 and 16 segments.
-pub static TABLES: [Table<'static, Q>; 5] = [table(1), table(2), table(6), table(12), table(16)];
+pub static TABLES: [ArmConfig<'static, Q>; 5] = [table(1), table(2), table(6), table(12), table(16)];
 
 /// All steps of one arm.
 #[inline(never)]
-pub fn steps<const N: usize>(table: &'static Table<'static, Q>) {
+pub fn steps<const N: usize>(table: &'static ArmConfig<'static, Q>) {
     run::<N>(table, |estimator, sample| {
-        core::hint::black_box(estimator.fuse(sample));
+        core::hint::black_box(estimator.update(sample));
     });
 }
 
 /// All steps of one arm, each with the covariances of its shape.
 #[inline(never)]
-pub fn steps_with_uncertainty<const N: usize>(table: &'static Table<'static, Q>) {
+pub fn steps_with_uncertainty<const N: usize>(table: &'static ArmConfig<'static, Q>) {
     run::<N>(table, |estimator, sample| {
-        estimator.fuse(sample);
+        estimator.update(sample);
         core::hint::black_box(&estimator.uncertainties());
     });
 }
@@ -131,11 +132,11 @@ pub fn alone(run: impl FnOnce()) -> ! {
 
 #[inline]
 fn run<const N: usize>(
-    table: &'static Table<'static, Q>,
+    table: &'static ArmConfig<'static, Q>,
     step: impl Fn(&mut Estimator<'static, Q, N, WINDOW>, &Sample<N>),
 ) {
     // Made where it stays: the stack has no room for a copy.
-    let mut estimator = Estimator::unstarted(table);
+    let mut estimator = Estimator::const_new(table);
     if estimator.start().is_err() {
         return;
     }

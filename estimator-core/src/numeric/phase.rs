@@ -6,8 +6,8 @@
 use core::f64::consts::TAU;
 use core::ops::{Add, Neg, Sub};
 
-use crate::fixed::{reciprocal, signed_upper_word, upper_word};
-use crate::scalar::{Scalar, TWO_PI};
+use crate::numeric::division::{reciprocal, signed_upper_word, upper_word};
+use crate::numeric::scalar::{Scalar, TWO_PI};
 
 /// 2⁻³² turns in a turn.
 const TURN: f64 = 4_294_967_296.0;
@@ -181,6 +181,12 @@ impl Turns {
     #[must_use]
     pub const fn exceeds(self, limit: Self) -> bool {
         self.0.unsigned_abs() > limit.0 as u64
+    }
+
+    /// The angle within a turn times a factor in units of 2⁻³².
+    #[must_use]
+    pub const fn scaled_by(self, factor: i32) -> Self {
+        Self((self.0 as i32 as i64 * factor as i64) >> 32)
     }
 
     /// The angle under a mask of all ones, none under one of zeros.

@@ -2,9 +2,11 @@
 
 use nalgebra::Vector2;
 
-use crate::angle::Angle;
-use crate::scalar::{Constant, Scalar, TWO_PI};
-use crate::table::{OffsetAt, Segment};
+use crate::config::{OffsetAt, SegmentConfig};
+use crate::numeric::fused::FusedOps;
+use crate::numeric::phase::Angle;
+use crate::numeric::polynomial::{AXIAL, COSINE, Terms, VERSINE};
+use crate::numeric::scalar::{Constant, TWO_PI};
 
 /// A unit arc that turns by θ: what PCC needs of an angle, smooth through θ = 0.
 ///
@@ -12,15 +14,15 @@ use crate::table::{OffsetAt, Segment};
 /// 2.2·10⁻¹¹); larger angles are reduced.
 ///
 /// ```
-/// use estimator_core::{Angle, Arc};
+/// use estimator_core::{Angle, UnitArc};
 ///
-/// let quarter = Arc::new(Angle::from(core::f64::consts::FRAC_PI_2));
+/// let quarter = UnitArc::new(Angle::from(core::f64::consts::FRAC_PI_2));
 /// let radius = 2.0 / core::f64::consts::PI;
 /// assert!((quarter.lateral - radius).abs() < 1e-9 && (quarter.axial - radius).abs() < 1e-9);
 /// assert!((quarter.sin - 1.0).abs() < 1e-9 && quarter.cos.abs() < 1e-9);
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Arc<S> {
+pub struct UnitArc<S> {
     /// (1 − cos θ) / θ: how far the arc's end lies to the right of its start, per length.
     pub lateral: S,
     /// sin θ / θ: how far the arc's end lies ahead of its start, per length.
@@ -34,54 +36,7 @@ pub struct Arc<S> {
 /// Up to this |θ| the polynomials hold, rad: a step of [`Q`](crate::Q) under 2.
 const LIMIT: Constant = Constant::new(2.0 - 1.0 / 67_108_864.0);
 
-/// Terms of a polynomial in θ²/8, eightfold as [`Scalar::polynomials`] takes them.
-pub(crate) type Terms<T> = [T; 7];
-
-/// sin θ / θ.
-pub(crate) const AXIAL: Terms<Constant> = eightfold([
-    0.999_999_999_998_558,
-    -0.666_666_666_525_055_1,
-    0.133_333_331_062_445_16,
-    -0.012_698_399_036_356_584,
-    7.054_281_954_497_206e-4,
-    -2.559_557_300_796_330_8e-5,
-    6.152_922_495_571_073e-7,
-]);
-
-/// (1 − cos θ) / θ².
-const VERSINE: Terms<Constant> = eightfold([
-    0.499_999_999_978_359_6,
-    -0.166_666_665_104_189_15,
-    0.022_222_203_937_815_63,
-    -0.001_587_223_271_061_236,
-    7.039_481_349_596_013e-5,
-    -2.001_239_275_599_844e-6,
-    0.0,
-]);
-
-/// cos θ = 1 − θ² (1 − cos θ) / θ².
-pub(crate) const COSINE: Terms<Constant> = {
-    let mut terms = [Constant::new(8.0); 7];
-    let mut k = 1;
-    while k < terms.len() {
-        terms[k] = Constant::new(-8.0 * VERSINE[k - 1].value);
-        k += 1;
-    }
-    terms
-};
-
-/// From the terms in θ²/4.
-const fn eightfold(terms: Terms<f64>) -> Terms<Constant> {
-    let mut constants = [Constant::new(0.0); 7];
-    let mut k = 0;
-    while k < terms.len() {
-        constants[k] = Constant::new((8_u32 << k) as f64 * terms[k]);
-        k += 1;
-    }
-    constants
-}
-
-impl<S: Scalar> Arc<S> {
+impl<S: FusedOps> UnitArc<S> {
     /// The unit arc that turns by `theta`, of any size.
     #[must_use]
     pub fn new(theta: Angle<S>) -> Self {
@@ -142,9 +97,9 @@ pub struct Link<S> {
 /// Both coordinates are polynomials like those of [`Arc`], whose terms are worked out once.
 ///
 /// ```
-/// use estimator_core::{Angle, Pcc, Segment};
+/// use estimator_core::{Angle, Pcc, SegmentConfig};
 ///
-/// let link = Pcc::<f64>::new(&Segment::bare(0.080, 0.017)).link(Angle::from(0.0));
+/// let link = Pcc::<f64>::new(&SegmentConfig::uncalibrated(0.080, 0.017)).link(Angle::from(0.0));
 /// assert!(link.end.x == 0.0 && (link.end.y - 0.097).abs() < 1e-12);
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -160,10 +115,10 @@ pub struct Pcc<S> {
     axial: Terms<S>,
 }
 
-impl<S: Scalar> Pcc<S> {
+impl<S: FusedOps> Pcc<S> {
     /// From a segment's geometry.
     #[must_use]
-    pub fn new(segment: &Segment<S>) -> Self {
+    pub fn new(segment: &SegmentConfig<S>) -> Self {
         const LONGEST: Constant = Constant::new(0.7);
         let lengths = [segment.length, segment.offset];
         let fits = lengths.iter().all(|length| length.is_within(S::constant(LONGEST)));
@@ -199,7 +154,7 @@ impl<S: Scalar> Pcc<S> {
 
     #[cold]
     fn by_arc(&self, theta: Angle<S>) -> (S, S) {
-        let arc = Arc::new(theta);
+        let arc = UnitArc::new(theta);
         let (sin, cos) = match self.offset_at {
             OffsetAt::End => (arc.sin, arc.cos),
             OffsetAt::Start => (S::zero(), S::one()),
@@ -208,47 +163,13 @@ impl<S: Scalar> Pcc<S> {
     }
 }
 
-/// One segment of the arm's shape.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SegmentShape<S> {
-    /// Bend angle θ_i.
-    pub theta: Option<Angle<S>>,
-    /// End of the segment in {W}, m.
-    pub end: Option<Vector2<S>>,
-}
-
-/// Chains links from the base on: P_W,i = P_W,i−1 + R(Θ_i−1) P_i, where R(α) maps (x, y) to
-/// (x cos α + y sin α, −x sin α + y cos α). From the first unknown link on, every end is unknown.
-///
-/// ```
-/// use estimator_core::{chain, Angle, Pcc, Segment};
-///
-/// let segments = [Segment::bare(0.080, 0.017), Segment::bare(0.080, 0.017)];
-/// let straight = segments.iter().map(|segment| Some(Pcc::<f64>::new(segment).link(Angle::from(0.0))));
-/// let tip = chain(straight).last().and_then(|segment| segment.end).expect("all links are known");
-/// assert!(tip.x == 0.0 && (tip.y - 0.194).abs() < 1e-12);
-/// ```
-#[inline]
-pub fn chain<S: Scalar>(links: impl Iterator<Item = Option<Link<S>>>) -> impl Iterator<Item = SegmentShape<S>> {
-    // Products of cosines and sines instead of the sum of the angles: no trigonometry, and nothing to wrap.
-    let mut before = Some((Vector2::zeros(), (S::zero(), S::one())));
-    links.map(move |link| {
-        before = before.zip(link).map(|((point, (sin, cos)), link)| {
-            let (x, y) = S::turned(link.end.x, link.end.y, sin, cos);
-            let (turn_sin, turn_cos) = sin_cos(link.theta);
-            (point + Vector2::new(x, y), S::turned(sin, cos, turn_sin, turn_cos))
-        });
-        SegmentShape { theta: link.map(|link| link.theta), end: before.map(|(point, _)| point) }
-    })
-}
-
 /// sin θ and cos θ.
 #[inline]
-pub(crate) fn sin_cos<S: Scalar>(theta: Angle<S>) -> (S, S) {
+pub(crate) fn sin_cos<S: FusedOps>(theta: Angle<S>) -> (S, S) {
     if theta.turns == 0 && theta.rest.is_within(S::constant(LIMIT)) {
         theta.rest.sin_cos()
     } else {
-        let arc = Arc::new(theta);
+        let arc = UnitArc::new(theta);
         (arc.sin, arc.cos)
     }
 }

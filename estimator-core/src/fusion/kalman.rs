@@ -6,23 +6,9 @@
 
 use nalgebra::SVector;
 
-use crate::scalar::{Constant, Scalar};
-
-/// Parameters of one block. Only the ratios of covariances act on the gains, so all are given as ratios to the larger of
-/// R_imu and R_bend, which keeps them within [`Q`](crate::Q)'s range.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Noise<S> {
-    /// Q: growth of the covariance from one sample to the next.
-    pub q: S,
-    /// R of the drift-corrected IMU's measurement.
-    pub r_imu: S,
-    /// R of the bend sensors' measurement.
-    pub r_bend: S,
-    /// H of the drift-corrected IMU's measurement.
-    pub h_imu: S,
-    /// H of the bend sensors' measurement.
-    pub h_bend: S,
-}
+use crate::config::KalmanParams;
+use crate::numeric::fused::FusedOps;
+use crate::numeric::scalar::Constant;
 
 /// The covariance of a block grows no further than this, as a ratio to the larger R: beyond it a measurement is taken for
 /// what it says anyway, and with H up to [`H_LIMIT`] the sum H² P + R stays below 32, where [`Q`](crate::Q) ends.
@@ -39,15 +25,15 @@ pub const H_LIMIT: f64 = 1.25;
 /// so that nothing is large, r = r_a r_b, h² = h_a² r_b + h_b² r_a and k_a = h_a r_b; then u = P⁻ / (r + P⁻ h²) is the only
 /// division of P = u r and x = x⁻ + u (k_a z_a + k_b z_b − h² x⁻).
 #[derive(Debug, Clone, Copy)]
-struct Weights<S> {
+struct MeasurementWeights<S> {
     r: S,
     h_squared: S,
     /// Of z_imu, of z_bend and of x⁻ in the correction: k_a, k_b and −h².
     of: [S; 3],
 }
 
-impl<S: Scalar> Weights<S> {
-    fn both(noise: &Noise<S>) -> Self {
+impl<S: FusedOps> MeasurementWeights<S> {
+    fn both(noise: &KalmanParams<S>) -> Self {
         const LARGEST: Constant = Constant::new(31.0);
         const SHARE: Constant = Constant::new(1.0 / COVARIANCE_LIMIT);
         let h_squared = noise.h_imu * noise.h_imu * noise.r_bend + noise.h_bend * noise.h_bend * noise.r_imu;
@@ -65,49 +51,49 @@ impl<S: Scalar> Weights<S> {
 
 /// A block's parameters, worked out for every set of measurements that a sample can have.
 #[derive(Debug, Clone, Copy)]
-pub struct Gains<S> {
+pub struct KalmanGains<S> {
     q: S,
-    /// Up to this P there is room for q.
-    room: S,
-    both: Weights<S>,
-    imu: Weights<S>,
-    bend: Weights<S>,
+    /// Up to this P there is p_limit for q.
+    p_limit: S,
+    both: MeasurementWeights<S>,
+    imu: MeasurementWeights<S>,
+    bend: MeasurementWeights<S>,
 }
 
-impl<S: Scalar> Gains<S> {
+impl<S: FusedOps> KalmanGains<S> {
     /// From a table's parameters.
     #[must_use]
-    pub fn new(noise: &Noise<S>) -> Self {
-        let Noise { q, r_imu, r_bend, h_imu, h_bend } = *noise;
+    pub fn new(noise: &KalmanParams<S>) -> Self {
+        let KalmanParams { q, r_imu, r_bend, h_imu, h_bend } = *noise;
         let zero = S::zero();
         Self {
             q,
-            room: S::constant(LIMIT) - q,
-            both: Weights::both(noise),
-            imu: Weights { r: r_imu, h_squared: h_imu * h_imu, of: [h_imu, zero, -(h_imu * h_imu)] },
-            bend: Weights { r: r_bend, h_squared: h_bend * h_bend, of: [zero, h_bend, -(h_bend * h_bend)] },
+            p_limit: S::constant(LIMIT) - q,
+            both: MeasurementWeights::both(noise),
+            imu: MeasurementWeights { r: r_imu, h_squared: h_imu * h_imu, of: [h_imu, zero, -(h_imu * h_imu)] },
+            bend: MeasurementWeights { r: r_bend, h_squared: h_bend * h_bend, of: [zero, h_bend, -(h_bend * h_bend)] },
         }
     }
 
     /// P⁻ = P + Q.
     #[inline]
-    fn predicted(&self, p: S) -> S {
-        if p < self.room { p + self.q } else { S::constant(LIMIT) }
+    fn predict_covariance(&self, p: S) -> S {
+        if p < self.p_limit { p + self.q } else { S::constant(LIMIT) }
     }
 
     /// u and P after one sample's measurements. Out of line, with all registers for itself.
     #[inline(never)]
-    fn measured(&self, p: S, weights: &Weights<S>) -> (S, S) {
-        let ratio = self.predicted(p).quotient(weights.r, weights.h_squared);
-        (ratio, ratio.bounded_product(weights.r))
+    fn update_covariance(&self, p: S, weights: &MeasurementWeights<S>) -> (S, S) {
+        let ratio = self.predict_covariance(p).gain_over_innovation_variance(weights.r, weights.h_squared);
+        (ratio, ratio.mul_unchecked_range(weights.r))
     }
 
     /// Those after the first measurements, before which nothing is known: P⁻ is beyond all bounds.
     #[cold]
     #[inline(never)]
-    fn begun(weights: &Weights<S>) -> (S, S) {
+    fn initialise(weights: &MeasurementWeights<S>) -> (S, S) {
         let ratio = S::one() / weights.h_squared;
-        (ratio, ratio.bounded_product(weights.r))
+        (ratio, ratio.mul_unchecked_range(weights.r))
     }
 }
 
@@ -117,22 +103,22 @@ impl<S: Scalar> Gains<S> {
 /// some thirty samples; a slower filter has too few digits in P (2·10⁻⁵ at 1/10 000).
 ///
 /// ```
-/// use estimator_core::{Block, Gains, Noise};
+/// use estimator_core::{KalmanFilter, KalmanGains, KalmanParams};
 /// use nalgebra::SVector;
 ///
-/// let gains = Gains::new(&Noise { q: 1.0, r_imu: 1.0, r_bend: 1.0, h_imu: 1.0, h_bend: 1.0 });
-/// let mut block = Block::<f64, 1>::new();
+/// let gains = KalmanGains::new(&KalmanParams { q: 1.0, r_imu: 1.0, r_bend: 1.0, h_imu: 1.0, h_bend: 1.0 });
+/// let mut block = KalmanFilter::<f64, 1>::new();
 /// block.step(&gains, Some(SVector::from([2.0])), None);
 /// block.step(&gains, Some(SVector::from([5.0])), None);
 /// let (state, covariance) = block.state().expect("it was measured");
 /// assert!((state.x - 4.0).abs() < 1e-12 && (covariance - 2.0 / 3.0).abs() < 1e-12);
 /// ```
 #[derive(Debug, Clone, Copy)]
-pub struct Block<S, const D: usize> {
+pub struct KalmanFilter<S, const D: usize> {
     state: Option<(SVector<S, D>, S)>,
 }
 
-impl<S: Scalar, const D: usize> Block<S, D> {
+impl<S: FusedOps, const D: usize> KalmanFilter<S, D> {
     /// A filter that has not started.
     #[must_use]
     pub const fn new() -> Self {
@@ -149,27 +135,27 @@ impl<S: Scalar, const D: usize> Block<S, D> {
     /// The first of them start the filter.
     #[expect(clippy::inline_always, reason = "measured")]
     #[inline(always)]
-    pub fn step(&mut self, gains: &Gains<S>, imu: Option<SVector<S, D>>, bend: Option<SVector<S, D>>) {
+    pub fn step(&mut self, gains: &KalmanGains<S>, imu: Option<SVector<S, D>>, bend: Option<SVector<S, D>>) {
         let zeros = SVector::zeros();
         let (weights, imu, bend) = match (imu, bend) {
             (Some(imu), Some(bend)) => (&gains.both, imu, bend),
             (Some(imu), None) => (&gains.imu, imu, zeros),
             (None, Some(bend)) => (&gains.bend, zeros, bend),
             (None, None) => {
-                self.state = self.state.map(|(x, p)| (x, gains.predicted(p)));
+                self.state = self.state.map(|(x, p)| (x, gains.predict_covariance(p)));
                 return;
             }
         };
         let (x, (ratio, p)) = match self.state {
-            Some((x, p)) => (x, gains.measured(p, weights)),
-            None => (zeros, Gains::begun(weights)),
+            Some((x, p)) => (x, gains.update_covariance(p, weights)),
+            None => (zeros, KalmanGains::initialise(weights)),
         };
         let ([imu], [bend], [x]) = (imu.data.0, bend.data.0, x.data.0);
-        self.state = Some((SVector::from(S::corrected(x, ratio, &weights.of, [imu, bend])), p));
+        self.state = Some((SVector::from(S::kalman_update(x, ratio, &weights.of, [imu, bend])), p));
     }
 }
 
-impl<S: Scalar, const D: usize> Default for Block<S, D> {
+impl<S: FusedOps, const D: usize> Default for KalmanFilter<S, D> {
     fn default() -> Self {
         Self::new()
     }

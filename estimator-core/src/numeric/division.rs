@@ -24,11 +24,11 @@ pub(crate) fn divide<const FRAC: u32>(num: u32, den: u32) -> u32 {
 /// `num · 2^FRAC / den`, too small by a unit and its 2²⁸th part at most; `None` where `den` is 0, or the quotient is 2³¹ or
 /// out of reach. Two thirds of the instructions of [`divide`].
 #[inline]
-pub(crate) fn nearly_divide<const FRAC: u32>(num: u32, den: u32) -> Option<u32> {
+pub(crate) fn div_approx<const FRAC: u32>(num: u32, den: u32) -> Option<u32> {
     let (num_zeros, den_zeros) = (num.leading_zeros(), den.leading_zeros());
     let shift = (num_zeros + 31 - FRAC).wrapping_sub(den_zeros);
     let normal = den.wrapping_shl(den_zeros);
-    let (first, error) = first_reciprocal(normal);
+    let (first, error) = reciprocal_seed(normal);
     let quotient = upper_word(num.wrapping_shl(num_zeros), first.wrapping_add(upper_word(first, error)));
     (den != 0 && (1..32).contains(&shift)).then(|| quotient.wrapping_shr(shift))
 }
@@ -39,13 +39,13 @@ pub(crate) fn nearly_divide<const FRAC: u32>(num: u32, den: u32) -> Option<u32> 
 /// e = 1 − r `normal`, gives the others.
 #[inline]
 pub(crate) fn reciprocal(normal: u32) -> u32 {
-    let (first, error) = first_reciprocal(normal);
+    let (first, error) = reciprocal_seed(normal);
     first.wrapping_add(upper_word(first, error.wrapping_add(upper_word(error, error))))
 }
 
 /// The 15 bits of [`reciprocal`] that the hardware gives, and their error in units of 2⁻³², rounded down.
 #[inline]
-fn first_reciprocal(normal: u32) -> (u32, u32) {
+fn reciprocal_seed(normal: u32) -> (u32, u32) {
     let first = (u32::MAX / ((normal >> 16) + 1)) << 15;
     (first, !upper_word(first, normal) << 1)
 }
@@ -66,7 +66,7 @@ pub(crate) fn signed_upper_word(a: i32, b: i32) -> i32 {
 mod tests {
     use proptest::prelude::*;
 
-    use super::{divide, nearly_divide, reciprocal};
+    use super::{div_approx, divide, reciprocal};
 
     const FRAC: u32 = 26;
     const MAX: u32 = 1 << 31;
@@ -90,7 +90,7 @@ mod tests {
         fn a_near_quotient_is_a_unit_too_small_at_most(num in 0..=MAX, den in 1..=MAX, num_shift in 0_u32..32, den_shift in 0_u32..32) {
             let (num, den) = (num >> num_shift, (den >> den_shift).max(1));
             let exact = (u64::from(num) << FRAC) / u64::from(den);
-            if let Some(quotient) = nearly_divide::<FRAC>(num, den) {
+            if let Some(quotient) = div_approx::<FRAC>(num, den) {
                 let missing = exact - u64::from(quotient);
                 prop_assert!(missing <= 1 + (exact >> 28), "{} missing of {}", missing, exact);
             } else {

@@ -1,21 +1,11 @@
 //! Drift anchor: the moving average of what the IMUs say beyond the bend sensors (paper, eq. 2 and 3).
 
-use core::ops::Range;
-
-use crate::angle::Turns;
-
-/// When the anchor averages and when it corrects; the same for all segments.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct AnchorRule {
-    /// Length of the window, in values.
-    pub window: u16,
-    /// Rate of the window's values, mHz. Above the sample rate, every sample is a value.
-    pub rate_millihertz: u32,
-    /// Rate of the samples, mHz; those between two values are averaged.
-    pub sample_rate_millihertz: u32,
-    /// Offsets up to this size are left alone.
-    pub threshold: Turns,
-}
+use crate::config::{AnchorConfig, ArmConfig};
+use crate::drift::decimator::Decimated;
+use crate::drift::{CorrectedArm, DriftCorrection, SensedArm};
+use crate::numeric::phase::Turns;
+use crate::numeric::scalar::Scalar;
+use crate::sensing::heading::SegmentHeading;
 
 /// Moving average over `window` values of θ_imu,i − θ_bend,i for one segment, of up to `W` values.
 ///
@@ -24,78 +14,28 @@ pub struct AnchorRule {
 /// two, its place in the window stays empty; when the whole window is empty, the newest offset holds.
 ///
 /// ```
-/// use estimator_core::{Anchor, AnchorRule, Pace, Turns};
+/// use estimator_core::{MovingAverageAnchor, AnchorConfig, Decimator, Turns};
 ///
-/// let rule = AnchorRule {
+/// let rule = AnchorConfig {
 ///     window: 2,
 ///     rate_millihertz: 10_000,
 ///     sample_rate_millihertz: 10_000,
 ///     threshold: Turns::ZERO,
 /// };
-/// let (mut pace, mut anchor) = (Pace::new(), Anchor::<2>::new());
+/// let (mut pace, mut anchor) = (Decimator::new(), MovingAverageAnchor::<2>::new());
 /// for value in [1, 3, 5] {
 ///     anchor.push(pace.tick(&rule), Some(Turns::from_bits(value)));
 /// }
 /// assert_eq!(anchor.offset(), Some(Turns::from_bits(4)));
 /// ```
 #[derive(Debug, Clone, Copy)]
-pub struct Anchor<const W: usize> {
+pub struct MovingAverageAnchor<const W: usize> {
     offset: Option<Turns>,
     mean: Mean,
     group: Mean,
     /// The values; a missing one is zero, and its count is none.
     window: [Turns; W],
     counts: [u8; W],
-}
-
-/// When a value of the window is complete and which it replaces; the same for the anchors of all segments.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct Pace {
-    /// How much of the time to the next value has passed: adds the anchor's rate a sample, up to the sample rate.
-    phase: u32,
-    oldest: u16,
-}
-
-/// What [`Pace`] says of one sample.
-#[derive(Debug, Clone, Copy)]
-pub struct Slot {
-    oldest: u16,
-    /// All ones where a value is complete, else zero.
-    complete: i32,
-}
-
-impl Slot {
-    #[inline]
-    pub(crate) const fn is_complete(self) -> bool {
-        self.complete != 0
-    }
-}
-
-impl Pace {
-    /// At the start of a session.
-    #[must_use]
-    pub const fn new() -> Self {
-        Self { phase: 0, oldest: 0 }
-    }
-
-    /// Takes one sample's time.
-    pub fn tick(&mut self, rule: &AnchorRule) -> Slot {
-        self.phase = self.phase.saturating_add(rule.rate_millihertz);
-        let complete = self.phase >= rule.sample_rate_millihertz;
-        let slot = Slot { oldest: self.oldest, complete: -i32::from(complete) };
-        if complete {
-            self.phase = (self.phase - rule.sample_rate_millihertz).min(rule.sample_rate_millihertz);
-            self.oldest = if self.oldest + 1 < rule.window { self.oldest + 1 } else { 0 };
-        }
-        slot
-    }
-
-    /// The phases that belong to the newest sample: those of all samples from one complete value to the next are those
-    /// from 0 to the sample rate, each once.
-    pub(crate) fn phases(self, rule: &AnchorRule, slot: Slot) -> Range<u32> {
-        let first = if slot.is_complete() { 0 } else { self.phase };
-        first..self.phase.saturating_add(rule.rate_millihertz)
-    }
 }
 
 /// A mean of up to 65 535 values.
@@ -114,7 +54,7 @@ impl Mean {
     }
 }
 
-impl<const W: usize> Anchor<W> {
+impl<const W: usize> MovingAverageAnchor<W> {
     /// An anchor that has seen nothing.
     #[must_use]
     pub const fn new() -> Self {
@@ -125,13 +65,13 @@ impl<const W: usize> Anchor<W> {
     ///
     /// Every sample costs the same, whether it completes a value of the window or not.
     #[inline]
-    pub fn push(&mut self, slot: Slot, difference: Option<Turns>) {
+    pub fn push(&mut self, slot: Decimated, difference: Option<Turns>) {
         self.take(difference.unwrap_or_default(), i32::from(difference.is_some()), slot);
     }
 
     /// Out of line, with all registers for itself.
     #[inline(never)]
-    fn take(&mut self, sum: Turns, count: i32, Slot { oldest, complete }: Slot) {
+    fn take(&mut self, sum: Turns, count: i32, Decimated { oldest, complete }: Decimated) {
         let Self { offset, mean, group, window, counts } = self;
         let k = usize::from(oldest);
         let (Some(place), Some(counts)) = (window.get_mut(k), counts.get_mut(k)) else { return };
@@ -151,7 +91,7 @@ impl<const W: usize> Anchor<W> {
     /// What to subtract from the untared θ_imu,i for θ_c,i: the tare's zero, or, where offset_i is over the threshold, the
     /// offset, in whose values the tare is still.
     #[inline]
-    pub(crate) fn zero(&self, rule: &AnchorRule, zero: Turns) -> Turns {
+    pub(crate) fn zero(&self, rule: &AnchorConfig, zero: Turns) -> Turns {
         self.offset.filter(|offset| (*offset - zero).exceeds(rule.threshold)).unwrap_or(zero)
     }
 
@@ -163,8 +103,37 @@ impl<const W: usize> Anchor<W> {
     }
 }
 
-impl<const W: usize> Default for Anchor<W> {
+impl<const W: usize> Default for MovingAverageAnchor<W> {
     fn default() -> Self {
         Self::new()
+    }
+}
+
+/// The paper's drift correction: an anchor for each segment.
+#[derive(Debug, Clone)]
+pub struct MovingAverage<const N: usize, const W: usize> {
+    anchors: [MovingAverageAnchor<W>; N],
+}
+
+impl<const N: usize, const W: usize> MovingAverage<N, W> {
+    /// Anchors that have seen nothing.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self { anchors: [MovingAverageAnchor::new(); N] }
+    }
+}
+
+impl<S: Scalar, const N: usize, const W: usize> DriftCorrection<S, N> for MovingAverage<N, W> {
+    fn correct(&mut self, config: &ArmConfig<S>, sensed: &SensedArm<S, N>) -> CorrectedArm<N> {
+        let mut corrected = CorrectedArm::UNKNOWN;
+        let mut below = &SegmentHeading::BASE;
+        let segments = self.anchors.iter_mut().zip(&sensed.headings).zip(&sensed.bend).zip(&mut corrected.imu);
+        for (((anchor, heading), bend), theta) in segments.take(config.segments.len()) {
+            let [difference, zero] = heading.relative_to(below);
+            below = heading;
+            anchor.push(sensed.decimated, difference.zip(bend.mean).map(|(imu, bend)| imu - bend.to_turns()));
+            *theta = difference.zip(zero).map(|(imu, zero)| imu - anchor.zero(&config.anchor, zero));
+        }
+        corrected
     }
 }

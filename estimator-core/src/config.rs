@@ -1,0 +1,357 @@
+//! Configuration of an arm: types alone, in the estimator's number and for one sample rate.
+//!
+//! The firmware holds an [`ArmConfig`] as a constant; on the host `calibration-tables` makes it from TOML. Variances are held
+//! [`VARIANCE_SCALE`] times as large as they are, times in units of [`TIME_UNIT_S`](crate::TIME_UNIT_S).
+
+use crate::numeric::phase::Turns;
+use crate::numeric::q::Q;
+use crate::numeric::scalar::{Scalar, TIME_UNIT_S};
+use crate::numeric::variance::{degrees, variance_deg};
+
+/// Bend sensors that a segment can carry: `a` and `b`.
+pub const SENSORS_PER_SEGMENT: usize = 2;
+
+/// Plays of a segment's hysteresis compensation.
+pub const PLAYS: usize = 3;
+
+/// Knots of a [`CurveMap`].
+pub const KNOTS: usize = 65;
+
+/// Factor of all variances in fixed point: 2⁻³² rad² or m² are one step, and 0.5 are the largest value.
+pub const VARIANCE_SCALE: f64 = 64.0;
+
+/// An arm's calibration.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ArmConfig<'t, S> {
+    /// The segments from the base to the tip.
+    pub segments: &'t [SegmentConfig<S>],
+    /// Samples at the start over which headings are tared; 0: they are absolute.
+    pub tare_samples: u32,
+    /// The moving-average anchor; its rate is that of contact detection, too.
+    pub anchor: AnchorConfig,
+    /// The bias filter; `None`: the moving-average anchor corrects the drift.
+    pub bias_filter: Option<BiasFilterConfig>,
+    /// Contact-detection thresholds; `None` disables detection.
+    pub contact: Option<ContactConfig>,
+    /// Error sources of the estimates; `None`: no covariance is computed.
+    pub uncertainty: Option<UncertaintyConfig>,
+}
+
+/// One sensing segment: geometry, sensors and filter parameters.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SegmentConfig<S> {
+    /// Arc length of the curved part, L_act, m.
+    pub length: S,
+    /// Length of the rigid connector, d_off, m.
+    pub offset: S,
+    /// Side of the connector.
+    pub offset_at: OffsetAt,
+    /// The bend sensors a and b, where the segment has them.
+    pub bend: [Option<BendSensorConfig<S>>; SENSORS_PER_SEGMENT],
+    /// Hysteresis compensation of the segment's bend angle, if any.
+    pub hysteresis: Option<[Play<S>; PLAYS]>,
+    /// Errors of the bend sensors, as the bias filter models them.
+    pub bend_error: BendErrorConfig,
+    /// Sensitivity of the IMU's heading as a factor minus 1, in units of 2⁻³²: 0.01 reads 1 % too much.
+    pub imu_scale_error: i32,
+    /// The earlier segment that bends alike, where there is one.
+    pub coupled_to: Option<CoupledSegment>,
+    /// Heading of the segment's end in the reference pose.
+    pub reference: Turns,
+    /// KF_orient's parameters.
+    pub orient: KalmanParams<S>,
+    /// KF_coord's parameters.
+    pub coord: KalmanParams<S>,
+}
+
+/// Position of a segment's rigid connector.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum OffsetAt {
+    /// It precedes the curved part.
+    Start,
+    /// It follows the curved part.
+    End,
+}
+
+/// One bend sensor: V–Orient map and memory.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BendSensorConfig<S> {
+    /// Bend angle of the counts.
+    pub map: BendMap<S>,
+    /// Compensation of creep and hysteresis, if any.
+    pub memory: Option<MemoryConfig<S>>,
+}
+
+/// V–Orient map of one bend sensor.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[expect(clippy::large_enum_variant, reason = "configurations are constants, never moved")]
+pub enum BendMap<S> {
+    /// The paper's quadratic.
+    Quadratic(QuadraticMap<S>),
+    /// A piecewise linear curve.
+    Curve(CurveMap<S>),
+}
+
+/// Quadratic map about the middle of the sensor's own voltage range: θ = b0 + b1 u + b2 u² with
+/// u = (counts − `center`) / 2^`shift` within ±1.
+///
+/// So the coefficients stay as small as the angles themselves, where c2, c1 and c0 of a sensor with a narrow range are
+/// large and cancel.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct QuadraticMap<S> {
+    /// Counts in the middle of the calibrated range.
+    pub center: u16,
+    /// Binary logarithm of half the range in counts, rounded up.
+    pub shift: u8,
+    /// b0, b1, b2, rad.
+    pub coefficients: [S; 3],
+    /// Lowest and highest counts at which |θ| is within a whole turn, and u and b1 + b2 u in the range of
+    /// [`FusedOps::eval_quadratic`](crate::FusedOps::eval_quadratic).
+    pub readable: [u16; 2],
+}
+
+/// Piecewise linear map: knots every 2^`shift` counts from `first` on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CurveMap<S> {
+    /// Counts of the first knot.
+    pub first: u16,
+    /// Binary logarithm of the counts between two knots.
+    pub shift: u8,
+    /// Bend angle at each knot, rad.
+    pub knots: [S; KNOTS],
+    /// Lowest and highest counts that are a reading.
+    pub readable: [u16; 2],
+    /// Lowest and highest counts of the calibration sweep; beyond them the curve is extrapolated.
+    pub calibrated: [u16; 2],
+}
+
+/// Creep and hysteresis of one bend sensor: θ + Σ w (θ − lag(θ)) + Σ w (θ − play(θ)).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MemoryConfig<S> {
+    /// First-order lags.
+    pub lags: [Lag<S>; 2],
+    /// Plays.
+    pub plays: [Play<S>; 2],
+}
+
+/// A first-order lag and its share in the correction.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Lag<S> {
+    /// [`TIME_UNIT_S`](crate::TIME_UNIT_S) over the time constant.
+    pub rate: S,
+    /// Weight of the difference of input and lag.
+    pub weight: S,
+}
+
+/// A play operator and its share in the correction (Kuhnen 2003, eq. 2).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Play<S> {
+    /// Radius r: from the middle to either edge, rad.
+    pub radius: S,
+    /// Weight of the difference of input and play.
+    pub weight: S,
+}
+
+/// Errors of a segment's bend sensors, from the residuals of the calibration sweep.
+///
+/// The error is a function of the path (map, hysteresis), not white in time: it is new after a travel of `travel`, or after
+/// `correlation_time`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BendErrorConfig {
+    /// Variance of the mean of both sensors, σ².
+    pub mean: Q,
+    /// Variance of each sensor, σ₁².
+    pub sensor: [Q; SENSORS_PER_SEGMENT],
+    /// Variance of half the difference of a and b, σ_d².
+    pub difference: Q,
+    /// Standard deviation of 60 s means of half that difference, rad.
+    pub slow_difference: Q,
+    /// Variance of the mean's slow error over that of half the difference, κ, 0 to 1.
+    pub slow_ratio: Q,
+    /// Travel after which the error is a new one, ℓ, rad.
+    pub travel: Q,
+    /// Time after which the error is a new one, τ, units of [`TIME_UNIT_S`](crate::TIME_UNIT_S).
+    pub correlation_time: Q,
+}
+
+/// When the moving average averages and when it corrects; the same for all segments.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct AnchorConfig {
+    /// Length of the window, in values.
+    pub window: u16,
+    /// Rate of the window's values, mHz. Above the sample rate, every sample is a value.
+    pub rate_millihertz: u32,
+    /// Rate of the samples, mHz; those between two values are averaged.
+    pub sample_rate_millihertz: u32,
+    /// Offsets up to this size are left alone.
+    pub threshold: Turns,
+}
+
+/// Priors and process noise of the bias filter; the same for all IMUs and segments. All are variances but the last.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BiasFilterConfig {
+    /// Each heading's zero at the end of the tare, rad².
+    pub initial_bias: Q,
+    /// Each segment's bend angle in the reference pose, rad².
+    pub straightness: Q,
+    /// The bias's rate, turn-on bias of the gyroscope, (rad per time unit)².
+    pub initial_rate: Q,
+    /// Process noise of the bias (angle random walk), rad² per time unit.
+    pub bias_noise: Q,
+    /// Process noise of the rate (rate random walk), (rad per time unit)² per time unit.
+    pub rate_noise: Q,
+    /// Offset of a segment's bend sensors in a session, rad².
+    pub offset: Q,
+    /// [`TIME_UNIT_S`](crate::TIME_UNIT_S) over the time constant of the offset (a Gauss–Markov process).
+    pub offset_rate: Q,
+}
+
+/// Thresholds of contact detection: changes within half a second that a free arm does not make.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ContactConfig {
+    /// Of a segment's IMUs against its bend sensors, a quarter of the motion taken off.
+    pub bend: Turns,
+    /// Of a segment against the one that it is coupled to.
+    pub coupling: Turns,
+}
+
+/// An earlier segment that bends alike in free motion: θ = ratio · θ of that one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct CoupledSegment {
+    /// Its place in the table, from 0.
+    pub segment: u8,
+    /// In units of 2⁻²⁸, within ±8.
+    pub ratio: i32,
+}
+
+impl CoupledSegment {
+    /// One in the units of the ratio.
+    pub const ONE: f64 = 268_435_456.0;
+}
+
+/// Error sources of the shape; the same for all segments.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct UncertaintyConfig {
+    /// Variance of θ behind the moving-average anchor, rad².
+    pub theta: Q,
+    /// Factor on the bias filter's covariance, which is conservative.
+    pub bias_share: Q,
+    /// Variance of θ that bend sensors alone measure, rad².
+    pub bend: Q,
+    /// Variance that a contact adds to θ, rad².
+    pub contact: Q,
+    /// Variance of each heading's own error, rad²: what one θ has too much of it, the next has too little.
+    pub heading: Q,
+    /// Variance of either coordinate of a segment's end in its own frame, whatever the angle, m².
+    pub end: Q,
+}
+
+/// Parameters of one block of KF_orient or KF_coord. Only the ratios of covariances act on the gains, so all are given as
+/// ratios to the larger of R_imu and R_bend, which keeps them within [`Q`]'s range.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct KalmanParams<S> {
+    /// Process noise Q from one sample to the next.
+    pub q: S,
+    /// Measurement noise R of the drift-corrected IMU.
+    pub r_imu: S,
+    /// Measurement noise R of the bend sensors.
+    pub r_bend: S,
+    /// Measurement matrix H of the drift-corrected IMU.
+    pub h_imu: S,
+    /// Measurement matrix H of the bend sensors.
+    pub h_bend: S,
+}
+
+impl BendErrorConfig {
+    /// Errors of sensors that no sweep has measured: the paper's mean of 4.72° for each, independent of each other.
+    pub const PAPER: Self = Self {
+        mean: variance_deg(3.34).q,
+        sensor: [variance_deg(4.72).q; SENSORS_PER_SEGMENT],
+        difference: variance_deg(3.34).q,
+        slow_difference: degrees(1.5).q,
+        slow_ratio: Q::from_f64(1.0),
+        travel: degrees(60.0).q,
+        correlation_time: Q::from_f64(10.0 / TIME_UNIT_S),
+    };
+}
+
+impl BiasFilterConfig {
+    /// Priors and noise of BNO055 units in IMUPLUS mode and of flex sensors (`docs/METHOD.md` has the sources).
+    pub const BNO055: Self = Self {
+        initial_bias: variance_deg(0.1).q,
+        straightness: variance_deg(0.3).q,
+        // 0.05 °/s: the paper's worst unit turns by 45° in 15 min.
+        initial_rate: variance_deg(0.05 * TIME_UNIT_S).q,
+        // 0.01 °/√s and 2e-4 °/s/√s, over a time unit of 64 s.
+        bias_noise: variance_deg(0.01 * 8.0).q,
+        rate_noise: variance_deg(2e-4 * TIME_UNIT_S * 8.0).q,
+        offset: variance_deg(1.0).q,
+        offset_rate: Q::from_f64(TIME_UNIT_S / 2000.0),
+    };
+}
+
+impl<S: Scalar> SegmentConfig<S> {
+    /// A segment without bend sensors: `length` and `offset` in m, connector at the end, straight at rest.
+    #[must_use]
+    pub fn uncalibrated(length: f64, offset: f64) -> Self {
+        let unit = KalmanParams { q: S::one(), r_imu: S::one(), r_bend: S::one(), h_imu: S::one(), h_bend: S::one() };
+        Self {
+            length: S::from_f64(length),
+            offset: S::from_f64(offset),
+            offset_at: OffsetAt::End,
+            bend: [None; SENSORS_PER_SEGMENT],
+            hysteresis: None,
+            bend_error: BendErrorConfig::PAPER,
+            imu_scale_error: 0,
+            coupled_to: None,
+            reference: Turns::ZERO,
+            orient: unit,
+            coord: unit,
+        }
+    }
+}
+
+impl<'t, S> ArmConfig<'t, S> {
+    /// An arm with absolute headings and the paper's anchor at 10 Hz: 10 s, 0.5°.
+    #[must_use]
+    pub const fn uncalibrated(segments: &'t [SegmentConfig<S>]) -> Self {
+        // 0.5° in units of 2⁻³² turns.
+        let anchor = AnchorConfig {
+            window: 100,
+            rate_millihertz: 10_000,
+            sample_rate_millihertz: 10_000,
+            threshold: Turns::from_bits(5_965_232),
+        };
+        Self { segments, tare_samples: 0, anchor, bias_filter: None, contact: None, uncertainty: None }
+    }
+}
+
+/// Why an [`Estimator`](crate::Estimator) cannot use a configuration.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ConfigError {
+    /// The arm has no segment, or more than the estimator was built for.
+    Segments {
+        /// Segments of the arm.
+        found: usize,
+        /// Segments that the estimator has room for.
+        room: usize,
+    },
+    /// The anchor's window is empty, or longer than the estimator was built for.
+    Window {
+        /// Length of the window.
+        found: u16,
+        /// Length that the estimator has room for.
+        room: usize,
+    },
+}
+
+impl core::fmt::Display for ConfigError {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Self::Segments { found, room } => write!(f, "the table has {found} segments, expected 1 to {room}"),
+            Self::Window { found, room } => write!(f, "the anchor's window is {found} values, expected 1 to {room}"),
+        }
+    }
+}
+
+impl core::error::Error for ConfigError {}

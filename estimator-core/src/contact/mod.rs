@@ -1,0 +1,4 @@
+//! Contact detection.
+
+pub mod detector;
+pub mod monitor;

@@ -1,0 +1,148 @@
+//! The bend sensors of one segment, held against each other and against the IMUs.
+//!
+//! Half the difference of a and b shows how far their mean may be off in this session: where their slow errors are
+//! independent, both have the same variance. A sensor that departs from its twin and from the IMUs is left out; the other
+//! alone is read with the running mean of the difference, so that nothing steps.
+
+use crate::config::{BendErrorConfig, SENSORS_PER_SEGMENT};
+use crate::numeric::scalar::{Constant, Scalar, TIME_UNIT_S};
+use crate::numeric::variance::{degrees, is_beyond, magnitude, scaled_square, smaller};
+
+/// Time over which the difference is averaged, time units: 60 s.
+const DIFFERENCE_TIME: Constant = Constant::new(60.0 / TIME_UNIT_S);
+/// Part of the slow difference that says nothing about the mean.
+const IGNORED_DIFFERENCE: Constant = degrees(0.2);
+/// A sensor is left out for so long after it last departed.
+const DISTRUST_US: u64 = 20_000_000;
+/// Departure from the IMUs, and from the twin, in predicted standard deviations, beside 1°.
+const DEPARTURE: Constant = Constant::new(4.0);
+const DIFFERENCE_DEPARTURE: Constant = Constant::new(5.0);
+const DIFFERENCE_MARGIN: Constant = degrees(1.0);
+/// A sensor that moves by less than this in 10 s, while the IMUs move by more than the other, is stuck.
+const STUCK_US: u64 = 10_000_000;
+const STUCK: Constant = degrees(1.0);
+const MOVING: Constant = degrees(12.0);
+
+/// State of a segment's bend sensors.
+#[derive(Debug, Clone, Copy)]
+pub struct BendMonitor<S> {
+    /// Mean of (a − b)/2 over the last minute, rad, and the time that it covers, time units.
+    difference: S,
+    averaged: S,
+    distrusted_until_us: [u64; SENSORS_PER_SEGMENT],
+    /// Lowest and highest of θ and of each sensor since `range_from_us`.
+    theta_range: [S; 2],
+    sensor_ranges: [[S; 2]; SENSORS_PER_SEGMENT],
+    range_from_us: u64,
+}
+
+/// θ_bend of the sensors that are trusted.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TrustedBend<S> {
+    /// Mean of the trusted sensors, rad.
+    pub theta: S,
+    /// Whether one sensor of two is missing, so that its error does not cancel.
+    pub is_single: bool,
+}
+
+impl<S: Scalar> BendMonitor<S> {
+    /// At the start of a session.
+    pub const fn new(zero: S) -> Self {
+        Self {
+            difference: zero,
+            averaged: zero,
+            distrusted_until_us: [0; SENSORS_PER_SEGMENT],
+            theta_range: [zero; 2],
+            sensor_ranges: [[zero; 2]; SENSORS_PER_SEGMENT],
+            range_from_us: 0,
+        }
+    }
+
+    /// θ_bend of the sensors that are read and trusted, `dt` after the last sample; `None` where there are none.
+    pub fn mean(&mut self, angles: [Option<S>; SENSORS_PER_SEGMENT], dt: S, time_us: u64) -> Option<TrustedBend<S>> {
+        let mut trusted = angles;
+        for (angle, until_us) in trusted.iter_mut().zip(self.distrusted_until_us) {
+            *angle = angle.filter(|_| time_us >= until_us);
+        }
+        match trusted {
+            [Some(a), Some(b)] => {
+                self.average_difference((a - b).half(), dt);
+                Some(TrustedBend { theta: (a + b).half(), is_single: false })
+            }
+            [Some(a), None] => Some(TrustedBend { theta: a - self.difference, is_single: true }),
+            [None, Some(b)] => Some(TrustedBend { theta: b + self.difference, is_single: true }),
+            [None, None] => None,
+        }
+    }
+
+    /// Running mean over the time that is there, a minute at most.
+    fn average_difference(&mut self, half: S, dt: S) {
+        let longest = S::constant(DIFFERENCE_TIME);
+        self.averaged = smaller(self.averaged + dt, longest);
+        let share = if dt < self.averaged { dt / self.averaged } else { S::one() };
+        self.difference += share * (half - self.difference);
+    }
+
+    /// Variance of the mean's offset that the difference shows, beyond the prior; `at_tare` it covers a second, in which
+    /// the difference has all of its scatter.
+    pub fn offset_excess(&self, config: &BendErrorConfig, at_tare: bool) -> S {
+        let slow = S::from_q(config.slow_difference);
+        let known = if at_tare { slow + slow + slow } else { slow + slow };
+        let beyond = magnitude(self.difference) - known - S::constant(IGNORED_DIFFERENCE);
+        let is_complete = at_tare || self.averaged >= S::constant(DIFFERENCE_TIME);
+        if beyond < S::zero() || !is_complete {
+            return S::zero();
+        }
+        S::from_q(config.slow_ratio) * scaled_square(beyond)
+    }
+
+    /// Holds each sensor against its twin and against `theta` of the IMUs, with the offset that the filter knows.
+    pub fn check(
+        &mut self,
+        config: &BendErrorConfig,
+        angles: [Option<S>; SENSORS_PER_SEGMENT],
+        theta: S,
+        time_us: u64,
+    ) {
+        if let [Some(a), Some(b)] = angles {
+            let errors = [a - self.difference - theta, b + self.difference - theta].map(magnitude);
+            let twin = magnitude((a - b).half() - self.difference);
+            let twin = twin - S::constant(DIFFERENCE_MARGIN);
+            let is_apart = twin > S::zero() && is_beyond(twin, DIFFERENCE_DEPARTURE, S::from_q(config.difference));
+            let worse = usize::from(errors[1] > errors[0]);
+            let departs = is_beyond(errors[worse], DEPARTURE, S::from_q(config.sensor[worse]));
+            if is_apart && departs {
+                self.distrusted_until_us[worse] = time_us + DISTRUST_US;
+            }
+        }
+        self.check_stuck(angles, theta, time_us);
+    }
+
+    /// Finds sensors that do not move while the segment does.
+    fn check_stuck(&mut self, angles: [Option<S>; SENSORS_PER_SEGMENT], theta: S, time_us: u64) {
+        let is_complete = time_us.saturating_sub(self.range_from_us) >= STUCK_US;
+        let moves = self.theta_range[1] - self.theta_range[0] > S::constant(MOVING);
+        let sensors = self.sensor_ranges.iter_mut().zip(&mut self.distrusted_until_us).zip(angles);
+        for ((range, until_us), angle) in sensors {
+            let Some(angle) = angle else { continue };
+            if is_complete && moves && range[1] - range[0] < S::constant(STUCK) {
+                *until_us = time_us + DISTRUST_US;
+            }
+            extend(range, angle, is_complete);
+        }
+        extend(&mut self.theta_range, theta, is_complete);
+        if is_complete {
+            self.range_from_us = time_us;
+        }
+    }
+}
+
+/// Extends a range, or begins a new one.
+fn extend<S: Scalar>(range: &mut [S; 2], value: S, is_new: bool) {
+    let [lowest, highest] = *range;
+    *range = if is_new {
+        [value; 2]
+    } else {
+        [if value < lowest { value } else { lowest }, if value > highest { value } else { highest }]
+    };
+}

@@ -1,0 +1,55 @@
+//! Decimator: from the sample rate down to the anchor's, and the turns of the segments between two values.
+
+use core::ops::Range;
+
+use crate::config::AnchorConfig;
+
+/// When a value of the window is complete and which it replaces; the same for the anchors of all segments.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Decimator {
+    /// How much of the time to the next value has passed: adds the anchor's rate a sample, up to the sample rate.
+    phase: u32,
+    oldest: u16,
+}
+
+/// What [`Decimator`] says of one sample.
+#[derive(Debug, Clone, Copy)]
+pub struct Decimated {
+    pub(crate) oldest: u16,
+    /// All ones where a value is complete, else zero.
+    pub(crate) complete: i32,
+}
+
+impl Decimated {
+    #[inline]
+    pub(crate) const fn is_complete(self) -> bool {
+        self.complete != 0
+    }
+}
+
+impl Decimator {
+    /// At the start of a session.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self { phase: 0, oldest: 0 }
+    }
+
+    /// Takes one sample's time.
+    pub fn tick(&mut self, rule: &AnchorConfig) -> Decimated {
+        self.phase = self.phase.saturating_add(rule.rate_millihertz);
+        let complete = self.phase >= rule.sample_rate_millihertz;
+        let slot = Decimated { oldest: self.oldest, complete: -i32::from(complete) };
+        if complete {
+            self.phase = (self.phase - rule.sample_rate_millihertz).min(rule.sample_rate_millihertz);
+            self.oldest = if self.oldest + 1 < rule.window { self.oldest + 1 } else { 0 };
+        }
+        slot
+    }
+
+    /// The phases that belong to the newest sample: those of all samples from one complete value to the next are those
+    /// from 0 to the sample rate, each once.
+    pub(crate) fn phases(self, rule: &AnchorConfig, slot: Decimated) -> Range<u32> {
+        let first = if slot.is_complete() { 0 } else { self.phase };
+        first..self.phase.saturating_add(rule.rate_millihertz)
+    }
+}

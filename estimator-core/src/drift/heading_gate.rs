@@ -1,0 +1,154 @@
+//! Plausibility of one IMU's heading: jumps, restarts with another zero, returns after an absence, and frozen output.
+//!
+//! A reading is held against the heading that its segment's bend sensors predict from the heading below. One that is far off
+//! is not used; an IMU that stays off has a new zero, and the difference is added to its bias.
+
+use crate::numeric::phase::Turns;
+use crate::numeric::scalar::{Constant, Scalar};
+use crate::numeric::variance::{degrees, magnitude};
+
+/// A reading is off by more than this, and 1.5 times the bend sensors' motion since the last sample,
+const JUMP: Constant = degrees(8.0);
+const JUMP_PER_MOTION: Constant = Constant::new(1.5);
+/// or, after an absence, by more than this and 0.3 times the motion.
+const RETURN: Constant = degrees(6.0);
+const RETURN_PER_MOTION: Constant = Constant::new(0.3);
+/// If the reading is as near as this without the bend sensors' motion, they have stepped and not the IMU.
+const BEND_STEP: Constant = degrees(5.0);
+/// Absence after which an IMU may have restarted.
+const ABSENCE_US: u64 = 500_000;
+/// Time for which a heading must be off until its zero is taken to be new: single wild samples are shorter.
+const CONFIRMATION_US: u64 = 390_000;
+/// Output that is the same to the bit for so long, while the bend sensors move, is frozen.
+const FROZEN_US: u64 = 990_000;
+
+/// State of one IMU's plausibility check.
+#[derive(Debug, Clone, Copy)]
+pub struct HeadingGate<S> {
+    /// Last accepted reading, unwrapped, and the same corrected for the gyroscope's sensitivity.
+    raw: Turns,
+    scaled: Turns,
+    accepted_at_us: Option<u64>,
+    suspect_since_us: Option<u64>,
+    freeze: Freeze<S>,
+}
+
+/// The newest change of the reading, and the bend angles then.
+#[derive(Debug, Clone, Copy)]
+struct Freeze<S> {
+    reading: Turns,
+    since_us: u64,
+    theta: S,
+    bend: S,
+    is_frozen: bool,
+}
+
+/// Prediction of one heading.
+#[derive(Debug, Clone, Copy)]
+pub struct Expected<S> {
+    /// Heading that the bend sensors predict in {W}.
+    pub heading: Turns,
+    /// Motion of the bend sensors since the last sample, rad.
+    pub motion: S,
+    /// Bias of the heading.
+    pub bias: Turns,
+    /// θ of the segment after the last sample, rad.
+    pub theta: S,
+    /// θ_bend of the segment, where it is known, rad.
+    pub bend: Option<S>,
+    /// Motion of the bend sensors during which an IMU must change, rad.
+    pub frozen_motion: S,
+}
+
+/// Verdict on one reading.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Verdict<S> {
+    /// The heading in {W}.
+    Accepted(Turns),
+    /// The heading in {W} after an absence of so many µs, in which the IMU may have restarted near its old zero.
+    Returned(Turns, u64),
+    /// The IMU has a new zero after an absence of so many µs: add the angle to its bias.
+    Restarted(Turns, u64),
+    /// Not read, or not used.
+    Absent,
+    /// Frozen: θ of the segment by its bend sensors since the IMU's last change, rad.
+    Frozen(S),
+}
+
+impl<S: Scalar> HeadingGate<S> {
+    /// An IMU that was not read yet.
+    pub const fn new(zero: S) -> Self {
+        let freeze = Freeze { reading: Turns::ZERO, since_us: 0, theta: zero, bend: zero, is_frozen: false };
+        Self { raw: Turns::ZERO, scaled: Turns::ZERO, accepted_at_us: None, suspect_since_us: None, freeze }
+    }
+
+    /// Sets the zero at the end of a tare: the newest reading, unwrapped, and the heading in {W} that it stands for.
+    pub fn tare(&mut self, raw: Turns, heading: Turns, time_us: u64) {
+        *self = Self { raw, scaled: heading, accepted_at_us: Some(time_us), ..Self::new(S::zero()) };
+    }
+
+    /// Takes a reading, unwrapped, or `None` where the IMU was not read. `scale_error` is that of the gyroscope's
+    /// sensitivity, in units of 2⁻³².
+    pub fn take(
+        &mut self,
+        reading: Option<Turns>,
+        scale_error: i32,
+        expected: &Expected<S>,
+        time_us: u64,
+    ) -> Verdict<S> {
+        let Some(reading) = reading else { return Verdict::Absent };
+        let Some(accepted_at_us) = self.accepted_at_us else {
+            // First read after the tare: its zero is unknown.
+            self.accept(reading, expected.heading + expected.bias, time_us);
+            return Verdict::Restarted(Turns::ZERO, ABSENCE_US);
+        };
+        if self.is_frozen(reading, expected, time_us) {
+            let bend = expected.bend.unwrap_or(self.freeze.bend);
+            return Verdict::Frozen(self.freeze.theta + bend - self.freeze.bend);
+        }
+        let delta = reading - self.raw;
+        let scaled = self.scaled + delta - delta.scaled_by(scale_error);
+        // Whole turns are those of the prediction.
+        let deviation = Turns::from((scaled - expected.bias - expected.heading).phase());
+        let absence_us = time_us.saturating_sub(accepted_at_us);
+        if Self::is_far(deviation, expected.motion, absence_us) {
+            let since_us = *self.suspect_since_us.get_or_insert(time_us);
+            if time_us.saturating_sub(since_us) < CONFIRMATION_US {
+                return Verdict::Absent;
+            }
+            self.accept(reading, expected.heading + expected.bias + deviation, time_us);
+            return Verdict::Restarted(deviation, absence_us);
+        }
+        self.accept(reading, expected.heading + expected.bias + deviation, time_us);
+        let heading = expected.heading + deviation;
+        if absence_us > ABSENCE_US { Verdict::Returned(heading, absence_us) } else { Verdict::Accepted(heading) }
+    }
+
+    fn accept(&mut self, reading: Turns, scaled: Turns, time_us: u64) {
+        (self.raw, self.scaled) = (reading, scaled);
+        (self.accepted_at_us, self.suspect_since_us) = (Some(time_us), None);
+    }
+
+    fn is_far(deviation: Turns, motion: S, absence_us: u64) -> bool {
+        let off = magnitude(S::from_phase(deviation.phase()));
+        let moved = magnitude(motion);
+        if absence_us > ABSENCE_US {
+            return off > S::constant(RETURN) + S::constant(RETURN_PER_MOTION) * moved;
+        }
+        let without_motion = magnitude(S::from_phase(deviation.phase()) + motion);
+        off > S::constant(JUMP) + S::constant(JUMP_PER_MOTION) * moved && without_motion > S::constant(BEND_STEP)
+    }
+
+    /// Whether the output has not changed by a bit while the bend sensors have moved.
+    fn is_frozen(&mut self, reading: Turns, expected: &Expected<S>, time_us: u64) -> bool {
+        let freeze = &mut self.freeze;
+        let Some(bend) = expected.bend.filter(|_| reading == freeze.reading) else {
+            let bend = expected.bend.unwrap_or(freeze.bend);
+            *freeze = Freeze { reading, since_us: time_us, theta: expected.theta, bend, is_frozen: false };
+            return false;
+        };
+        let is_old = time_us.saturating_sub(freeze.since_us) >= FROZEN_US;
+        freeze.is_frozen |= is_old && magnitude(bend - freeze.bend) > expected.frozen_motion;
+        freeze.is_frozen
+    }
+}

@@ -1,0 +1,48 @@
+//! Drift correction of the IMUs: the paper's moving-average anchor, and a Kalman filter over the biases of all headings.
+
+pub mod bend_monitor;
+pub mod bias_filter;
+pub mod bias_state;
+pub mod decimator;
+pub mod heading_gate;
+pub mod moving_average;
+pub mod rest;
+
+use crate::config::ArmConfig;
+use crate::drift::decimator::Decimated;
+use crate::numeric::phase::Turns;
+use crate::sensing::bend_sensors::BendAngles;
+use crate::sensing::heading::SegmentHeading;
+
+/// Bend angles and headings of one sample, from the base to the tip.
+#[derive(Debug, Clone, Copy)]
+pub struct SensedArm<S, const N: usize> {
+    /// Time of the sample, µs.
+    pub time_us: u64,
+    /// Position of the sample between two values of the anchor.
+    pub decimated: Decimated,
+    /// Bend angles.
+    pub bend: [BendAngles<S>; N],
+    /// Headings of the segments' ends.
+    pub headings: [SegmentHeading; N],
+}
+
+/// Corrected bend angles of one sample, from the base to the tip.
+#[derive(Debug, Clone, Copy)]
+pub struct CorrectedArm<const N: usize> {
+    /// θ_c,i of the IMUs; `None` where one of the two was not read, or is not trusted.
+    pub imu: [Option<Turns>; N],
+    /// θ_i of all sensors; `None` where the correction leaves fusion to KF_orient and KF_coord.
+    pub fused: [Option<Turns>; N],
+}
+
+impl<const N: usize> CorrectedArm<N> {
+    /// No angle is known.
+    pub const UNKNOWN: Self = Self { imu: [None; N], fused: [None; N] };
+}
+
+/// Removes the drift from the IMUs' bend angles.
+pub trait DriftCorrection<S, const N: usize> {
+    /// Takes one sample's angles; gives the corrected ones.
+    fn correct(&mut self, config: &ArmConfig<S>, sensed: &SensedArm<S, N>) -> CorrectedArm<N>;
+}

@@ -1,0 +1,136 @@
+//! Rest: a whole arm that does not move shows the drift's rate.
+//!
+//! Every five seconds the headings and bend angles are compared with those of five seconds ago. After ten seconds of rest the
+//! change of a heading is its rate times the time, and is learned; after twenty the shape is held: the bias follows the
+//! heading.
+
+use crate::numeric::phase::Turns;
+use crate::numeric::scalar::{Constant, Scalar, TIME_UNIT_S};
+use crate::numeric::variance::{degrees, magnitude};
+
+/// Length of a window.
+const WINDOW_US: u64 = 5_000_000;
+/// Rest after which the rate is learned, and after which the shape is held.
+const LEARN_US: u64 = 10_000_000;
+const HOLD_US: u64 = 20_000_000;
+/// Time constant of the means, time units: half a second.
+const MEAN_TIME: Constant = Constant::new(0.5 / TIME_UNIT_S);
+/// Largest change of a heading in a window, and range of its readings: 0.15 °/s, and 0.5° of noise beside it.
+const HEADING_CHANGE: Constant = degrees(0.75);
+const HEADING_RANGE: Constant = degrees(1.25);
+/// Largest change of a bend angle in a window.
+const BEND_CHANGE: Constant = degrees(0.8);
+
+/// Detector of rest for up to `N` segments.
+#[derive(Debug, Clone, Copy)]
+pub struct RestDetector<S, const N: usize> {
+    headings: [Mean<S>; N],
+    bend: [Mean<S>; N],
+    window_from_us: Option<u64>,
+    quiet_us: u64,
+}
+
+/// Deviation of a signal from its value at the window's begin.
+#[derive(Debug, Clone, Copy)]
+struct Mean<S> {
+    start: Option<Turns>,
+    mean: S,
+    lowest: S,
+    highest: S,
+}
+
+/// Changes over a window of rest.
+#[derive(Debug, Clone, Copy)]
+pub struct RestWindow<S, const N: usize> {
+    /// Change of each heading as the IMU reads it, rad; `None` where it was not read.
+    pub headings: [Option<S>; N],
+    /// Change of each bend angle, rad; zero where it was not read.
+    pub bend: [S; N],
+    /// Length of the window, µs.
+    pub length_us: u64,
+    /// Whether the shape is held.
+    pub holds: bool,
+}
+
+impl<S: Scalar> Mean<S> {
+    fn new() -> Self {
+        Self { start: None, mean: S::zero(), lowest: S::zero(), highest: S::zero() }
+    }
+
+    /// Takes a value; `share` is that of the newest one in the mean.
+    fn take(&mut self, value: Turns, share: S) {
+        let start = *self.start.get_or_insert(value);
+        let deviation = S::from_phase((value - start).phase());
+        self.mean += share * (deviation - self.mean);
+        self.lowest = if deviation < self.lowest { deviation } else { self.lowest };
+        self.highest = if deviation > self.highest { deviation } else { self.highest };
+    }
+
+    /// The change of the mean since the window began, and the range of the values; a new window begins at the mean.
+    fn finish(&mut self) -> Option<(S, S)> {
+        let start = self.start?;
+        let (change, range) = (self.mean, self.highest - self.lowest);
+        *self = Self { start: Some(start + change.to_turns()), ..Self::new() };
+        Some((change, range))
+    }
+}
+
+impl<S: Scalar, const N: usize> RestDetector<S, N> {
+    /// At the start of a session.
+    pub fn new() -> Self {
+        Self { headings: [Mean::new(); N], bend: [Mean::new(); N], window_from_us: None, quiet_us: 0 }
+    }
+
+    /// Whether the shape is held.
+    pub fn is_resting(&self) -> bool {
+        self.quiet_us >= HOLD_US
+    }
+
+    /// Takes one sample's readings: headings as the IMUs read them, and bend angles. At the end of a window of rest it gives
+    /// what has changed.
+    pub fn take(
+        &mut self,
+        headings: &[Option<Turns>; N],
+        bend: &[Option<Turns>; N],
+        dt: S,
+        time_us: u64,
+    ) -> Option<RestWindow<S, N>> {
+        let share = if dt < S::constant(MEAN_TIME) { dt / S::constant(MEAN_TIME) } else { S::one() };
+        let signals = self.headings.iter_mut().zip(headings).chain(self.bend.iter_mut().zip(bend));
+        for (mean, value) in signals {
+            if let Some(value) = value {
+                mean.take(*value, share);
+            }
+        }
+        let from_us = *self.window_from_us.get_or_insert(time_us);
+        let length_us = time_us.saturating_sub(from_us);
+        if length_us < WINDOW_US {
+            return None;
+        }
+        self.window_from_us = Some(time_us);
+        self.finish(headings, length_us)
+    }
+
+    fn finish(&mut self, read: &[Option<Turns>; N], length_us: u64) -> Option<RestWindow<S, N>> {
+        let was_quiet_us = self.quiet_us;
+        // A gap hides what happened in it.
+        let mut is_quiet = length_us < WINDOW_US + WINDOW_US / 8;
+        let mut headings = [None; N];
+        for ((change, mean), read) in headings.iter_mut().zip(&mut self.headings).zip(read) {
+            if let Some((moved, range)) = mean.finish() {
+                is_quiet &= magnitude(moved) < S::constant(HEADING_CHANGE) && range < S::constant(HEADING_RANGE);
+                *change = read.is_some().then_some(moved);
+            }
+        }
+        let mut bend = [S::zero(); N];
+        for (change, mean) in bend.iter_mut().zip(&mut self.bend) {
+            if let Some((moved, _)) = mean.finish() {
+                is_quiet &= magnitude(moved) < S::constant(BEND_CHANGE);
+                *change = moved;
+            }
+        }
+        self.quiet_us = if is_quiet { was_quiet_us.saturating_add(length_us) } else { 0 };
+        let holds = was_quiet_us >= HOLD_US;
+        (is_quiet && was_quiet_us >= LEARN_US).then_some(RestWindow { headings, bend, length_us, holds })
+    }
+}

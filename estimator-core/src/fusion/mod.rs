@@ -1,0 +1,3 @@
+//! Fusion: KF_orient and KF_coord.
+
+pub mod kalman;

@@ -1,0 +1,11 @@
+//! Numbers: the scalar that the pipeline is generic over, its fixed-point form, and angles as whole numbers.
+
+pub mod division;
+pub mod fused;
+pub mod phase;
+pub mod polynomial;
+pub mod q;
+mod q_fused;
+pub mod saturation;
+pub mod scalar;
+pub mod variance;

@@ -1,0 +1,97 @@
+//! One segment's own stages, in the order of the data: sensing, Kalman filters, constant curvature.
+
+use nalgebra::SVector;
+
+use crate::config::SegmentConfig;
+use crate::fusion::kalman::{KalmanFilter, KalmanGains};
+use crate::kinematics::pcc::{Link, Pcc};
+use crate::numeric::fused::FusedOps;
+use crate::numeric::phase::{Angle, Turns};
+use crate::sensing::bend_sensors::{BendAngles, BendSensors};
+use crate::sensing::heading::{HeadingTracker, SegmentHeading};
+use crate::types::{ImuReading, SegmentEstimate};
+
+/// State of one segment.
+#[derive(Debug, Clone)]
+pub struct SegmentState<S> {
+    heading: HeadingTracker<S>,
+    bend: BendSensors<S>,
+    pcc: Pcc<S>,
+    coord: KalmanFilter<S, 2>,
+    coord_gains: KalmanGains<S>,
+    orient: KalmanFilter<S, 1>,
+    orient_gains: KalmanGains<S>,
+    fused: Option<Link<S>>,
+}
+
+impl<S: FusedOps> SegmentState<S> {
+    /// At the start of a session.
+    pub fn new(segment: &SegmentConfig<S>, tare_samples: u32) -> Self {
+        Self {
+            heading: HeadingTracker::new(tare_samples, segment.reference),
+            bend: BendSensors::new(),
+            pcc: Pcc::new(segment),
+            coord: KalmanFilter::new(),
+            coord_gains: KalmanGains::new(&segment.coord),
+            orient: KalmanFilter::new(),
+            orient_gains: KalmanGains::new(&segment.orient),
+            fused: None,
+        }
+    }
+
+    /// Bend angles and heading of one sample's readings.
+    pub fn sense(
+        &mut self,
+        config: &SegmentConfig<S>,
+        counts: [Option<u16>; 2],
+        imu: Option<&ImuReading>,
+        time_us: u64,
+    ) -> (BendAngles<S>, SegmentHeading) {
+        self.heading.read(imu.and_then(ImuReading::heading));
+        (self.bend.read(config, counts, time_us), *self.heading.segment_heading())
+    }
+
+    /// KF_orient and KF_coord with the angles that there are; of θ_c without its whole turns, which say nothing of the bend
+    /// of a segment that nothing anchors, and fixed point ends at 32 rad.
+    pub fn filter(&mut self, theta_c: Option<Turns>, theta_bend: Option<S>) {
+        let theta_c = theta_c.map(|theta| S::from_phase(theta.phase()));
+        let end = |theta: S| self.pcc.link(Angle::from(theta)).end;
+        self.coord.step(&self.coord_gains, theta_c.map(end), theta_bend.map(end));
+        let vector = |theta: S| SVector::from([theta]);
+        self.orient.step(&self.orient_gains, theta_c.map(vector), theta_bend.map(vector));
+        let states = self.orient.state().zip(self.coord.state());
+        self.fused = states.map(|((theta, _), (end, _))| Link { theta: Angle::from(theta.x), end });
+    }
+
+    /// Constant curvature at the bend angle of all sensors.
+    pub fn bend_to(&mut self, theta: Option<Turns>) {
+        self.fused = theta.map(|theta| self.pcc.link(Angle::from(theta)));
+    }
+
+    /// The fused link.
+    pub fn fused(&self) -> Option<Link<S>> {
+        self.fused
+    }
+
+    /// A link at any bend angle.
+    pub fn link(&self, theta: Angle<S>) -> Link<S> {
+        self.pcc.link(theta)
+    }
+
+    /// Estimate of this sample by every method, `i`th from the base.
+    pub fn estimate(
+        &self,
+        angles: &BendAngles<S>,
+        imu_o: Option<Angle<S>>,
+        imu_c: Option<Turns>,
+    ) -> SegmentEstimate<S> {
+        SegmentEstimate {
+            bend: angles.mean.map(|theta| self.pcc.link(Angle::from(theta))),
+            imu_o,
+            imu_c: imu_c.map(|theta| self.pcc.link(Angle::from(theta))),
+            fusion: self.fused,
+            bend_sensors_read: angles.count(),
+            imu_read: self.heading.segment_heading().is_read(),
+        }
+    }
+}

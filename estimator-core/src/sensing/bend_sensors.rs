@@ -1,0 +1,71 @@
+//! The bend sensors of one segment: counts to angles, with the memory of each sensor.
+
+use crate::config::{SENSORS_PER_SEGMENT, SegmentConfig};
+use crate::numeric::fused::FusedOps;
+use crate::sensing::hysteresis::{Memory, PrandtlIshlinskii};
+
+/// State of a segment's bend sensors.
+#[derive(Debug, Clone, Copy)]
+pub struct BendSensors<S> {
+    memory: [Memory<S>; SENSORS_PER_SEGMENT],
+    hysteresis: PrandtlIshlinskii<S>,
+}
+
+/// Bend angles of one sample.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BendAngles<S> {
+    /// Of each sensor that was read, rad.
+    pub sensors: [Option<S>; SENSORS_PER_SEGMENT],
+    /// θ_bend,i, their mean, hysteresis compensated, rad.
+    pub mean: Option<S>,
+    /// Whether a sensor reads beyond what its calibration has seen.
+    pub is_extrapolated: bool,
+}
+
+impl<S: FusedOps> BendSensors<S> {
+    /// Sensors that were not read yet.
+    pub const fn new() -> Self {
+        Self { memory: [Memory::new(); SENSORS_PER_SEGMENT], hysteresis: PrandtlIshlinskii::new() }
+    }
+
+    /// Bend angles at these counts, read at `time_us`.
+    pub fn read(
+        &mut self,
+        config: &SegmentConfig<S>,
+        counts: [Option<u16>; SENSORS_PER_SEGMENT],
+        time_us: u64,
+    ) -> BendAngles<S> {
+        let mut angles = BendAngles { sensors: [None; SENSORS_PER_SEGMENT], mean: None, is_extrapolated: false };
+        let sensors = config.bend.iter().zip(counts).zip(&mut self.memory).zip(&mut angles.sensors);
+        for (((sensor, counts), memory), angle) in sensors {
+            let (Some(sensor), Some(counts)) = (sensor, counts) else { continue };
+            let mapped = sensor.map.angle(counts);
+            *angle = match (mapped, &sensor.memory) {
+                (Some(theta), Some(config)) => Some(memory.compensate(config, theta, time_us)),
+                (mapped, _) => mapped,
+            };
+            angles.is_extrapolated |= sensor.map.is_extrapolated(counts);
+        }
+        let mean = mean(angles.sensors);
+        angles.mean = match &config.hysteresis {
+            Some(plays) => mean.map(|theta| self.hysteresis.compensate(plays, theta)),
+            None => mean,
+        };
+        angles
+    }
+}
+
+impl<S: Copy> BendAngles<S> {
+    /// Number of sensors that were read.
+    pub fn count(&self) -> u8 {
+        self.sensors.iter().map(|sensor| u8::from(sensor.is_some())).sum()
+    }
+}
+
+/// Mean of the sensors that were read.
+fn mean<S: FusedOps>([a, b]: [Option<S>; SENSORS_PER_SEGMENT]) -> Option<S> {
+    match (a, b) {
+        (Some(a), Some(b)) => Some((a + b).half()),
+        (one, other) => one.or(other),
+    }
+}
