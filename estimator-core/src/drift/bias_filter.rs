@@ -6,7 +6,7 @@
 //! The bend sensors' error depends on the way that they came (map, hysteresis), and is not white in time: they inform the
 //! filter by travel, so that an arm at rest teaches nothing.
 
-use crate::config::{ArmConfig, BendErrorConfig, BiasFilterConfig, SegmentConfig};
+use crate::config::{ArmConfig, BendErrorConfig, BiasFilterConfig, SENSORS_PER_SEGMENT, SegmentConfig};
 use crate::drift::bend_monitor::{BendMonitor, TrustedBend};
 use crate::drift::bias_state::{BIAS, BiasState, OFFSET, RATE};
 use crate::drift::heading_gate::{Expected, HeadingGate, Verdict};
@@ -14,7 +14,7 @@ use crate::drift::rest::{RestDetector, RestWindow};
 use crate::drift::{CorrectedArm, DriftCorrection, SensedArm};
 use crate::numeric::phase::Turns;
 use crate::numeric::scalar::{Constant, Scalar, TIME_UNIT_S};
-use crate::numeric::variance::{degrees, is_beyond, magnitude, scaled_square, smaller, variance_deg};
+use crate::numeric::variance::{degrees, is_beyond, larger, magnitude, scaled_square, smaller, variance_deg};
 
 /// Travel of the IMUs and of the bend sensors since the last update, below which there is no new information.
 const IMU_TRAVEL: Constant = degrees(1.0);
@@ -23,17 +23,24 @@ const BEND_TRAVEL: Constant = degrees(0.5);
 const LONG_ERRORS: i32 = 2;
 /// Largest factor on the measurement noise: the update is worth nothing beyond it.
 const MAX_RATIO: i32 = 15;
+/// Standard deviation of the bend sensors' scale error: 5 % of the bend angle.
+const SCALE_ERROR: Constant = Constant::new(0.05);
 /// Innovation gate in predicted standard deviations.
 const GATE: Constant = Constant::new(6.0);
 /// After so long beyond the gate the bias and the offset become doubtful, by 3°.
 const GATE_TIMEOUT_US: u64 = 30_000_000;
 const GATED: Constant = variance_deg(3.0);
-/// A tare is bad where headings spread by more than this, or bend sensors are on average more than two expected standard
-/// deviations off the reference pose (in sixteenths of the variance).
+/// A tare is bad where headings spread by more than this, or the bend sensors' root mean square is this far off the reference
+/// pose; its straightness is the last one.
 const STILL: Constant = degrees(1.5);
-const STRAIGHT_RATIO: Constant = Constant::new(4.0 / 16.0);
-/// Straightness of a bad tare.
-const BAD_TARE: Constant = variance_deg(10.0);
+const BENT: Constant = variance_deg(10.0);
+const BAD_TARE: Constant = variance_deg(12.0);
+/// Doubt about a new zero that no bend sensor supports.
+const UNSEEN_ZERO: Constant = variance_deg(15.0);
+/// Doubt about the offset of a segment whose sensor has stepped.
+const STEPPED: Constant = variance_deg(1.0);
+/// Growth of the offset's variance where one sensor of two is lost, in slow variances of their difference.
+const LOST_SENSOR: Constant = Constant::new(1.5);
 /// Doubt about a new zero: 2°, a quarter of the bend sensors' variance, and 0.02° a second of absence up to 400 s.
 const NEW_ZERO: Constant = variance_deg(2.0);
 const NEW_ZERO_CREEP: Constant = variance_deg(0.02 * 8.0);
@@ -49,7 +56,6 @@ const BEND_STEP: Constant = degrees(12.0);
 /// Doubt about the heading of a resting arm, 0.02 °/√s, and about the rate learned at rest.
 const REST_CREEP: Constant = variance_deg(0.02 * 8.0);
 const REST_READING: Constant = variance_deg(0.064);
-const REST_SETTLING: Constant = variance_deg(0.5);
 /// Gate of a rest's heading change, in predicted standard deviations.
 const REST_GATE: Constant = Constant::new(3.0);
 /// An IMU whose bend sensors move by this much, and by four of their standard deviations, must change.
@@ -101,8 +107,11 @@ struct SegmentTrack<F> {
     updated_bend: F,
     updated_at_us: u64,
     gated_since_us: Option<u64>,
-    /// Variance of the offset's prior, so².
+    /// Variance of the offset's prior, so², and the part of it that lost sensors have added.
     offset_prior: F,
+    lost: F,
+    /// Whether one sensor of two is missing.
+    is_single: bool,
 }
 
 /// Sums of the tare.
@@ -130,6 +139,8 @@ impl<F: Scalar, const N: usize> BiasFilter<F, N> {
             updated_at_us: 0,
             gated_since_us: None,
             offset_prior: zero,
+            lost: zero,
+            is_single: false,
         };
         let tare = TareStatistics {
             samples: 0,
@@ -177,31 +188,73 @@ impl<F: Scalar, const N: usize> BiasFilter<F, N> {
 impl<S: Scalar, F: Scalar, const N: usize> DriftCorrection<S, N> for BiasFilter<F, N> {
     fn correct(&mut self, config: &ArmConfig<S>, sensed: &SensedArm<S, N>) -> CorrectedArm<N> {
         let Some(filter) = &config.bias_filter else { return CorrectedArm::UNKNOWN };
-        let dt = F::from_micros(sensed.time_us.saturating_sub(self.last_us).min(u64::from(u32::MAX)) as u32);
+        let elapsed_us = sensed.time_us.saturating_sub(self.last_us);
+        let dt = F::from_micros(elapsed_us.min(u64::from(u32::MAX)) as u32);
         self.last_us = sensed.time_us;
-        let angles = sensed.bend.map(|bend| bend.sensors.map(|theta| theta.map(converted)));
-        let mut bend = [None; N];
-        for ((bend, monitor), angles) in bend.iter_mut().zip(&mut self.monitors).zip(angles) {
-            *bend = monitor.mean(angles, if self.is_started { dt } else { smaller(dt, F::one()) }, sensed.time_us);
-        }
+        let angles = self.trust_bend(sensed, dt);
+        let mut bend = self.bend_means(&angles, sensed.time_us);
         if !self.is_started && !self.tare(config, filter, sensed, &bend) {
             return CorrectedArm::UNKNOWN;
         }
+        let last = self.segments.map(|track| track.theta);
         self.track_headings(config, sensed, &bend, dt);
         self.fill_absent_headings(config, &bend, dt);
         let corrected = self.angles(config.segments);
-        for (i, (segment, angles)) in config.segments.iter().zip(angles).enumerate().take(N) {
-            let expected = self.segments[i].theta + self.state.offset[i];
-            if corrected.imu[i].is_some() {
-                self.monitors[i].check(&segment.bend_error, angles, expected, sensed.time_us);
-            }
-        }
+        self.check_bend(config, sensed, &corrected, &angles, (&last, elapsed_us));
+        // Without the sensors that have just stepped.
+        bend = self.bend_means(&angles, sensed.time_us);
         self.update_turn(config, filter, sensed, &bend);
         self.follow_rest(config, sensed, &bend, dt);
         for (track, bend) in self.segments.iter_mut().zip(&bend) {
             track.bend = bend.map(|bend| bend.theta).or(track.bend);
         }
         corrected
+    }
+}
+
+impl<F: Scalar, const N: usize> BiasFilter<F, N> {
+    /// Angles of the bend sensors in the filter's number, compared with each other.
+    fn trust_bend<S: Scalar>(&mut self, sensed: &SensedArm<S, N>, dt: F) -> [[Option<F>; SENSORS_PER_SEGMENT]; N] {
+        let mut angles = sensed.bend.map(|bend| bend.sensors.map(|theta| theta.map(converted)));
+        for (angles, monitor) in angles.iter_mut().zip(&mut self.monitors) {
+            *angles = monitor.corrected(*angles);
+            monitor.compare(*angles, dt, sensed.time_us);
+        }
+        angles
+    }
+
+    fn bend_means(&self, angles: &[[Option<F>; SENSORS_PER_SEGMENT]; N], time_us: u64) -> [Option<TrustedBend<F>>; N] {
+        let mut means = [None; N];
+        for ((mean, monitor), angles) in means.iter_mut().zip(&self.monitors).zip(angles) {
+            *mean = monitor.mean(*angles, time_us);
+        }
+        means
+    }
+
+    /// Holds the bend sensors against the IMUs: steps, departures, sensors that are stuck.
+    fn check_bend<S: Scalar>(
+        &mut self,
+        config: &ArmConfig<S>,
+        sensed: &SensedArm<S, N>,
+        corrected: &CorrectedArm<N>,
+        angles: &[[Option<F>; SENSORS_PER_SEGMENT]; N],
+        (last, elapsed_us): (&[F; N], u64),
+    ) {
+        let tracks = self.segments.iter().zip(&self.state.offset).zip(last);
+        let sensors = self.monitors.iter_mut().zip(angles).zip(&corrected.imu);
+        let mut stepped = [false; N];
+        for ((((monitor, angles), imu), ((track, offset), last)), (segment, stepped)) in
+            sensors.zip(tracks).zip(config.segments.iter().zip(&mut stepped))
+        {
+            let motion = imu.map(|_| track.theta - *last);
+            *stepped = monitor.find_steps(*angles, motion, elapsed_us, sensed.time_us);
+            if imu.is_some() {
+                monitor.check(&segment.bend_error, *angles, track.theta + *offset, sensed.time_us);
+            }
+        }
+        for (i, _) in stepped.iter().enumerate().filter(|(_, stepped)| **stepped) {
+            self.state.doubt(i, OFFSET, F::constant(STEPPED));
+        }
     }
 }
 
@@ -252,7 +305,14 @@ impl<F: Scalar, const N: usize> BiasFilter<F, N> {
             }
             below = track.heading;
         }
-        self.is_tare_bad = is_tared && self.tare.is_bad(config.segments, &self.segments);
+        let spread = self.tare.bend_variance(config.segments);
+        self.is_tare_bad = is_tared && (self.tare.moved() || spread > F::constant(BENT));
+        if is_tared && !self.is_tare_bad {
+            // What the bend sensors read of a straight arm is the size of their offsets in this session.
+            for track in &mut self.segments {
+                track.offset_prior = larger(track.offset_prior, spread);
+            }
+        }
         let straightness = if self.is_tare_bad { F::constant(BAD_TARE) } else { F::from_q(filter.straightness) };
         let straightness = if is_tared { straightness } else { F::zero() };
         self.state.initialise(filter, straightness, &self.segments.map(|track| track.offset_prior), time_us);
@@ -346,7 +406,8 @@ impl<F: Scalar, const N: usize> BiasFilter<F, N> {
                 self.state.bias[i] = self.state.bias[i] + deviation;
                 let absence = F::from_micros(absence_us.min(400_000_000) as u32);
                 let quarter = F::from_q(error.mean).half().half();
-                let doubt = F::constant(NEW_ZERO) + quarter + absence * F::constant(NEW_ZERO_CREEP);
+                let seen = F::constant(NEW_ZERO) + quarter + absence * F::constant(NEW_ZERO_CREEP);
+                let doubt = if expected.bend.is_some() { seen } else { F::constant(UNSEEN_ZERO) };
                 self.state.doubt(i, BIAS, doubt);
                 self.state.doubt(i, RATE, F::constant(NEW_ZERO_RATE));
             }
@@ -413,7 +474,7 @@ impl<F: Scalar, const N: usize> BiasFilter<F, N> {
         let i = self.turn;
         self.turn = if i + 1 < config.segments.len().min(N) { i + 1 } else { 0 };
         let Some(segment) = config.segments.get(i) else { return };
-        self.grow_offset(i, filter, &segment.bend_error);
+        self.grow_offset(i, filter, &segment.bend_error, bend[i].as_ref());
         if self.rest.is_resting() {
             self.state.predict_at_rest(i, filter, F::constant(REST_CREEP), sensed.time_us);
         } else {
@@ -426,10 +487,21 @@ impl<F: Scalar, const N: usize> BiasFilter<F, N> {
         }
     }
 
-    /// Widens the prior of the offset where the two sensors disagree more than before.
-    fn grow_offset(&mut self, i: usize, filter: &BiasFilterConfig, error: &BendErrorConfig) {
-        let prior = F::from_q(filter.offset) + self.monitors[i].offset_excess(error, false);
+    /// Widens the prior of the offset where the two sensors disagree more than before, or one is lost.
+    fn grow_offset(
+        &mut self,
+        i: usize,
+        filter: &BiasFilterConfig,
+        error: &BendErrorConfig,
+        bend: Option<&TrustedBend<F>>,
+    ) {
         let track = &mut self.segments[i];
+        let is_single = bend.is_some_and(|bend| bend.is_single);
+        if is_single && !track.is_single {
+            track.lost += F::constant(LOST_SENSOR) * scaled_square(F::from_q(error.slow_difference));
+        }
+        track.is_single = is_single;
+        let prior = F::from_q(filter.offset) + track.lost + self.monitors[i].offset_excess(error, false);
         if prior > track.offset_prior {
             self.state.doubt(i, OFFSET, prior - track.offset_prior);
             track.offset_prior = prior;
@@ -440,7 +512,7 @@ impl<F: Scalar, const N: usize> BiasFilter<F, N> {
     fn update(&mut self, i: usize, error: &BendErrorConfig, bend: TrustedBend<F>, time_us: u64) {
         let track = self.segments[i];
         let single = if bend.is_single { F::from_q(error.difference) } else { F::zero() };
-        let sigma = F::from_q(error.mean) + single;
+        let sigma = F::from_q(error.mean) + single + scaled_square(F::constant(SCALE_ERROR) * track.theta);
         let nu = track.theta - bend.theta + self.state.offset[i];
         let innovation = self.state.innovation(i);
         if is_beyond(nu, GATE, innovation.variance + sigma) {
@@ -501,17 +573,14 @@ impl<F: Scalar, const N: usize> BiasFilter<F, N> {
         let dt = F::from_micros(window.length_us.min(u64::from(u32::MAX)) as u32);
         let drift = self.state.rate[j] * dt;
         let nu = change - drift;
-        let settling = if window.holds { F::zero() } else { F::constant(REST_SETTLING) };
-        let r = F::constant(REST_READING) + scaled_square(window.bend[j]) + settling;
+        let r = F::constant(REST_READING) + scaled_square(window.bend[j]);
         let innovation = self.state.innovation_at_rest(j, dt);
         if is_beyond(nu, REST_GATE, innovation.variance + r) {
             return;
         }
         self.state.update(&innovation, nu, r);
-        if window.holds {
-            // The shape stays: what the heading has changed by was its bias.
-            self.state.bias[j] = self.state.bias[j] + nu.to_turns();
-        }
+        // The shape stays: what the heading has changed by was its bias.
+        self.state.bias[j] = self.state.bias[j] + nu.to_turns();
     }
 }
 
@@ -542,19 +611,22 @@ impl<F: Scalar, const N: usize> TareStatistics<F, N> {
         (self.bend_count[i] > 0).then(|| F::from_phase(self.bend_sum[i].mean_of(self.bend_count[i]).phase()))
     }
 
-    /// Whether the arm moved, or was not in its reference pose.
-    fn is_bad<S: Scalar>(&self, segments: &[SegmentConfig<S>], tracks: &[SegmentTrack<F>; N]) -> bool {
-        let moved = self.range.iter().any(|[lowest, highest]| *highest - *lowest > F::constant(STILL));
-        let (mut excess, mut count, mut below) = (F::zero(), 0, Turns::ZERO);
-        for (i, (segment, track)) in segments.iter().zip(tracks).enumerate() {
+    /// Whether the arm moved.
+    fn moved(&self) -> bool {
+        self.range.iter().any(|[lowest, highest]| *highest - *lowest > F::constant(STILL))
+    }
+
+    /// Mean square of the bend angles' distance from the reference pose, as variances are held.
+    fn bend_variance<S: Scalar>(&self, segments: &[SegmentConfig<S>]) -> F {
+        let (mut sum, mut count, mut below) = (F::zero(), 0, Turns::ZERO);
+        for (i, segment) in segments.iter().enumerate() {
             let reference: F = F::from_phase((segment.reference - below).phase());
             below = segment.reference;
             let Some(bend) = self.bend_mean(i) else { continue };
-            let expected = track.offset_prior + F::from_q(segment.bend_error.mean);
             // In sixteenths, so that the sum fits.
-            excess += bounded_ratio(scaled_square(bend - reference), expected) / F::from_int(16);
+            sum += scaled_square(bend - reference) / F::from_int(16);
             count += 1;
         }
-        moved || excess > F::from_int(count) * F::constant(STRAIGHT_RATIO)
+        smaller(sum / F::from_int(count.max(1)), F::one()) * F::from_int(16)
     }
 }

@@ -7,18 +7,16 @@ use crate::numeric::phase::Turns;
 use crate::numeric::scalar::{Constant, Scalar};
 use crate::numeric::variance::{degrees, magnitude};
 
-/// A reading is off by more than this, and 1.5 times the bend sensors' motion since the last sample,
-const JUMP: Constant = degrees(8.0);
-const JUMP_PER_MOTION: Constant = Constant::new(1.5);
-/// or, after an absence, by more than this and 0.3 times the motion.
-const RETURN: Constant = degrees(6.0);
+/// A reading is off by more than this and the bend sensors' motion since the last sample,
+const JUMP: Constant = degrees(6.0);
+/// or, after an absence, by more than this and 0.3 times the motion. Half of it keeps up a suspicion.
 const RETURN_PER_MOTION: Constant = Constant::new(0.3);
-/// If the reading is as near as this without the bend sensors' motion, they have stepped and not the IMU.
-const BEND_STEP: Constant = degrees(5.0);
+/// The same where no bend sensor predicts the motion.
+const JUMP_UNSEEN: Constant = degrees(30.0);
 /// Absence after which an IMU may have restarted.
 const ABSENCE_US: u64 = 500_000;
 /// Time for which a heading must be off until its zero is taken to be new: single wild samples are shorter.
-const CONFIRMATION_US: u64 = 390_000;
+const CONFIRMATION_US: u64 = 350_000;
 /// Output that is the same to the bit for so long, while the bend sensors move, is frozen.
 const FROZEN_US: u64 = 990_000;
 
@@ -111,7 +109,7 @@ impl<S: Scalar> HeadingGate<S> {
         // Whole turns are those of the prediction.
         let deviation = Turns::from((scaled - expected.bias - expected.heading).phase());
         let absence_us = time_us.saturating_sub(accepted_at_us);
-        if Self::is_far(deviation, expected.motion, absence_us) {
+        if self.is_far(deviation, expected, absence_us) {
             let since_us = *self.suspect_since_us.get_or_insert(time_us);
             if time_us.saturating_sub(since_us) < CONFIRMATION_US {
                 return Verdict::Absent;
@@ -129,14 +127,18 @@ impl<S: Scalar> HeadingGate<S> {
         (self.accepted_at_us, self.suspect_since_us) = (Some(time_us), None);
     }
 
-    fn is_far(deviation: Turns, motion: S, absence_us: u64) -> bool {
-        let off = magnitude(S::from_phase(deviation.phase()));
-        let moved = magnitude(motion);
-        if absence_us > ABSENCE_US {
-            return off > S::constant(RETURN) + S::constant(RETURN_PER_MOTION) * moved;
-        }
-        let without_motion = magnitude(S::from_phase(deviation.phase()) + motion);
-        off > S::constant(JUMP) + S::constant(JUMP_PER_MOTION) * moved && without_motion > S::constant(BEND_STEP)
+    /// Whether a deviation is more than the arm can have moved.
+    fn is_far(&self, deviation: Turns, expected: &Expected<S>, absence_us: u64) -> bool {
+        let moved = magnitude(expected.motion);
+        let limit = if expected.bend.is_none() {
+            S::constant(JUMP_UNSEEN)
+        } else if absence_us > ABSENCE_US {
+            S::constant(JUMP) + S::constant(RETURN_PER_MOTION) * moved
+        } else {
+            S::constant(JUMP) + moved
+        };
+        let limit = if self.suspect_since_us.is_some() { limit.half() } else { limit };
+        magnitude(S::from_phase(deviation.phase())) > limit
     }
 
     /// Whether the output has not changed by a bit while the bend sensors have moved.
