@@ -94,6 +94,12 @@ impl<S: Scalar> BendMonitor<S> {
         }
     }
 
+    /// Whether a sensor is left out now.
+    pub fn is_distrusted(&self, time_us: u64) -> bool {
+        self.distrusted_until_us.iter().any(|until_us| time_us < *until_us)
+            || self.steps.iter().any(|step| step.suspect_since_us.is_some())
+    }
+
     /// Takes the difference of both sensors, `dt` after the last sample.
     pub fn compare(&mut self, angles: [Option<S>; SENSORS_PER_SEGMENT], dt: S, time_us: u64) {
         if let [Some(a), Some(b)] = self.trusted(angles, time_us) {

@@ -79,6 +79,7 @@ impl<F: Scalar, const N: usize> BiasFilter<F, N> {
                 self.state.doubt(i, BIAS, F::constant(RETURNED));
             }
             Verdict::Restarted(deviation, absence_us) => {
+                self.segments[i].restarted_at_us = Some(time_us);
                 self.state.bias[i] = self.state.bias[i] + deviation;
                 let absence = F::from_micros(absence_us.min(400_000_000) as u32);
                 let quarter = F::from_q(error.mean).half().half();

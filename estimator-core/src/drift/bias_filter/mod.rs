@@ -19,12 +19,15 @@ use crate::drift::{CorrectedArm, DriftCorrection, SensedArm};
 use crate::numeric::phase::Turns;
 use crate::numeric::scalar::{Constant, Scalar};
 use crate::numeric::variance::{smaller, variance_deg};
+use crate::types::Condition;
 use bend_monitor::{BendMonitor, TrustedBend};
 use heading_gate::HeadingGate;
 use rest::RestDetector;
 use state::{BiasState, OFFSET};
 use tare::TareStatistics;
 
+/// A restart of an IMU and a step of a bend sensor are reported for so long.
+const RECENT_US: u64 = 60_000_000;
 /// Doubt about the offset of a segment whose sensor has stepped.
 const STEPPED: Constant = variance_deg(1.0);
 /// An absent heading's own error: 0.5° after a second, growing with the root of time.
@@ -54,7 +57,7 @@ pub struct BiasFilter<F, const N: usize> {
     rest: RestDetector<F, N>,
     is_started: bool,
     is_tare_bad: bool,
-    last_us: u64,
+    last_us: Option<u64>,
     /// The segment whose turn it is.
     turn: usize,
 }
@@ -75,6 +78,8 @@ struct SegmentTrack<F> {
     updated_bend: F,
     updated_at_us: u64,
     gated_since_us: Option<u64>,
+    restarted_at_us: Option<u64>,
+    stepped_at_us: Option<u64>,
     /// Variance of the offset's prior, so², and the part of it that lost sensors have added.
     offset_prior: F,
     lost: F,
@@ -96,6 +101,8 @@ impl<F: Scalar, const N: usize> BiasFilter<F, N> {
             updated_bend: zero,
             updated_at_us: 0,
             gated_since_us: None,
+            restarted_at_us: None,
+            stepped_at_us: None,
             offset_prior: zero,
             lost: zero,
             is_single: false,
@@ -109,7 +116,7 @@ impl<F: Scalar, const N: usize> BiasFilter<F, N> {
             rest: RestDetector::new(),
             is_started: false,
             is_tare_bad: false,
-            last_us: 0,
+            last_us: None,
             turn: 0,
         }
     }
@@ -125,23 +132,35 @@ impl<F: Scalar, const N: usize> BiasFilter<F, N> {
         if track.is_heading_read {
             return F::zero();
         }
-        let absent_us = self.last_us.saturating_sub(track.heading_read_at_us).min(u64::from(u32::MAX)) as u32;
+        let absent_us =
+            self.last_us.unwrap_or_default().saturating_sub(track.heading_read_at_us).min(u64::from(u32::MAX)) as u32;
         let grown = smaller(F::from_micros(absent_us), F::one()) * F::constant(ABSENT);
         smaller(grown, track.offset_prior + F::from_q(config.mean))
     }
 
-    /// Whether the tare was bent or moving, so that the bend sensors set the biases.
-    pub fn is_tare_bad(&self) -> bool {
-        self.is_tare_bad
+    /// Condition of segment `i`.
+    pub fn condition(&self, i: usize) -> Condition {
+        let now_us = self.last_us.unwrap_or_default();
+        let is_recent = |at_us: Option<u64>| at_us.is_some_and(|at_us| now_us.saturating_sub(at_us) < RECENT_US);
+        let (Some(track), Some(monitor)) = (self.segments.get(i), self.monitors.get(i)) else {
+            return Condition::default();
+        };
+        Condition {
+            tare_bad: self.is_tare_bad,
+            imu_absent: self.is_started && !track.is_heading_read,
+            imu_restarted: is_recent(track.restarted_at_us),
+            bend_distrusted: monitor.is_distrusted(now_us) || track.is_single || is_recent(track.stepped_at_us),
+            gated: track.gated_since_us.is_some(),
+        }
     }
 }
 
 impl<S: Scalar, F: Scalar, const N: usize> DriftCorrection<S, N> for BiasFilter<F, N> {
     fn correct(&mut self, config: &ArmConfig<S>, sensed: &SensedArm<S, N>) -> CorrectedArm<N> {
         let Some(filter) = &config.bias_filter else { return CorrectedArm::UNKNOWN };
-        let elapsed_us = sensed.time_us.saturating_sub(self.last_us);
+        let elapsed_us = self.last_us.map_or(0, |last_us| sensed.time_us.saturating_sub(last_us));
         let dt = F::from_micros(elapsed_us.min(u64::from(u32::MAX)) as u32);
-        self.last_us = sensed.time_us;
+        self.last_us = Some(sensed.time_us);
         let angles = self.trust_bend(sensed, dt);
         let mut bend = self.bend_means(&angles, sensed.time_us);
         if !self.is_started && !self.tare(config, filter, sensed, &bend) {
@@ -205,6 +224,7 @@ impl<F: Scalar, const N: usize> BiasFilter<F, N> {
         }
         for (i, _) in stepped.iter().enumerate().filter(|(_, stepped)| **stepped) {
             self.state.doubt(i, OFFSET, F::constant(STEPPED));
+            self.segments[i].stepped_at_us = Some(sensed.time_us);
         }
     }
 }

@@ -97,8 +97,8 @@ impl<F: Scalar, const N: usize> BiasFilter<F, N> {
         let elapsed_us = time_us.saturating_sub(track.updated_at_us).min(u64::from(u32::MAX)) as u32;
         let by_travel = bounded_ratio(F::from_q(error.travel), travel);
         let by_time = bounded_ratio(F::from_q(error.correlation_time).half(), F::from_micros(elapsed_us));
-        let ratio =
-            [by_travel, by_time].into_iter().fold(F::one(), |most, ratio| if ratio > most { ratio } else { most });
+        let ratio = larger(larger(by_travel, by_time), F::one());
+        let ratio = if bend.is_single { F::from_int(MAX_RATIO) } else { ratio };
         self.state.update(&innovation, nu, F::from_int(LONG_ERRORS) * ratio * sigma);
         let track = &mut self.segments[i];
         (track.updated_theta, track.updated_bend, track.updated_at_us) = (track.theta, bend.theta, time_us);
