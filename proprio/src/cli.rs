@@ -148,9 +148,12 @@ pub struct Simulate {
     /// Duration, s
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     pub seconds: f64,
-    /// Seed of the motion, the pushes and all noise; the arm is always the same
+    /// Seed of the motion, the pushes and all noise of the session
     #[arg(long, value_name = "K")]
     pub seed: u64,
+    /// Seed of the arm's tolerances and its sensors' flaws; 0 is the reference arm
+    #[arg(long, value_name = "K", default_value_t = 0)]
+    pub arm_seed: u64,
     /// Samples per second, 1 to 1000
     #[arg(long, value_name = "HZ", default_value_t = 10.0, allow_negative_numbers = true)]
     pub rate: f64,

@@ -1,4 +1,5 @@
-//! Every number of the twin, with its unit and where it comes from.
+//! Every number of the reference arm, its rig and its programs of motion, with unit and source. Sizes of the flaws of all other
+//! arms are in `flaws`.
 //!
 //! "paper" is arXiv 2511.01165. "assumed" marks what no source gives; those were chosen so that the residual of the
 //! V–Orient maps and the drift come out near the paper's.
@@ -21,8 +22,8 @@ pub const REGULATORS: usize = 2 * MODULES;
 
 // Random numbers.
 
-/// Seed of the arm's own tolerances, the same in every session, so that a calibration stays valid (assumed).
-pub(crate) const ARM_SEED: u64 = 3;
+/// ChaCha seed of the reference arm's tolerances (assumed).
+pub(crate) const REFERENCE_ARM_SEED: u64 = 3;
 
 /// Where tolerances are cut off: a maker sorts out what lies beyond (assumed).
 pub(crate) const TOLERANCE_LIMIT_SIGMA: f64 = 3.0;

@@ -40,19 +40,25 @@
 //! ```
 
 mod actuator;
+mod arm;
 mod bno055;
 mod camera;
 mod constants;
 mod contact;
+mod flaws;
 mod flex;
+mod gauss_markov;
 mod noise;
 mod program;
 mod rig;
+mod setup;
 mod shape;
+mod temperature;
 
 pub use camera::{Camera, Frame};
 pub use constants::{BEND_SENSORS, REGULATORS, SEGMENTS};
 pub use contact::Push;
 pub use program::{Program, Scenario};
 pub use rig::Rig;
+pub use setup::Setup;
 pub use shape::EndPose;

@@ -7,6 +7,7 @@ use crate::constants::{
 };
 use crate::contact::Obstacle;
 use crate::noise::{Noise, Source};
+use crate::setup::Setup;
 use core::f64::consts::TAU;
 
 /// What happens in a session. Each begins with 5 s at rest, straight.
@@ -30,21 +31,27 @@ pub struct Program {
 }
 
 impl Program {
-    /// The motion of `scenario` in the session of `seed`.
+    /// The motion of `scenario` in the session of `seed` on the reference arm.
     pub fn new(scenario: Scenario, seed: u64) -> Self {
+        Self::of(&Setup::new(scenario, seed))
+    }
+
+    /// The motion of a session.
+    pub fn of(setup: &Setup) -> Self {
+        let (scenario, seeds) = (setup.scenario, setup.seeds());
         let (drive, periods_s) = match scenario {
             Scenario::Sweep => (SWEEP_DRIVE, SWEEP_PERIODS_S),
             Scenario::One => (FREE_DRIVE, FREE_PERIODS_S),
             Scenario::Two | Scenario::Three => (CONTACT_DRIVE, CONTACT_PERIODS_S),
         };
         let lean = match scenario {
-            Scenario::Three => OBSTACLE_LEAN_DRIVE * Obstacle::new(seed).side,
+            Scenario::Three => OBSTACLE_LEAN_DRIVE * Obstacle::new(seeds).side,
             _ => 0.0,
         };
         let heading_limit_rad = if scenario == Scenario::Sweep { f64::INFINITY } else { TOTAL_HEADING_RAD };
         let swings = core::array::from_fn(|module| {
             let lean = if module + 1 < MODULES { lean } else { 0.0 };
-            Swing::new(drive, lean, periods_s, &mut Noise::of_session(seed, Source::Motion, module))
+            Swing::new(drive, lean, periods_s, &mut Noise::of_session(seeds, Source::Motion, module))
         });
         Self { swings, heading_limit_rad }
     }

@@ -8,12 +8,13 @@ use proprio::output::OutputFile;
 use proprio::progress::Progress;
 use proprio::session::{CameraWriter, SessionWriter};
 use proprio::simulate::Simulation;
-use rig_twin::{Camera, Scenario};
+use rig_twin::{Camera, Scenario, Setup};
 
 use crate::cli::{ScenarioName, Simulate};
 
 pub fn run(args: &Simulate) -> Result<(), Error> {
-    let mut simulation = Simulation::new(args.scenario.into(), args.seed, args.seconds, args.rate)?;
+    let setup = Setup { arm_seed: args.arm_seed, scenario: args.scenario.into(), seed: args.seed };
+    let mut simulation = Simulation::of(&setup, args.seconds, args.rate)?;
     if args.camera.as_ref() == Some(&args.output) {
         return Err(Error::OutputTwice(args.output.clone()));
     }
