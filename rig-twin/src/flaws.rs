@@ -104,15 +104,16 @@ pub(crate) const ADC_NOISE_RANGE_COUNTS: (f64, f64) = (1.5, 4.0);
 // Bend sensors: slow errors of a pair.
 
 /// RMS of the slow error of a strip (assumed; batch).
-pub(crate) const SLOW_ERROR_RANGE_RAD: (f64, f64) = (0.5 * DEGREE_RAD, 2.5 * DEGREE_RAD);
+pub(crate) const SLOW_ERROR_RANGE_RAD: (f64, f64) = (0.5 * DEGREE_RAD, 2.0 * DEGREE_RAD);
 /// Share of its power that both strips of a segment take for the same bend, so that it does not
 /// cancel in their mean; the rest cancels (assumed; batch).
-pub(crate) const SLOW_ERROR_SHARED_RANGE: (f64, f64) = (0.0, 0.8);
+pub(crate) const SLOW_ERROR_SHARED_RANGE: (f64, f64) = (0.0, 0.5);
 /// Logarithm (base e) of its time constant in s: 20 to 600 s (assumed; batch).
 pub(crate) const SLOW_ERROR_LOG_RANGE: (f64, f64) = (2.996, 6.397);
-/// Share of the arms whose strips have a constant offset in each session (assumed).
-pub(crate) const OFFSET_SHARE_OF_ARMS: f64 = 0.5;
-/// Largest offset of a segment in a session of such an arm (assumed: remounted, stored bent; batch).
+/// Share of the arms whose pairs of strips have a constant offset in each session (assumed).
+pub(crate) const OFFSET_SHARE_OF_ARMS: f64 = 0.3;
+/// Largest offset of such an arm, three sigma over its segments and sessions (assumed: stored bent,
+/// connectors plugged again; batch).
 pub(crate) const OFFSET_RANGE_RAD: (f64, f64) = (1.0 * DEGREE_RAD, 4.0 * DEGREE_RAD);
 /// Bend that warmth makes both strips of a segment mistake alike, for each K (assumed).
 pub(crate) const THERMAL_BEND_SIGMA_RAD_PER_K: f64 = 0.08 * DEGREE_RAD;

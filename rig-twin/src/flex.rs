@@ -2,7 +2,7 @@
 
 use crate::actuator::{Lag, play};
 use crate::arm::{PairParameters, StripParameters};
-use crate::constants::{ADC_FULL_SCALE_COUNTS, DIVIDER_OHM, FUSION_S, GRID_S};
+use crate::constants::{ADC_FULL_SCALE_COUNTS, DIVIDER_OHM, FUSION_S, GRID_S, TOLERANCE_LIMIT_SIGMA};
 use crate::gauss_markov::GaussMarkov;
 use crate::noise::{Noise, Seeds, Source};
 use crate::shape::Curve;
@@ -33,7 +33,7 @@ impl PairErrors {
         let opposed = Noise::of_session(seeds, Source::CommonMode, segment);
         let mut shared = Noise::of_session(seeds, Source::SharedError, segment);
         Self {
-            offset_rad: shared.between((-offset_rad, offset_rad)),
+            offset_rad: shared.tolerance((0.0, offset_rad / TOLERANCE_LIMIT_SIGMA)),
             opposed: GaussMarkov::new(opposed_rms_rad, time_s, FUSION_S, opposed),
             shared: GaussMarkov::new(shared_rms_rad, time_s, FUSION_S, shared),
             bend_rad_per_k,

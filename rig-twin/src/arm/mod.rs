@@ -89,7 +89,7 @@ pub(crate) struct PairParameters {
     /// RMS of the slow error that both take for the same bend.
     pub(crate) shared_rms_rad: f64,
     pub(crate) time_s: f64,
-    /// Largest offset of a session.
+    /// Largest constant offset of a session, three sigma.
     pub(crate) offset_rad: f64,
     pub(crate) bend_rad_per_k: f64,
 }
