@@ -168,4 +168,33 @@ mod tests {
             }
         }
     }
+    /// Shift of the counts of the strips of segment 1 by a pair error and a temperature, on the straight arm.
+    fn shift_counts(pair: PairError, temperature_k: f64) -> [f64; 2] {
+        let arm = ArmParameters::new(5);
+        let seeds = Seeds { arm: 5, session: 1 };
+        let mut noise = Noise::of_session(seeds, Source::Converter, 0);
+        let curve = Curve::new(arm.curves[0]);
+        [0, 1].map(|index| {
+            let mut sensor = BendSensor::new(arm.strips[index], index, seeds);
+            sensor.step(&curve, PairError::default(), 0.0);
+            let before = mean_counts(&sensor, &mut noise);
+            sensor.step(&curve, pair, temperature_k);
+            mean_counts(&sensor, &mut noise) - before
+        })
+    }
+
+    #[test]
+    fn shared_error_looks_like_a_bend_and_opposed_error_does_not() {
+        let rad = 5.0 * DEGREE_RAD;
+        let [a, b] = shift_counts(PairError { shared_rad: rad, opposed_rad: 0.0 }, 0.0);
+        assert!(a > 5.0 && b < -5.0, "{a} and {b} counts");
+        let [a, b] = shift_counts(PairError { shared_rad: 0.0, opposed_rad: rad }, 0.0);
+        assert!(a > 5.0 && b > 5.0, "{a} and {b} counts");
+    }
+
+    #[test]
+    fn warmth_changes_the_counts() {
+        let shift = shift_counts(PairError::default(), 20.0);
+        assert!(shift.iter().all(|shift| shift.abs() > 1.0), "{shift:?} counts");
+    }
 }

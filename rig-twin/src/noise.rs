@@ -31,6 +31,7 @@ pub(crate) enum Source {
     TurnOn,
     Instability,
     HeadingWalk,
+    Schedule,
 }
 
 /// A stream of random numbers.

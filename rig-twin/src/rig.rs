@@ -4,12 +4,13 @@ use crate::actuator::{Actuator, Regulator};
 use crate::arm::ArmParameters;
 use crate::bno055::Imu;
 use crate::constants::{
-    BEND_SENSORS, FUSION_S, GRID_POINTS_PER_FUSION, GRID_S, GRID_SLACK_S, LONGEST_STEP_S, REGULATORS, SEGMENTS,
+    BEND_SENSORS, FUSION_S, GRID_POINTS_PER_FUSION, GRID_S, GRID_SLACK_S, LEAD_IN_S, LONGEST_STEP_S, REGULATORS,
+    SEGMENTS,
 };
 use crate::contact::{Contacts, Push};
 use crate::flex::{BendSensor, PairError, PairErrors};
 use crate::noise::{Noise, Source};
-use crate::program::Scenario;
+use crate::program::{Program, Scenario};
 use crate::setup::Setup;
 use crate::shape::{Curve, EndPose, poses};
 use crate::temperature::Temperature;
@@ -22,7 +23,8 @@ use core::array::from_fn;
 /// the strips remember from their storage.
 #[derive(Clone, Debug)]
 pub struct Rig {
-    grid_points: u64,
+    /// Since the start of the session; negative before it.
+    grid_points: i64,
     pending_s: f64,
     regulators: [Regulator; REGULATORS],
     actuators: [Actuator; SEGMENTS],
@@ -45,6 +47,19 @@ impl Rig {
 
     /// The arm of a session at its start.
     pub fn of(setup: &Setup) -> Self {
+        let mut rig = Self::at_rest(setup);
+        if !setup.motion.starts_at_rest() {
+            let program = Program::of(setup);
+            rig.grid_points = -(LEAD_IN_S / GRID_S) as i64;
+            while rig.grid_points < 0 {
+                rig.advance(program.duties(rig.time_s()));
+            }
+        }
+        rig
+    }
+
+    /// The arm, vented and straight.
+    fn at_rest(setup: &Setup) -> Self {
         let (arm, seeds) = (ArmParameters::new(setup.arm_seed), setup.seeds());
         let curves = arm.curves.map(Curve::new);
         let poses = poses(&curves);
@@ -94,7 +109,7 @@ impl Rig {
         for (index, sensor) in self.bend_sensors.iter_mut().enumerate() {
             sensor.step(&self.curves[index / 2], self.pair_error[index / 2], self.temperature_k);
         }
-        if self.grid_points.is_multiple_of(GRID_POINTS_PER_FUSION) {
+        if self.grid_points % GRID_POINTS_PER_FUSION == 0 {
             self.temperature_k = self.temperature.step();
             self.pair_error = from_fn(|segment| self.pair_errors[segment].step(self.temperature_k));
             for (imu, pose) in self.imus.iter_mut().zip(poses(&self.curves)) {

@@ -215,3 +215,48 @@ impl ImuBatch {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::arm;
+    use crate::arm::ArmParameters;
+
+    #[test]
+    fn drawn_arms_have_every_flaw_that_the_reference_arm_lacks() {
+        for seed in 1..=20 {
+            let ArmParameters { regulators, actuators, curves, strips, pairs, imus } = arm(seed);
+            let flaws = [
+                regulators[0].offset_pa,
+                actuators[0].gains[0] - actuators[0].gains[1],
+                curves[0].length_m - curves[1].length_m,
+                curves[0].rest_bend_rad,
+                strips[0].cubic_per_rad2,
+                strips[0].creep_share[1],
+                strips[0].ohm_share_per_k,
+                pairs[0].shared_rms_rad,
+                pairs[0].bend_rad_per_k,
+                imus[0].plane_tilt_rad,
+                imus[0].turn_on_rad_per_s,
+                imus[0].instability_rad_per_s,
+                imus[0].heading_walk_rad,
+                imus[0].rate_rad_per_s_per_k,
+            ];
+            assert!(flaws.iter().all(|flaw| flaw.abs() > 0.0), "arm {seed}: {flaws:?}");
+        }
+    }
+
+    #[test]
+    fn strips_stay_on_their_curves() {
+        for seed in 1..=200 {
+            for strip in arm(seed).strips {
+                assert!(strip.start >= 0.0 && strip.start + strip.length <= 1.0, "arm {seed}: {strip:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_third_of_the_arms_has_offsets_in_their_sessions() {
+        let count = (1..=1000).filter(|&seed| arm(seed).pairs[0].offset_rad > 0.0).count();
+        assert!((250..350).contains(&count), "{count} of 1000");
+    }
+}
