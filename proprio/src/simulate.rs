@@ -1,6 +1,8 @@
 //! The twin as a rig that is recorded: its own duty programme, sampled at a fixed rate.
 
-use rig_twin::{BEND_SENSORS, Camera, EndPose, Frame, Program, REGULATORS, Rig, SEGMENTS, Scenario, Setup};
+use rig_twin::{
+    BEND_SENSORS, Camera, EndPose, Frame, HeadingDrift, Program, REGULATORS, Rig, SEGMENTS, Scenario, Setup,
+};
 
 use crate::error::{Error, check_seconds};
 
@@ -18,6 +20,18 @@ pub struct Recorded {
     pub quaternions: [Option<[i16; 4]>; SEGMENTS],
     /// True pose of each segment's end.
     pub truth: [EndPose; SEGMENTS],
+}
+
+impl Recorded {
+    /// The same sample with a drift added to each IMU's heading.
+    #[must_use]
+    pub fn with_drift(mut self, drifts: &[HeadingDrift; SEGMENTS]) -> Self {
+        let time_s = self.time_us as f64 / 1e6;
+        for (quaternion, drift) in self.quaternions.iter_mut().zip(drifts) {
+            *quaternion = quaternion.map(|quaternion| drift.turn(time_s, quaternion));
+        }
+        self
+    }
 }
 
 /// A run of the twin, one [`Recorded`] after the other.
