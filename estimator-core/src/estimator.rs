@@ -17,7 +17,9 @@ use crate::numeric::q::Q;
 use crate::segment::SegmentState;
 use crate::sensing::bend_sensors::BendAngles;
 use crate::sensing::heading::SegmentHeading;
-use crate::types::{Condition, Contacts, Estimate, Method, Sample, SegmentShape, Shape, Uncertainties, Uncertainty};
+use crate::types::{
+    Condition, Conditions, Contacts, Estimate, Method, Sample, SegmentShape, Shape, Uncertainties, Uncertainty,
+};
 
 /// State of the pipeline for an arm of up to `N` segments and an anchor of up to `W` values.
 ///
@@ -224,7 +226,7 @@ impl<'t, S: FusedOps, const N: usize, const W: usize> Estimator<'t, S, N, W> {
 
     /// Conditions of the newest sample, from the base to the tip; none hold behind the moving-average anchor.
     #[must_use]
-    pub fn conditions(&self) -> Vec<Condition, N> {
+    pub fn conditions(&self) -> Conditions<N> {
         let condition = |i| match &self.drift {
             Drift::MovingAverage(_) => Condition::default(),
             Drift::BiasFilter(filter) => filter.condition(i),

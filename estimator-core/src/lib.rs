@@ -79,6 +79,6 @@ pub use sensing::bend_map::VOLTS_PER_COUNT;
 pub use sensing::bend_sensors::BendAngles;
 pub use sensing::heading::{HeadingTracker, SegmentHeading};
 pub use types::{
-    Condition, Contact, Contacts, Covariance, Estimate, ImuReading, Method, Sample, SegmentEstimate, SegmentShape,
-    Shape, Uncertainties, Uncertainty,
+    Condition, Conditions, Contact, Contacts, Covariance, Estimate, ImuReading, Method, Sample, SegmentEstimate,
+    SegmentShape, Shape, Uncertainties, Uncertainty,
 };
