@@ -56,6 +56,8 @@ pub struct Expected<S> {
     pub bend: Option<S>,
     /// Motion of the bend sensors during which an IMU must change, rad.
     pub frozen_motion: S,
+    /// Deviation of the next IMU's reading from the same prediction, where it was read.
+    pub above: Option<Turns>,
 }
 
 /// Verdict on one reading.
@@ -104,10 +106,7 @@ impl<S: Scalar> HeadingGate<S> {
             let bend = expected.bend.unwrap_or(self.freeze.bend);
             return Verdict::Frozen(self.freeze.theta + bend - self.freeze.bend);
         }
-        let delta = reading - self.raw;
-        let scaled = self.scaled + delta - delta.scaled_by(scale_error);
-        // Whole turns are those of the prediction.
-        let deviation = Turns::from((scaled - expected.bias - expected.heading).phase());
+        let deviation = self.deviation(reading, scale_error, expected.heading + expected.bias);
         let absence_us = time_us.saturating_sub(accepted_at_us);
         if self.is_far(deviation, expected, absence_us) {
             let since_us = *self.suspect_since_us.get_or_insert(time_us);
@@ -120,6 +119,18 @@ impl<S: Scalar> HeadingGate<S> {
         self.accept(reading, expected.heading + expected.bias + deviation, time_us);
         let heading = expected.heading + deviation;
         if absence_us > ABSENCE_US { Verdict::Returned(heading, absence_us) } else { Verdict::Accepted(heading) }
+    }
+
+    /// Deviation of a reading from a predicted one (heading and bias), whole turns aside.
+    pub fn deviation(&self, reading: Turns, scale_error: i32, predicted: Turns) -> Turns {
+        let delta = reading - self.raw;
+        let scaled = self.scaled + delta - delta.scaled_by(scale_error);
+        Turns::from((scaled - predicted).phase())
+    }
+
+    /// Whether the IMU was accepted before, so that a deviation means anything.
+    pub fn is_known(&self) -> bool {
+        self.accepted_at_us.is_some()
     }
 
     fn accept(&mut self, reading: Turns, scaled: Turns, time_us: u64) {
@@ -138,7 +149,9 @@ impl<S: Scalar> HeadingGate<S> {
             S::constant(JUMP) + moved
         };
         let limit = if self.suspect_since_us.is_some() { limit.half() } else { limit };
-        magnitude(S::from_phase(deviation.phase())) > limit
+        // Where the next IMU deviates alike, the segment has moved and not the IMU: a push that the bend sensors miss.
+        let is_shared = expected.above.is_some_and(|above| is_within(above - deviation, limit.half()));
+        !is_within(deviation, limit) && !is_shared
     }
 
     /// Whether the output has not changed by a bit while the bend sensors have moved.
@@ -153,4 +166,9 @@ impl<S: Scalar> HeadingGate<S> {
         freeze.is_frozen |= is_old && magnitude(bend - freeze.bend) > expected.frozen_motion;
         freeze.is_frozen
     }
+}
+
+/// Whether an angle is within ±`limit`.
+fn is_within<S: Scalar>(angle: Turns, limit: S) -> bool {
+    magnitude(S::from_phase(angle.phase())) <= limit
 }

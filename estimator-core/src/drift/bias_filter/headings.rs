@@ -45,13 +45,15 @@ impl<F: Scalar, const N: usize> BiasFilter<F, N> {
             } else {
                 deviations + deviations
             };
+            let predicted = below + (track.theta + motion).to_turns();
             let expected = Expected {
-                heading: below + (track.theta + motion).to_turns(),
+                heading: predicted,
                 motion,
                 bias: self.state.bias[i],
                 theta: track.theta,
                 bend: bend[i].map(|bend| bend.theta),
                 frozen_motion,
+                above: self.deviation_above(i, config.segments, sensed, bend, predicted, dt),
             };
             let heading = &sensed.headings[i];
             let reading = heading.is_read().then(|| heading.unwrapped());
@@ -59,6 +61,24 @@ impl<F: Scalar, const N: usize> BiasFilter<F, N> {
             self.apply(i, verdict, &expected, &segment.bend_error, sensed.time_us);
             below = self.segments[i].heading;
         }
+    }
+
+    /// Deviation of the heading above `i` from what the bend sensors predict from the heading `i`.
+    fn deviation_above<S: Scalar>(
+        &self,
+        i: usize,
+        segments: &[SegmentConfig<S>],
+        sensed: &SensedArm<S, N>,
+        bend: &[Option<TrustedBend<F>>; N],
+        predicted: Turns,
+        dt: F,
+    ) -> Option<Turns> {
+        let above = i + 1;
+        let (segment, track, gate) = (segments.get(above)?, self.segments.get(above)?, self.gates.get(above)?);
+        let (heading, bias) = (sensed.headings.get(above)?, self.state.bias.get(above)?);
+        let theta = track.theta + self.motion(above, bend, dt);
+        (heading.is_read() && gate.is_known())
+            .then(|| gate.deviation(heading.unwrapped(), segment.imu_scale_error, predicted + theta.to_turns() + *bias))
     }
 
     /// Motion of segment `i`'s bend sensors since the last sample.
