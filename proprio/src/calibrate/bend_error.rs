@@ -56,7 +56,8 @@ fn rounded(value: f64) -> f64 {
 }
 
 fn held_back_ratio(sensor: &FittedMap) -> f64 {
-    let [fitted, held_back] = [&sensor.errors, &sensor.held_back].map(|errors| super::rms(errors.iter().flatten().copied()));
+    let [fitted, held_back] =
+        [&sensor.errors, &sensor.held_back].map(|errors| super::rms(errors.iter().flatten().copied()));
     if fitted > 0.0 { (held_back / fitted).clamp(HELD_BACK_RATIO[0], HELD_BACK_RATIO[1]) } else { HELD_BACK_RATIO[0] }
 }
 

@@ -115,7 +115,11 @@ impl<'s> Fitter<'s> {
             let angles: Vec<f64> = curve.theta_deg.iter().copied().map(f64::to_radians).collect();
             BendMap::Curve(CurveMap::from_volts(&angles, curve.volts))
         };
-        Some(Form { map: map(&fitted.curve), held_back: fitted.held_back.iter().map(map).collect(), curve: Some(fitted.curve) })
+        Some(Form {
+            map: map(&fitted.curve),
+            held_back: fitted.held_back.iter().map(map).collect(),
+            curve: Some(fitted.curve),
+        })
     }
 
     fn quadratic(&self, plain: &BendKeys) -> Form {

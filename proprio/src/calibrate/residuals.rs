@@ -12,9 +12,7 @@
 use std::path::Path;
 
 use calibration_tables::{MAX_WINDOW, NoiseKeys};
-use estimator_core::{
-    Angle, Decimated, Decimator, MovingAverageAnchor, Pcc, SegmentConfig, SegmentEstimate, Turns,
-};
+use estimator_core::{Angle, Decimated, Decimator, MovingAverageAnchor, Pcc, SegmentConfig, SegmentEstimate, Turns};
 use nalgebra::Vector2;
 
 use crate::error::Error;

@@ -14,6 +14,9 @@ const STILL: Constant = degrees(1.5);
 const BENT: Constant = variance_deg(10.0);
 const BAD_TARE: Constant = variance_deg(12.0);
 
+/// Factor on the bend sensors' variance in the tare: one pose, with hysteresis in it.
+const TARE_NOISE: Constant = Constant::new(4.0);
+
 /// Sums of the tare.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct TareStatistics<F, const N: usize> {
@@ -69,9 +72,11 @@ impl<F: Scalar, const N: usize> BiasFilter<F, N> {
         let spread = self.tare.bend_variance(config.segments);
         self.is_tare_bad = is_tared && (self.tare.moved() || spread > F::constant(BENT));
         if is_tared && !self.is_tare_bad {
-            // What the bend sensors read of a straight arm is the size of their offsets in this session.
+            // What the bend sensors read of a straight arm, beyond their scatter, is the size of their offsets in this session.
+            let scatter = mean_variance(config.segments);
+            let shown = smaller(larger(spread - scatter, F::zero()), F::constant(BENT));
             for track in &mut self.segments {
-                track.offset_prior = larger(track.offset_prior, spread);
+                track.offset_prior = larger(track.offset_prior, shown + shown);
             }
         }
         let straightness = if self.is_tare_bad { F::constant(BAD_TARE) } else { F::from_q(filter.straightness) };
@@ -102,7 +107,7 @@ impl<F: Scalar, const N: usize> BiasFilter<F, N> {
             let bias = self.angle_bias(i);
             let nu = reference - bend - bias + self.state.offset[i];
             let innovation = self.state.innovation(i);
-            self.state.update(&innovation, nu, F::from_q(segment.bend_error.mean));
+            self.state.update(&innovation, nu, F::constant(TARE_NOISE) * F::from_q(segment.bend_error.mean));
         }
     }
 }
@@ -150,4 +155,11 @@ impl<F: Scalar, const N: usize> TareStatistics<F, N> {
         }
         smaller(sum / F::from_int(count.max(1)), F::one()) * F::from_int(16)
     }
+}
+
+/// Mean of the bend sensors' variances over the segments that have any.
+fn mean_variance<S: Scalar, F: Scalar>(segments: &[SegmentConfig<S>]) -> F {
+    let with_sensors = || segments.iter().filter(|segment| segment.bend.iter().any(Option::is_some));
+    let count = F::from_int(with_sensors().count().max(1) as i32);
+    with_sensors().fold(F::zero(), |sum, segment| sum + F::from_q(segment.bend_error.mean) / count)
 }

@@ -16,8 +16,6 @@ const BEND_TRAVEL: Constant = degrees(0.5);
 const LONG_ERRORS: i32 = 2;
 /// Largest factor on the measurement noise: the update is worth nothing beyond it.
 const MAX_RATIO: i32 = 15;
-/// Standard deviation of the bend sensors' scale error: 5 % of the bend angle.
-const SCALE_ERROR: Constant = Constant::new(0.05);
 /// Innovation gate in predicted standard deviations.
 const GATE: Constant = Constant::new(6.0);
 /// After so long beyond the gate the bias and the offset become doubtful, by 3°.
@@ -81,7 +79,7 @@ impl<F: Scalar, const N: usize> BiasFilter<F, N> {
     fn update(&mut self, i: usize, error: &BendErrorConfig, bend: TrustedBend<F>, time_us: u64) {
         let track = self.segments[i];
         let single = if bend.is_single { F::from_q(error.difference) } else { F::zero() };
-        let sigma = F::from_q(error.mean) + single + scaled_square(F::constant(SCALE_ERROR) * track.theta);
+        let sigma = F::from_q(error.mean) + single;
         let nu = track.theta - bend.theta + self.state.offset[i];
         let innovation = self.state.innovation(i);
         if is_beyond(nu, GATE, innovation.variance + sigma) {
