@@ -17,7 +17,9 @@ use crate::numeric::q::Q;
 use crate::segment::SegmentState;
 use crate::sensing::bend_sensors::BendAngles;
 use crate::sensing::heading::SegmentHeading;
-use crate::types::{Contacts, Estimate, Method, Sample, SegmentShape, Shape, Uncertainties, Uncertainty};
+use crate::types::{
+    Condition, Conditions, Contacts, Estimate, Method, Sample, SegmentShape, Shape, Uncertainties, Uncertainty,
+};
 
 /// State of the pipeline for an arm of up to `N` segments and an anchor of up to `W` values.
 ///
@@ -220,6 +222,20 @@ impl<'t, S: FusedOps, const N: usize, const W: usize> Estimator<'t, S, N, W> {
     #[must_use]
     pub fn contact_mask(&self) -> u32 {
         self.contact.contact_mask(self.config.segments)
+    }
+
+    /// Conditions of the newest sample, from the base to the tip; none hold behind the moving-average anchor.
+    #[must_use]
+    pub fn conditions(&self) -> Conditions<N> {
+        let condition = |i| match &self.drift {
+            Drift::MovingAverage(_) => Condition::default(),
+            Drift::BiasFilter(filter) => filter.condition(i),
+        };
+        let mut conditions = Vec::new();
+        for i in 0..self.segments.len() {
+            let _ = conditions.push(condition(i));
+        }
+        conditions
     }
 
     /// Uncertainty of the newest fused shape; empty where the configuration has no error sources.

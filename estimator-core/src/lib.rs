@@ -61,7 +61,7 @@ pub use config::{
     CoupledSegment, CurveMap, KNOTS, KalmanParams, Lag, MemoryConfig, OffsetAt, PLAYS, Play, QuadraticMap,
     SENSORS_PER_SEGMENT, SegmentConfig, UncertaintyConfig, VARIANCE_SCALE,
 };
-pub use drift::bias_state::{BiasState, Innovation, Row};
+pub use drift::bias_filter::state::{BiasState, Innovation, Row};
 pub use drift::decimator::{Decimated, Decimator};
 pub use drift::moving_average::MovingAverageAnchor;
 pub use drift::{CorrectedArm, DriftCorrection, SensedArm};
@@ -79,6 +79,6 @@ pub use sensing::bend_map::VOLTS_PER_COUNT;
 pub use sensing::bend_sensors::BendAngles;
 pub use sensing::heading::{HeadingTracker, SegmentHeading};
 pub use types::{
-    Contact, Contacts, Covariance, Estimate, ImuReading, Method, Sample, SegmentEstimate, SegmentShape, Shape,
-    Uncertainties, Uncertainty,
+    Condition, Conditions, Contact, Contacts, Covariance, Estimate, ImuReading, Method, Sample, SegmentEstimate,
+    SegmentShape, Shape, Uncertainties, Uncertainty,
 };

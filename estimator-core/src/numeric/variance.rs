@@ -32,6 +32,11 @@ pub fn smaller<S: Scalar>(a: S, b: S) -> S {
     if a < b { a } else { b }
 }
 
+/// The larger one.
+pub fn larger<S: Scalar>(a: S, b: S) -> S {
+    if a < b { b } else { a }
+}
+
 /// The square of an angle (rad) as variances are held; from 40° on as large as they get.
 pub fn scaled_square<S: Scalar>(x: S) -> S {
     let root = magnitude(x);

@@ -7,18 +7,16 @@ use crate::numeric::phase::Turns;
 use crate::numeric::scalar::{Constant, Scalar};
 use crate::numeric::variance::{degrees, magnitude};
 
-/// A reading is off by more than this, and 1.5 times the bend sensors' motion since the last sample,
-const JUMP: Constant = degrees(8.0);
-const JUMP_PER_MOTION: Constant = Constant::new(1.5);
-/// or, after an absence, by more than this and 0.3 times the motion.
-const RETURN: Constant = degrees(6.0);
+/// A reading is off by more than this and the bend sensors' motion since the last sample,
+const JUMP: Constant = degrees(6.0);
+/// or, after an absence, by more than this and 0.3 times the motion. Half of it keeps up a suspicion.
 const RETURN_PER_MOTION: Constant = Constant::new(0.3);
-/// If the reading is as near as this without the bend sensors' motion, they have stepped and not the IMU.
-const BEND_STEP: Constant = degrees(5.0);
+/// The same where no bend sensor predicts the motion.
+const JUMP_UNSEEN: Constant = degrees(30.0);
 /// Absence after which an IMU may have restarted.
 const ABSENCE_US: u64 = 500_000;
 /// Time for which a heading must be off until its zero is taken to be new: single wild samples are shorter.
-const CONFIRMATION_US: u64 = 390_000;
+const CONFIRMATION_US: u64 = 350_000;
 /// Output that is the same to the bit for so long, while the bend sensors move, is frozen.
 const FROZEN_US: u64 = 990_000;
 
@@ -58,6 +56,8 @@ pub struct Expected<S> {
     pub bend: Option<S>,
     /// Motion of the bend sensors during which an IMU must change, rad.
     pub frozen_motion: S,
+    /// Deviation of the next IMU's reading from the same prediction, where it was read.
+    pub above: Option<Turns>,
 }
 
 /// Verdict on one reading.
@@ -106,12 +106,9 @@ impl<S: Scalar> HeadingGate<S> {
             let bend = expected.bend.unwrap_or(self.freeze.bend);
             return Verdict::Frozen(self.freeze.theta + bend - self.freeze.bend);
         }
-        let delta = reading - self.raw;
-        let scaled = self.scaled + delta - delta.scaled_by(scale_error);
-        // Whole turns are those of the prediction.
-        let deviation = Turns::from((scaled - expected.bias - expected.heading).phase());
+        let deviation = self.deviation(reading, scale_error, expected.heading + expected.bias);
         let absence_us = time_us.saturating_sub(accepted_at_us);
-        if Self::is_far(deviation, expected.motion, absence_us) {
+        if self.is_far(deviation, expected, absence_us) {
             let since_us = *self.suspect_since_us.get_or_insert(time_us);
             if time_us.saturating_sub(since_us) < CONFIRMATION_US {
                 return Verdict::Absent;
@@ -124,19 +121,37 @@ impl<S: Scalar> HeadingGate<S> {
         if absence_us > ABSENCE_US { Verdict::Returned(heading, absence_us) } else { Verdict::Accepted(heading) }
     }
 
+    /// Deviation of a reading from a predicted one (heading and bias), whole turns aside.
+    pub fn deviation(&self, reading: Turns, scale_error: i32, predicted: Turns) -> Turns {
+        let delta = reading - self.raw;
+        let scaled = self.scaled + delta - delta.scaled_by(scale_error);
+        Turns::from((scaled - predicted).phase())
+    }
+
+    /// Whether the IMU was accepted before, so that a deviation means anything.
+    pub fn is_known(&self) -> bool {
+        self.accepted_at_us.is_some()
+    }
+
     fn accept(&mut self, reading: Turns, scaled: Turns, time_us: u64) {
         (self.raw, self.scaled) = (reading, scaled);
         (self.accepted_at_us, self.suspect_since_us) = (Some(time_us), None);
     }
 
-    fn is_far(deviation: Turns, motion: S, absence_us: u64) -> bool {
-        let off = magnitude(S::from_phase(deviation.phase()));
-        let moved = magnitude(motion);
-        if absence_us > ABSENCE_US {
-            return off > S::constant(RETURN) + S::constant(RETURN_PER_MOTION) * moved;
-        }
-        let without_motion = magnitude(S::from_phase(deviation.phase()) + motion);
-        off > S::constant(JUMP) + S::constant(JUMP_PER_MOTION) * moved && without_motion > S::constant(BEND_STEP)
+    /// Whether a deviation is more than the arm can have moved.
+    fn is_far(&self, deviation: Turns, expected: &Expected<S>, absence_us: u64) -> bool {
+        let moved = magnitude(expected.motion);
+        let limit = if expected.bend.is_none() {
+            S::constant(JUMP_UNSEEN)
+        } else if absence_us > ABSENCE_US {
+            S::constant(JUMP) + S::constant(RETURN_PER_MOTION) * moved
+        } else {
+            S::constant(JUMP) + moved
+        };
+        let limit = if self.suspect_since_us.is_some() { limit.half() } else { limit };
+        // Where the next IMU deviates alike, the segment has moved and not the IMU: a push that the bend sensors miss.
+        let is_shared = expected.above.is_some_and(|above| is_within(above - deviation, limit.half()));
+        !is_within(deviation, limit) && !is_shared
     }
 
     /// Whether the output has not changed by a bit while the bend sensors have moved.
@@ -151,4 +166,9 @@ impl<S: Scalar> HeadingGate<S> {
         freeze.is_frozen |= is_old && magnitude(bend - freeze.bend) > expected.frozen_motion;
         freeze.is_frozen
     }
+}
+
+/// Whether an angle is within ±`limit`.
+fn is_within<S: Scalar>(angle: Turns, limit: S) -> bool {
+    magnitude(S::from_phase(angle.phase())) <= limit
 }

@@ -1,7 +1,7 @@
 //! Rest: a whole arm that does not move shows the drift's rate.
 //!
-//! Every five seconds the headings and bend angles are compared with those of five seconds ago. After ten seconds of rest the
-//! change of a heading is its rate times the time, and is learned; after twenty the shape is held: the bias follows the
+//! Every five seconds the headings and bend angles are compared with those of five seconds ago. After twenty seconds of
+//! rest the change of a heading is its rate times the time, which is learned, and the shape is held: the bias follows the
 //! heading.
 
 use crate::numeric::phase::Turns;
@@ -10,9 +10,8 @@ use crate::numeric::variance::{degrees, magnitude};
 
 /// Length of a window.
 const WINDOW_US: u64 = 5_000_000;
-/// Rest after which the rate is learned, and after which the shape is held.
-const LEARN_US: u64 = 10_000_000;
-const HOLD_US: u64 = 20_000_000;
+/// Rest after which the rates are learned and the shape is held: creep has settled.
+const HOLD_US: u64 = 19_500_000;
 /// Time constant of the means, time units: half a second.
 const MEAN_TIME: Constant = Constant::new(0.5 / TIME_UNIT_S);
 /// Largest change of a heading in a window, and range of its readings: 0.15 °/s, and 0.5° of noise beside it.
@@ -48,8 +47,6 @@ pub struct RestWindow<S, const N: usize> {
     pub bend: [S; N],
     /// Length of the window, µs.
     pub length_us: u64,
-    /// Whether the shape is held.
-    pub holds: bool,
 }
 
 impl<S: Scalar> Mean<S> {
@@ -112,7 +109,6 @@ impl<S: Scalar, const N: usize> RestDetector<S, N> {
     }
 
     fn finish(&mut self, read: &[Option<Turns>; N], length_us: u64) -> Option<RestWindow<S, N>> {
-        let was_quiet_us = self.quiet_us;
         // A gap hides what happened in it.
         let mut is_quiet = length_us < WINDOW_US + WINDOW_US / 8;
         let mut headings = [None; N];
@@ -129,8 +125,7 @@ impl<S: Scalar, const N: usize> RestDetector<S, N> {
                 *change = moved;
             }
         }
-        self.quiet_us = if is_quiet { was_quiet_us.saturating_add(length_us) } else { 0 };
-        let holds = was_quiet_us >= HOLD_US;
-        (is_quiet && was_quiet_us >= LEARN_US).then_some(RestWindow { headings, bend, length_us, holds })
+        self.quiet_us = if is_quiet { self.quiet_us.saturating_add(length_us) } else { 0 };
+        self.is_resting().then_some(RestWindow { headings, bend, length_us })
     }
 }

@@ -23,9 +23,17 @@ const STUCK_US: u64 = 10_000_000;
 const STUCK: Constant = degrees(1.0);
 const MOVING: Constant = degrees(12.0);
 
+/// A sensor steps where it moves by more than this, and by more than the IMUs, between two samples; half of it keeps up the
+/// suspicion, and after this time the sensor has a new zero.
+const STEP: Constant = degrees(6.0);
+const STEP_CONFIRMATION_US: u64 = 350_000;
+/// Longest time between two samples over which a step is judged.
+const STEP_GAP_US: u64 = 500_000;
+
 /// State of a segment's bend sensors.
 #[derive(Debug, Clone, Copy)]
 pub struct BendMonitor<S> {
+    steps: [StepDetector<S>; SENSORS_PER_SEGMENT],
     /// Mean of (a − b)/2 over the last minute, rad, and the time that it covers, time units.
     difference: S,
     averaged: S,
@@ -34,6 +42,16 @@ pub struct BendMonitor<S> {
     theta_range: [S; 2],
     sensor_ranges: [[S; 2]; SENSORS_PER_SEGMENT],
     range_from_us: u64,
+}
+
+/// Detector of a step of one sensor while the IMUs do not step: a slip on the arm, a bad contact.
+#[derive(Debug, Clone, Copy)]
+struct StepDetector<S> {
+    /// Correction since the last step, rad.
+    zero: S,
+    /// Angle of the last good sample, moved on with the IMUs, rad.
+    expected: Option<S>,
+    suspect_since_us: Option<u64>,
 }
 
 /// θ_bend of the sensors that are trusted.
@@ -49,6 +67,7 @@ impl<S: Scalar> BendMonitor<S> {
     /// At the start of a session.
     pub const fn new(zero: S) -> Self {
         Self {
+            steps: [StepDetector { zero, expected: None, suspect_since_us: None }; SENSORS_PER_SEGMENT],
             difference: zero,
             averaged: zero,
             distrusted_until_us: [0; SENSORS_PER_SEGMENT],
@@ -58,21 +77,55 @@ impl<S: Scalar> BendMonitor<S> {
         }
     }
 
-    /// θ_bend of the sensors that are read and trusted, `dt` after the last sample; `None` where there are none.
-    pub fn mean(&mut self, angles: [Option<S>; SENSORS_PER_SEGMENT], dt: S, time_us: u64) -> Option<TrustedBend<S>> {
-        let mut trusted = angles;
-        for (angle, until_us) in trusted.iter_mut().zip(self.distrusted_until_us) {
-            *angle = angle.filter(|_| time_us >= until_us);
-        }
-        match trusted {
-            [Some(a), Some(b)] => {
-                self.average_difference((a - b).half(), dt);
-                Some(TrustedBend { theta: (a + b).half(), is_single: false })
-            }
+    /// Angles of the sensors, with the zeros that steps have changed.
+    pub fn corrected(&self, angles: [Option<S>; SENSORS_PER_SEGMENT]) -> [Option<S>; SENSORS_PER_SEGMENT] {
+        let [a, b] = angles;
+        let [step_a, step_b] = &self.steps;
+        [a.map(|a| a + step_a.zero), b.map(|b| b + step_b.zero)]
+    }
+
+    /// θ_bend of the sensors that are read and trusted; `None` where there are none.
+    pub fn mean(&self, angles: [Option<S>; SENSORS_PER_SEGMENT], time_us: u64) -> Option<TrustedBend<S>> {
+        match self.trusted(angles, time_us) {
+            [Some(a), Some(b)] => Some(TrustedBend { theta: (a + b).half(), is_single: false }),
             [Some(a), None] => Some(TrustedBend { theta: a - self.difference, is_single: true }),
             [None, Some(b)] => Some(TrustedBend { theta: b + self.difference, is_single: true }),
             [None, None] => None,
         }
+    }
+
+    /// Whether a sensor is left out now.
+    pub fn is_distrusted(&self, time_us: u64) -> bool {
+        self.distrusted_until_us.iter().any(|until_us| time_us < *until_us)
+            || self.steps.iter().any(|step| step.suspect_since_us.is_some())
+    }
+
+    /// Takes the difference of both sensors, `dt` after the last sample.
+    pub fn compare(&mut self, angles: [Option<S>; SENSORS_PER_SEGMENT], dt: S, time_us: u64) {
+        if let [Some(a), Some(b)] = self.trusted(angles, time_us) {
+            self.average_difference((a - b).half(), dt);
+        }
+    }
+
+    fn trusted(&self, angles: [Option<S>; SENSORS_PER_SEGMENT], time_us: u64) -> [Option<S>; SENSORS_PER_SEGMENT] {
+        let mut trusted = angles;
+        for ((angle, until_us), step) in trusted.iter_mut().zip(self.distrusted_until_us).zip(&self.steps) {
+            *angle = angle.filter(|_| time_us >= until_us && step.suspect_since_us.is_none());
+        }
+        trusted
+    }
+
+    /// Finds sensors that step while θ moves by `motion` in `elapsed_us`, or `None` where θ is unknown. Whether a sensor has
+    /// a new zero.
+    pub fn find_steps(
+        &mut self,
+        angles: [Option<S>; SENSORS_PER_SEGMENT],
+        motion: Option<S>,
+        elapsed_us: u64,
+        time_us: u64,
+    ) -> bool {
+        let motion = motion.filter(|_| elapsed_us < STEP_GAP_US);
+        self.steps.iter_mut().zip(angles).fold(false, |any, (step, angle)| any | step.take(angle, motion, time_us))
     }
 
     /// Running mean over the time that is there, a minute at most.
@@ -134,6 +187,32 @@ impl<S: Scalar> BendMonitor<S> {
         if is_complete {
             self.range_from_us = time_us;
         }
+    }
+}
+
+impl<S: Scalar> StepDetector<S> {
+    /// Takes one sample; whether the sensor has a new zero.
+    fn take(&mut self, angle: Option<S>, motion: Option<S>, time_us: u64) -> bool {
+        let (Some(angle), Some(motion), Some(last)) = (angle, motion, self.expected) else {
+            (self.expected, self.suspect_since_us) = (angle.filter(|_| motion.is_some()), None);
+            return false;
+        };
+        let expected = last + motion;
+        let limit = S::constant(STEP) + magnitude(motion);
+        let limit = if self.suspect_since_us.is_some() { limit.half() } else { limit };
+        let deviation = angle - expected;
+        if magnitude(deviation) <= limit {
+            (self.expected, self.suspect_since_us) = (Some(angle), None);
+            return false;
+        }
+        let since_us = *self.suspect_since_us.get_or_insert(time_us);
+        if time_us.saturating_sub(since_us) < STEP_CONFIRMATION_US {
+            self.expected = Some(expected);
+            return false;
+        }
+        self.zero -= deviation;
+        (self.expected, self.suspect_since_us) = (Some(expected), None);
+        true
     }
 }
 
