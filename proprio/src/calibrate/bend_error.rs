@@ -33,7 +33,7 @@ pub(super) fn of(sweep: &Sweep, segment: usize, sensors: &[&FittedMap]) -> Optio
     let errors: Vec<Series> = errors.collect();
     let first = errors.first()?;
     let second = errors.get(1).unwrap_or(first);
-    let mean = first.combine(second, |a, b| (a + b) / 2.0);
+    let mean = first.combine(second, f64::midpoint);
     let difference = first.combine(second, |a, b| (a - b) / 2.0);
     if mean.values.iter().flatten().count() < LEAST_ROWS {
         return None;
@@ -79,8 +79,8 @@ pub(super) fn session_deviation(sweep: &Sweep, sensors: &[&FittedMap]) -> Option
     let first = sensors.first()?;
     let last = sensors.last()?;
     let both = first.errors.iter().zip(&last.errors);
-    let mean: Vec<_> = both.map(|(a, b)| Some(((*a)? + (*b)?) / 2.0)).collect();
-    let means: Vec<Option<f64>> = session_means(&mean, sweep).into_iter().filter(Option::is_some).collect();
+    let mean: Vec<_> = both.map(|(a, b)| Some(f64::midpoint((*a)?, (*b)?))).collect();
+    let means: Vec<f64> = session_means(&mean, sweep).into_iter().flatten().collect();
     let count = means.len() as f64;
     // Of few sessions: the mean is theirs, too.
     (means.len() > 1).then(|| deviation(&means) * (count / (count - 1.0)).sqrt())
@@ -127,7 +127,7 @@ impl Series {
     }
 
     fn deviation(&self) -> f64 {
-        deviation(&self.values)
+        deviation(&self.values.iter().flatten().copied().collect::<Vec<f64>>())
     }
 
     /// Standard deviation of the means of every stretch of [`SLOW_S`]; `None` where there is none.
@@ -143,7 +143,7 @@ impl Series {
                 count -= usize::from(self.values[gone].is_some());
             }
             let is_whole = last + 1 >= length && self.runs[last + 1 - length] == self.runs[last];
-            means.extend((is_whole && 2 * count > length).then(|| Some(sum / count as f64)));
+            means.extend((is_whole && 2 * count > length).then(|| sum / count as f64));
         }
         (means.len() > 1).then(|| deviation(&means))
     }
@@ -203,11 +203,10 @@ impl ChunkByRun for [Option<f64>] {
     }
 }
 
-/// Standard deviation of the values that are there.
-fn deviation(values: &[Option<f64>]) -> f64 {
-    let count = values.iter().flatten().count().max(1) as f64;
-    let mean = values.iter().flatten().sum::<f64>() / count;
-    super::rms(values.iter().flatten().map(|value| value - mean))
+/// Standard deviation.
+fn deviation(values: &[f64]) -> f64 {
+    let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
+    super::rms(values.iter().map(|value| value - mean))
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use calibration_tables::{ArmFile, BendKeys, DriftKeys};
+use calibration_tables::{ArmFile, BendKeys, DriftKeys, DriftKind};
 
 use super::error::{CalibrationError, Warning};
 use super::hysteresis::HysteresisMode;
@@ -31,7 +31,8 @@ pub(super) fn table(
 ) -> Result<Derived, Error> {
     let refuse = |source| Error::Calibration { path: sessions.first().cloned().unwrap_or_default(), source };
     let mut table = ArmFile { tuning: None, ..arm.file.clone() };
-    table.drift.get_or_insert_with(DriftKeys::kalman);
+    // The parameters of version 0.1's observer are those of another filter.
+    table.drift = table.drift.filter(|drift| drift.kind != DriftKind::Observer).or_else(|| Some(DriftKeys::kalman()));
     let is_paper = table.bias_filter().is_none() && options.maps != MapMode::Curve;
     let of_maps = if is_paper {
         CalibrationOptions { maps: MapMode::Quadratic, hysteresis: HysteresisMode::Never }

@@ -206,8 +206,9 @@ pub enum Warning {
     ),
     /// A method that is better than the fusion of all sensors.
     #[error(
-        "on the last fifth of the sweep {method} alone is better than fusion: {best_mm:.1} mm against {fusion_mm:.1} mm at \
-         the tip; look for a sensor that slips or a camera that is misaligned"
+        "on the last fifth of the sweep {method} alone is better than fusion, {best_mm:.1} mm against {fusion_mm:.1} mm at \
+         the tip; {}",
+        better_alone(method)
     )]
     FusionIsWorse {
         /// The method.
@@ -223,6 +224,15 @@ pub enum Warning {
         /// The segment, from 1.
         segment: usize,
     },
+}
+
+/// Reason why a method alone may be better than fusion.
+fn better_alone(method: &str) -> &'static str {
+    if method == "bend" {
+        "look for an IMU that slips or is missing, and for a camera that is misaligned"
+    } else {
+        "the IMUs hardly drift in a session this long, or a bend sensor slips"
+    }
 }
 
 fn pairs(pairs: &[(usize, usize)]) -> String {

@@ -156,9 +156,6 @@ impl Sweep {
     /// The sweep without the last `share` of each session's rows.
     pub fn without_last(&self, share: f64) -> Self {
         let is_kept: Vec<bool> = self.last_rows(share).into_iter().map(|is_last| !is_last).collect();
-        fn kept<T: Copy>(column: &[T], is_kept: &[bool]) -> Vec<T> {
-            column.iter().zip(is_kept).filter(|(_, is_kept)| **is_kept).map(|(value, _)| *value).collect()
-        }
         let columns = |columns: &[Vec<Option<f64>>]| columns.iter().map(|column| kept(column, &is_kept)).collect();
         let sensor = |sensor: &SensorColumn| SensorColumn { counts: kept(&sensor.counts, &is_kept), ..sensor.clone() };
         Self {
@@ -246,6 +243,11 @@ impl MeanSquare {
     pub fn rms(&self) -> Option<f64> {
         (self.count > 0.0).then(|| (self.sum / self.count).sqrt())
     }
+}
+
+/// The rows of a column that are kept.
+fn kept<T: Copy>(column: &[T], is_kept: &[bool]) -> Vec<T> {
+    column.iter().zip(is_kept).filter(|(_, is_kept)| **is_kept).map(|(value, _)| *value).collect()
 }
 
 fn sensor_columns(reader: &SessionReader) -> Result<Vec<SensorColumn>, CalibrationError> {

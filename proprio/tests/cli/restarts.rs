@@ -95,7 +95,9 @@ fn the_hysteresis_of_a_sweep_in_which_the_board_restarted_is_corrected_as_well()
         figure(&json(&run), "bend", "theta_rmse_deg")
     };
     let (found, expected) = (bend(&restarted(sweep(), &[2000, 3333, 3340])), bend(&sweep()));
-    assert!(found < 1.01 * expected, "{found}°, {expected}° without a restart");
+    // The arm of this sweep was not vented: until the lag of 40 s has forgotten the start, the memory is not that of the
+    // sensor, here in 120 of 600 s.
+    assert!(found < 1.05 * expected, "{found}°, {expected}° without a restart");
 }
 
 #[test]
