@@ -106,7 +106,7 @@ impl MemoryKeys {
 
     fn bake<S: Scalar>(&self) -> MemoryConfig<S> {
         let lag =
-            |k: usize| Lag { rate: S::from_f64(TIME_UNIT_S / self.lag_s[k]), weight: S::from_f64(self.lag_weight[k]) };
+            |k: usize| Lag { time: S::from_f64(self.lag_s[k] / TIME_UNIT_S), rate: S::from_f64(TIME_UNIT_S / self.lag_s[k]), weight: S::from_f64(self.lag_weight[k]) };
         let play = |k: usize| Play {
             radius: S::from_f64(self.play_deg[k].to_radians()),
             weight: S::from_f64(self.play_weight[k]),

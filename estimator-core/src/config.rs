@@ -136,7 +136,9 @@ pub struct MemoryConfig<S> {
 /// A first-order lag and its share in the correction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lag<S> {
-    /// [`TIME_UNIT_S`](crate::TIME_UNIT_S) over the time constant.
+    /// Time constant, units of [`TIME_UNIT_S`](crate::TIME_UNIT_S).
+    pub time: S,
+    /// One over it.
     pub rate: S,
     /// Weight of the difference of input and lag.
     pub weight: S,

@@ -15,8 +15,8 @@ const IGNORED_DIFFERENCE: Constant = degrees(0.2);
 /// A sensor is left out for so long after it last departed.
 const DISTRUST_US: u64 = 20_000_000;
 /// Departure from the IMUs, and from the twin, in predicted standard deviations, beside 1°.
-const DEPARTURE: Constant = Constant::new(4.0);
-const DIFFERENCE_DEPARTURE: Constant = Constant::new(5.0);
+const DEPARTURE: Constant = Constant::new(1.0 / 4.0);
+const DIFFERENCE_DEPARTURE: Constant = Constant::new(1.0 / 5.0);
 const DIFFERENCE_MARGIN: Constant = degrees(1.0);
 /// A sensor that moves by less than this in 10 s, while the IMUs move by more than the other, is stuck.
 const STUCK_US: u64 = 10_000_000;
