@@ -42,7 +42,6 @@ pub struct Estimator<'t, S, const N: usize, const W: usize> {
 /// Drift correction by what the configuration asks for. The bias filter works in fixed point whatever `S` is, so that every
 /// number type takes the same decisions.
 #[derive(Debug, Clone)]
-#[expect(clippy::large_enum_variant, reason = "made in place, and never moved")]
 enum Drift<const N: usize, const W: usize> {
     MovingAverage(MovingAverage<N, W>),
     BiasFilter(BiasFilter<Q, N>),
@@ -329,7 +328,7 @@ impl<'t, S: FusedOps, const N: usize, const W: usize> Estimator<'t, S, N, W> {
 fn theta_variance<const N: usize>(headings: &[[Q; N]; N], i: usize) -> Q {
     let at = |i: usize, j: usize| headings.get(i).and_then(|row| row.get(j)).copied().unwrap_or(Q::from_f64(0.0));
     match i.checked_sub(1) {
-        Some(below) => at(i, i) + at(below, below) - at(i, below) - at(i, below),
+        Some(below) => (at(i, i) - at(i, below)) + (at(below, below) - at(i, below)),
         None => at(i, i),
     }
 }
