@@ -49,6 +49,7 @@ pub(super) fn of(sweep: &Sweep, segment: usize, sensors: &[&FittedMap]) -> Optio
     Some(BendErrorKeys {
         mean_deg: rounded(deviation_deg(&mean)),
         sensor_deg: errors.iter().map(|series| rounded(deviation_deg(series))).collect(),
+        noise_deg: rounded(errors.iter().map(Series::noise).fold(0.0, f64::max).to_degrees()),
         difference_deg: rounded(difference.deviation().to_degrees()),
         slow_difference_deg: rounded(slow_difference.to_degrees()),
         slow_ratio: if slow_difference > 0.0 { rounded((slow_mean / slow_difference).powi(2).min(1.0)) } else { 0.0 },
@@ -131,6 +132,13 @@ impl Series {
 
     fn deviation(&self) -> f64 {
         deviation(&self.values.iter().flatten().copied().collect::<Vec<f64>>())
+    }
+
+    /// Standard deviation of the change from one value to the next.
+    fn noise(&self) -> f64 {
+        let pairs = self.values.windows(2).zip(self.runs.windows(2)).filter(|(_, runs)| runs[0] == runs[1]);
+        let changes: Vec<f64> = pairs.filter_map(|(pair, _)| Some(pair[1]? - pair[0]?)).collect();
+        deviation(&changes)
     }
 
     /// Standard deviation of the means of every stretch of [`SLOW_S`]; `None` where there is none.

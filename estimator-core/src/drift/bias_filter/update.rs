@@ -88,7 +88,7 @@ impl<F: Scalar, const N: usize> BiasFilter<F, N> {
         let dt = since(track.turned_at_us.replace(time_us).unwrap_or(time_us), time_us);
         track.monitor.compare(angles, dt, time_us);
         let motion = are_headings_read.then(|| track.theta - track.turn_theta);
-        if track.monitor.find_steps(angles, motion, dt, time_us) {
+        if track.monitor.find_steps(error, angles, motion, dt, time_us) {
             self.state.doubt(i, OFFSET, F::constant(STEPPED));
             track.stepped_at_us = Some(time_us);
         }
