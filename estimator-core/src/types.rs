@@ -142,6 +142,33 @@ pub struct Uncertainty {
 /// Uncertainty of the fused shape, from the base to the tip.
 pub type Uncertainties<const N: usize> = Vec<Uncertainty, N>;
 
+/// Conditions of one segment that make its estimate less certain.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[expect(clippy::struct_excessive_bools, reason = "independent conditions")]
+pub struct Condition {
+    /// The arm was bent or moving in the tare: the bend sensors set the zeros of the IMUs.
+    pub tare_bad: bool,
+    /// The IMU is not read, frozen, or reads what the arm cannot have done.
+    pub imu_absent: bool,
+    /// The IMU has had a new zero within the last minute.
+    pub imu_restarted: bool,
+    /// A bend sensor is missing or left out, or has had a new zero within the last minute.
+    pub bend_distrusted: bool,
+    /// IMUs and bend sensors disagree by more than the innovation gate.
+    pub gated: bool,
+}
+
+impl Condition {
+    /// Whether any of them holds.
+    #[must_use]
+    pub const fn is_degraded(self) -> bool {
+        self.tare_bad || self.imu_absent || self.imu_restarted || self.bend_distrusted || self.gated
+    }
+}
+
+/// Conditions of the segments, from the base to the tip.
+pub type Conditions<const N: usize> = Vec<Condition, N>;
+
 /// Contact of one segment and its score.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Contact {

@@ -8,7 +8,7 @@ use clap::builder::Styles;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 pub use link::{Convert, Drive, Flash, LinkArgs, Monitor, Ports, Record, Recover, Status};
-use proprio::calibrate::Correct;
+use proprio::calibrate::{HysteresisMode, MapMode};
 use proprio::session::ImuColumns;
 
 /// Colours of help and errors; off where stderr is no terminal or NO_COLOR is set.
@@ -84,9 +84,12 @@ pub struct Calibrate {
     /// Table to write
     #[arg(short, long, value_name = "TABLE.toml")]
     pub output: PathBuf,
-    /// Segments whose bend sensors are corrected for hysteresis
-    #[arg(long, value_enum, default_value_t = Correct::Auto)]
-    pub hysteresis: Correct,
+    /// V–Orient maps of the bend sensors
+    #[arg(long, value_enum, default_value_t = MapMode::Auto)]
+    pub map: MapMode,
+    /// Compensation of the bend sensors' hysteresis and creep
+    #[arg(long, value_enum, default_value_t = HysteresisMode::Auto)]
+    pub hysteresis: HysteresisMode,
 }
 
 #[derive(Debug, Args)]
@@ -142,15 +145,21 @@ pub struct Report {
 
 #[derive(Debug, Args)]
 pub struct Simulate {
-    /// What the arm does
+    /// What touches the arm, and how large its swings are
     #[arg(long, value_enum)]
     pub scenario: ScenarioName,
+    /// How the arm moves
+    #[arg(long, value_enum, default_value_t = MotionName::Swings)]
+    pub motion: MotionName,
     /// Duration, s
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     pub seconds: f64,
-    /// Seed of the motion, the pushes and all noise; the arm is always the same
+    /// Seed of the motion, the pushes and all noise of the session
     #[arg(long, value_name = "K")]
     pub seed: u64,
+    /// Seed of the arm's tolerances and its sensors' flaws; 0 is the reference arm
+    #[arg(long, value_name = "K", default_value_t = 0)]
+    pub arm_seed: u64,
     /// Samples per second, 1 to 1000
     #[arg(long, value_name = "HZ", default_value_t = 10.0, allow_negative_numbers = true)]
     pub rate: f64,
@@ -178,6 +187,26 @@ pub enum ScenarioName {
     Three,
     /// A slow sweep of every module, for calibration
     Sweep,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum MotionName {
+    /// All modules swing without a pause, after 5 s at rest
+    Swings,
+    /// The same, twelve times as slow
+    Slow,
+    /// The same, four times as fast
+    Fast,
+    /// One module swings alone
+    OneModule,
+    /// Rests of two minutes to two hours between spells of swings
+    Rests,
+    /// Leans of two to ten minutes between spells of swings
+    Lean,
+    /// The arm starts bent, with scenario 3 in contact
+    BentStart,
+    /// The arm starts in motion
+    MovingStart,
 }
 
 #[derive(Debug, Args)]

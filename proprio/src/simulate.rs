@@ -1,6 +1,8 @@
 //! The twin as a rig that is recorded: its own duty programme, sampled at a fixed rate.
 
-use rig_twin::{BEND_SENSORS, Camera, EndPose, Frame, Program, REGULATORS, Rig, SEGMENTS, Scenario};
+use rig_twin::{
+    BEND_SENSORS, Camera, EndPose, Frame, HeadingDrift, Program, REGULATORS, Rig, SEGMENTS, Scenario, Setup,
+};
 
 use crate::error::{Error, check_seconds};
 
@@ -20,6 +22,18 @@ pub struct Recorded {
     pub truth: [EndPose; SEGMENTS],
 }
 
+impl Recorded {
+    /// The same sample with a drift added to each IMU's heading.
+    #[must_use]
+    pub fn with_drift(mut self, drifts: &[HeadingDrift; SEGMENTS]) -> Self {
+        let time_s = self.time_us as f64 / 1e6;
+        for (quaternion, drift) in self.quaternions.iter_mut().zip(drifts) {
+            *quaternion = quaternion.map(|quaternion| drift.turn(time_s, quaternion));
+        }
+        self
+    }
+}
+
 /// A run of the twin, one [`Recorded`] after the other.
 pub struct Simulation {
     rig: Rig,
@@ -32,18 +46,26 @@ pub struct Simulation {
 }
 
 impl Simulation {
-    /// `seconds` of a scenario, sampled at `rate_hz`. The seed decides all that differs from run to run; the arm is
-    /// always the same.
+    /// `seconds` of a scenario on the reference arm, sampled at `rate_hz`. The seed decides all that differs from run to
+    /// run.
     ///
     /// # Errors
     /// [`Error::Rate`] and [`Error::Seconds`].
     pub fn new(scenario: Scenario, seed: u64, seconds: f64, rate_hz: f64) -> Result<Self, Error> {
+        Self::of(&Setup::new(scenario, seed), seconds, rate_hz)
+    }
+
+    /// `seconds` of a session, sampled at `rate_hz`.
+    ///
+    /// # Errors
+    /// [`Error::Rate`] and [`Error::Seconds`].
+    pub fn of(setup: &Setup, seconds: f64, rate_hz: f64) -> Result<Self, Error> {
         if !(1.0..=1000.0).contains(&rate_hz) {
             return Err(Error::Rate(rate_hz));
         }
         check_seconds(seconds)?;
         let samples = (seconds * rate_hz).round().max(1.0) as u64;
-        let (rig, program) = (Rig::new(scenario, seed), Program::new(scenario, seed));
+        let (rig, program) = (Rig::of(setup), Program::of(setup));
         Ok(Self { rig, program, rate_hz, samples, next: 0, camera: None, frames: Vec::new() })
     }
 

@@ -1,10 +1,7 @@
 //! Pneumatics and actuators: from a regulator's duty to a segment's free bend angle.
 
-use crate::constants::{
-    ACTUATOR_CREEP_S, ACTUATOR_CREEP_SHARE, ACTUATOR_LAG_S, ACTUATOR_PLAY_RAD, FULL_BEND_RAD, FULL_SCALE_PA,
-    GAIN_SIGMA, GRID_S, REGULATOR_LAG_S, STIFFENING,
-};
-use crate::noise::{Noise, Source};
+use crate::arm::{ActuatorParameters, RegulatorParameters};
+use crate::constants::{FULL_BEND_RAD, FULL_SCALE_PA, GRID_S};
 
 /// First-order lag on the fixed grid, exact for an input that holds between grid points.
 #[derive(Clone, Copy, Debug)]
@@ -34,81 +31,93 @@ pub(crate) fn play(value: f64, input: f64, half_width: f64) -> f64 {
 /// A pressure regulator.
 #[derive(Clone, Debug)]
 pub(crate) struct Regulator {
+    parameters: RegulatorParameters,
     pressure: Lag,
 }
 
 impl Regulator {
-    pub(crate) fn vented() -> Self {
-        Self { pressure: Lag::new(0.0, REGULATOR_LAG_S, GRID_S) }
+    pub(crate) fn vented(parameters: RegulatorParameters) -> Self {
+        Self { parameters, pressure: Lag::new(0.0, parameters.lag_s, GRID_S) }
     }
 
     /// Pressure in Pa after one more grid step at `duty`. No number counts as 0, others are clamped to 0 … 1.
     pub(crate) fn step(&mut self, duty: f64) -> f64 {
         let duty = if duty.is_nan() { 0.0 } else { duty.clamp(0.0, 1.0) };
-        self.pressure.follow(FULL_SCALE_PA * duty)
+        let RegulatorParameters { gain, offset_pa, .. } = self.parameters;
+        self.pressure.follow((gain * FULL_SCALE_PA * duty + offset_pa).max(0.0))
     }
 }
 
 /// The pneumatic half of one segment: stiffening, play, prompt response and creep.
 #[derive(Clone, Debug)]
 pub(crate) struct Actuator {
-    gain: f64,
+    parameters: ActuatorParameters,
     held: f64,
     prompt: Lag,
     creep: Lag,
 }
 
 impl Actuator {
-    /// Segment `segment` of the arm, counted from 0, straight.
-    pub(crate) fn new(segment: usize) -> Self {
-        let gain = Noise::of_arm(Source::Actuator, segment).tolerance((1.0, GAIN_SIGMA));
+    /// Relaxed.
+    pub(crate) fn new(parameters: ActuatorParameters) -> Self {
         Self {
-            gain,
+            parameters,
             held: 0.0,
-            prompt: Lag::new(0.0, ACTUATOR_LAG_S, GRID_S),
-            creep: Lag::new(0.0, ACTUATOR_CREEP_S, GRID_S),
+            prompt: Lag::new(0.0, parameters.lag_s, GRID_S),
+            creep: Lag::new(0.0, parameters.creep_s, GRID_S),
         }
     }
 
     /// Free bend angle in rad after one more grid step at `difference_pa` = right − left.
     pub(crate) fn step(&mut self, difference_pa: f64) -> f64 {
         let drive = difference_pa / FULL_SCALE_PA;
-        let target = self.gain * FULL_BEND_RAD * drive * (1.0 + STIFFENING * (1.0 - drive * drive));
-        self.held = play(self.held, target, ACTUATOR_PLAY_RAD);
+        let ActuatorParameters { gains: [right, left], stiffening, play_rad, creep_share, .. } = self.parameters;
+        let gain = if drive > 0.0 { right } else { left };
+        let target = gain * FULL_BEND_RAD * drive * (1.0 + stiffening * (1.0 - drive * drive));
+        self.held = play(self.held, target, play_rad);
         let prompt = self.prompt.follow(self.held);
         let creep = self.creep.follow(self.held);
-        (1.0 - ACTUATOR_CREEP_SHARE) * prompt + ACTUATOR_CREEP_SHARE * creep
+        (1.0 - creep_share) * prompt + creep_share * creep
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::{Actuator, Regulator};
+    use crate::arm::ArmParameters;
     use crate::constants::{DEGREE_RAD, FULL_BEND_RAD, FULL_SCALE_PA};
+
+    fn regulator() -> Regulator {
+        Regulator::vented(ArmParameters::new(0).regulators[0])
+    }
+
+    fn actuator() -> Actuator {
+        Actuator::new(ArmParameters::new(0).actuators[0])
+    }
 
     #[test]
     fn regulator_settles_at_its_full_scale() {
-        let mut regulator = Regulator::vented();
+        let mut regulator = regulator();
         let settled = (0..2000).fold(0.0, |_, _| regulator.step(1.0));
         assert!((settled - FULL_SCALE_PA).abs() < 1.0, "{settled} Pa");
     }
 
     #[test]
     fn no_number_vents_the_regulator() {
-        let mut regulator = Regulator::vented();
+        let mut regulator = regulator();
         assert!(regulator.step(f64::NAN).abs() < f64::EPSILON);
     }
 
     #[test]
     fn full_pressure_bends_by_the_full_angle() {
-        let mut actuator = Actuator::new(0);
+        let mut actuator = actuator();
         let bend = (0..100_000).fold(0.0, |_, _| actuator.step(FULL_SCALE_PA));
         assert!((bend - FULL_BEND_RAD).abs() < 8.0 * DEGREE_RAD, "{bend} rad");
     }
 
     #[test]
     fn play_keeps_a_memory_of_direction() {
-        let mut actuator = Actuator::new(0);
+        let mut actuator = actuator();
         let mut settle = |pressure| (0..100_000).fold(0.0, |_, _| actuator.step(pressure));
         let rising = settle(0.5 * FULL_SCALE_PA);
         settle(FULL_SCALE_PA);

@@ -1,24 +1,21 @@
 //! BNO055 units in IMUPLUS mode: headings that drift, in quaternions.
 
 use crate::actuator::Lag;
-use crate::constants::{
-    ACCELERATION_LAG_S, DRIFT_RAD_PER_S, DRIFT_SESSION_SIGMA, DRIFT_WALK_RAD_PER_S,
-    ERROR_PER_ACCELERATION_RAD_S2_PER_M, ERROR_PER_SPIN_S2, FUSION_S, GYRO_SENSITIVITY_SIGMA, HEADING_NOISE_RAD,
-    QUATERNION_UNIT_STEPS, TILT_SIGMA_RAD,
-};
-use crate::noise::{Noise, Source};
+use crate::arm::ImuParameters;
+use crate::constants::{ACCELERATION_LAG_S, DRIFT_SESSION_SIGMA, FUSION_S, QUATERNION_UNIT_STEPS};
+use crate::gauss_markov::GaussMarkov;
+use crate::noise::{Noise, Seeds, Source};
 use crate::shape::EndPose;
 use core::f64::consts::PI;
 
 /// One unit at a segment's end.
 #[derive(Clone, Debug)]
 pub(crate) struct Imu {
+    parameters: ImuParameters,
     mount_rad: f64,
-    sensitivity: f64,
-    pitch_rad: f64,
-    roll_rad: f64,
     rate_rad_per_s: f64,
-    walk_rad_per_s: f64,
+    instability: GaussMarkov,
+    heading_walk: Noise,
     drift_rad: f64,
     motion: Motion,
     error: Lag,
@@ -47,35 +44,55 @@ impl Motion {
 
 impl Imu {
     /// The unit of segment `segment`, counted from 0, that powers up at `pose`, with any heading.
-    pub(crate) fn new(segment: usize, seed: u64, pose: EndPose) -> Self {
-        let mut arm = Noise::of_arm(Source::Imu, segment);
-        let mut noise = Noise::of_session(seed, Source::Imu, segment);
+    pub(crate) fn new(parameters: ImuParameters, segment: usize, seeds: Seeds, pose: EndPose) -> Self {
+        let of = |source| Noise::of_session(seeds, source, segment);
+        let mut noise = of(Source::Imu);
+        let mount_rad = noise.between((-PI, PI));
+        let bias_rad_per_s = parameters.bias_rad_per_s * noise.tolerance((1.0, DRIFT_SESSION_SIGMA));
+        let turn_on_rad_per_s = of(Source::TurnOn).tolerance((0.0, parameters.turn_on_rad_per_s));
+        let ImuParameters { instability_rad_per_s, instability_s, .. } = parameters;
         let mut imu = Self {
-            mount_rad: noise.between((-PI, PI)),
-            sensitivity: arm.tolerance((1.0, GYRO_SENSITIVITY_SIGMA)),
-            pitch_rad: arm.tolerance((0.0, TILT_SIGMA_RAD)),
-            roll_rad: arm.tolerance((0.0, TILT_SIGMA_RAD)),
-            rate_rad_per_s: DRIFT_RAD_PER_S[segment] * noise.tolerance((1.0, DRIFT_SESSION_SIGMA)),
-            walk_rad_per_s: DRIFT_WALK_RAD_PER_S * libm::sqrt(FUSION_S),
+            parameters,
+            mount_rad,
+            rate_rad_per_s: bias_rad_per_s + turn_on_rad_per_s,
+            instability: GaussMarkov::new(instability_rad_per_s, instability_s, FUSION_S, of(Source::Instability)),
+            heading_walk: of(Source::HeadingWalk),
             drift_rad: 0.0,
             motion: Motion { pose, velocity: [0.0; 3] },
             error: Lag::new(0.0, ACCELERATION_LAG_S, FUSION_S),
             noise,
             quaternion: [0; 4],
         };
-        imu.fuse(pose);
+        imu.fuse(pose, 0.0);
         imu
     }
 
-    /// One more output of the fusion, the mount being at `pose`.
-    pub(crate) fn fuse(&mut self, pose: EndPose) {
+    /// One more output of the fusion, the mount being at `pose`, the unit `temperature_k` above nominal.
+    pub(crate) fn fuse(&mut self, pose: EndPose, temperature_k: f64) {
+        let parameters = self.parameters;
         let (across, spin) = self.motion.acceleration(pose);
-        let error = self.error.follow(ERROR_PER_ACCELERATION_RAD_S2_PER_M * across + ERROR_PER_SPIN_S2 * spin);
-        self.rate_rad_per_s += self.walk_rad_per_s * self.noise.gaussian();
-        self.drift_rad += self.rate_rad_per_s * FUSION_S;
-        let noise = HEADING_NOISE_RAD * self.noise.gaussian();
-        let heading = self.mount_rad + self.sensitivity * pose.heading_rad + self.drift_rad + error + noise;
-        self.quaternion = quaternion(-heading, self.pitch_rad, self.roll_rad);
+        let error = self.error.follow(parameters.error_per_acceleration * across + parameters.error_per_spin * spin);
+        self.drift(temperature_k);
+        let noise = parameters.heading_noise_rad * self.noise.gaussian();
+        let turned = parameters.sensitivity * pose.heading_rad;
+        let heading = self.mount_rad + turned + self.drift_rad + error + noise + self.plane_error(pose.heading_rad);
+        self.quaternion = quaternion(-heading, parameters.pitch_rad, parameters.roll_rad);
+    }
+
+    /// Integrates the rate's bias: random walk, instability, temperature, and the rate's white noise.
+    fn drift(&mut self, temperature_k: f64) {
+        let parameters = self.parameters;
+        let root_period = libm::sqrt(FUSION_S);
+        self.rate_rad_per_s += parameters.rate_walk_rad_per_s * root_period * self.noise.gaussian();
+        let bias = self.rate_rad_per_s + self.instability.step() + parameters.rate_rad_per_s_per_k * temperature_k;
+        self.drift_rad += bias * FUSION_S;
+        self.drift_rad += parameters.heading_walk_rad * root_period * self.heading_walk.gaussian();
+    }
+
+    /// Error of the heading in a plane tilted by ε: −ε²/4 · sin 2φ, to the second order.
+    fn plane_error(&self, heading_rad: f64) -> f64 {
+        let tilt = self.parameters.plane_tilt_rad;
+        -tilt * tilt / 4.0 * libm::sin(2.0 * (heading_rad - self.parameters.plane_direction_rad))
     }
 
     /// The fusion's last output: w, x, y, z.

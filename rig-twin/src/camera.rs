@@ -4,7 +4,7 @@ use crate::constants::{
     CAMERA_BASE, CAMERA_CLOCK_AHEAD_S, CAMERA_CLOCK_FAST, CAMERA_DROPPED_SHARE, CAMERA_FRAMES_PER_S,
     CAMERA_HEADING_NOISE_RAD, CAMERA_HIDDEN_SHARE, CAMERA_PLACE_NOISE_M, CAMERA_STAMP_NOISE_S, GRID_S, SEGMENTS,
 };
-use crate::noise::{Noise, Source};
+use crate::noise::{Noise, Seeds, Source};
 use crate::shape::EndPose;
 use core::f64::consts::TAU;
 
@@ -29,7 +29,7 @@ pub struct Camera {
 impl Camera {
     /// The camera in the session of `seed`.
     pub fn new(seed: u64) -> Self {
-        Self { frames: 0, noise: Noise::of_session(seed, Source::Camera, 0) }
+        Self { frames: 0, noise: Noise::of_session(Seeds { arm: 0, session: seed }, Source::Camera, 0) }
     }
 
     /// When the next frame is taken, by the rig's clock: at a grid point, where the truth is of that moment.

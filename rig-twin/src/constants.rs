@@ -1,4 +1,5 @@
-//! Every number of the twin, with its unit and where it comes from.
+//! Every number of the reference arm, its rig and its programs of motion, with unit and source. Sizes of the flaws of all other
+//! arms are in `flaws`.
 //!
 //! "paper" is arXiv 2511.01165. "assumed" marks what no source gives; those were chosen so that the residual of the
 //! V–Orient maps and the drift come out near the paper's.
@@ -21,8 +22,8 @@ pub const REGULATORS: usize = 2 * MODULES;
 
 // Random numbers.
 
-/// Seed of the arm's own tolerances, the same in every session, so that a calibration stays valid (assumed).
-pub(crate) const ARM_SEED: u64 = 3;
+/// ChaCha seed of the reference arm's tolerances (assumed).
+pub(crate) const REFERENCE_ARM_SEED: u64 = 3;
 
 /// Where tolerances are cut off: a maker sorts out what lies beyond (assumed).
 pub(crate) const TOLERANCE_LIMIT_SIGMA: f64 = 3.0;
@@ -36,7 +37,7 @@ pub(crate) const GRID_SLACK_S: f64 = 1e-9;
 /// Longest single step; longer ones are cut to it (assumed: bounds the time a call can take).
 pub(crate) const LONGEST_STEP_S: f64 = 3600.0;
 /// Grid points between two outputs of an IMU's fusion: 10 ms, its fastest rate (BNO055 datasheet).
-pub(crate) const GRID_POINTS_PER_FUSION: u64 = 5;
+pub(crate) const GRID_POINTS_PER_FUSION: i64 = 5;
 /// Time between two outputs of an IMU's fusion.
 pub(crate) const FUSION_S: f64 = GRID_S * GRID_POINTS_PER_FUSION as f64;
 
@@ -108,6 +109,34 @@ pub(crate) const ENVELOPE: (f64, f64) = (0.625, 0.375);
 pub(crate) const PACE_PERIODS: (f64, f64) = (1.7, 2.9);
 /// Size of a swing's change of pace (assumed).
 pub(crate) const PACE_RAD: f64 = 0.8;
+/// Periods of the slow swings, a multiple of the scenario's (assumed: under a degree a second).
+pub(crate) const SLOW_PERIODS: f64 = 12.0;
+/// Periods of the fast swings, a multiple of the scenario's (assumed: near the regulators' lag).
+pub(crate) const FAST_PERIODS: f64 = 0.25;
+/// Pauses in a round, after which they repeat.
+pub(crate) const PAUSES: usize = 32;
+/// Time in which a pause comes, and in which it goes (assumed).
+pub(crate) const PAUSE_BLEND_S: f64 = 4.0;
+/// Range of the swings between two rests (assumed).
+pub(crate) const REST_SPELL_S: (f64, f64) = (20.0, 120.0);
+/// Range of the logarithm (base e) of a rest's duration in s: 2 min to 2 h (assumed).
+pub(crate) const REST_PAUSE_LOG_S: (f64, f64) = (4.787, 8.882);
+/// Share of the rests at which the arm is vented; in the others it holds a pose (assumed).
+pub(crate) const REST_VENTED_SHARE: f64 = 0.5;
+/// Range of a module's drive in a rest that holds a pose, a share of full pressure (assumed).
+pub(crate) const REST_DRIVE: (f64, f64) = (0.0, 0.5);
+/// Range of the swings between two leans (assumed).
+pub(crate) const LEAN_SPELL_S: (f64, f64) = (60.0, 180.0);
+/// Range of the logarithm (base e) of a lean's duration in s: 2 to 10 min (assumed).
+pub(crate) const LEAN_PAUSE_LOG_S: (f64, f64) = (4.787, 6.397);
+/// Range of a module's drive in a lean, a share of full pressure (assumed).
+pub(crate) const LEAN_DRIVE: (f64, f64) = (0.30, 0.60);
+/// Share of the swings that is left in a lean (assumed).
+pub(crate) const LEAN_SWING_SHARE: f64 = 0.1;
+/// Range of a module's drive at the start of a session that begins bent, a share of full pressure (assumed).
+pub(crate) const START_DRIVE: (f64, f64) = (0.25, 0.50);
+/// Motion before a session that does not begin at rest (assumed: many times the slowest lag but creep).
+pub(crate) const LEAD_IN_S: f64 = 30.0;
 /// Heading of the tip that the swings of scenarios I to III do not pass (assumed: the arm does not coil up).
 pub(crate) const TOTAL_HEADING_RAD: f64 = 190.0 * DEGREE_RAD;
 

@@ -7,7 +7,7 @@ use crate::constants::{
     OBSTACLE_SEGMENT, OBSTACLE_WRAP_SHARE, OBSTACLE_X_M, OBSTACLE_YIELD_RAD, PUSH_BEND_RAD, PUSH_DURATION_S,
     PUSH_NEIGHBOUR_SHARE, PUSH_PAUSE_S, PUSH_PLACE, PUSH_RISE_S, REACTION_HALF_WIDTH, REST_S, SEGMENTS,
 };
-use crate::noise::{Noise, Source};
+use crate::noise::{Noise, Seeds, Source};
 use crate::program::{Scenario, smooth_step};
 
 /// What a contact adds to one segment's curve.
@@ -56,8 +56,8 @@ pub struct Push {
 
 impl Push {
     /// Push `number` of the session, at the end of a pause that begins at `pause_s`.
-    fn new(seed: u64, number: usize, pause_s: f64) -> Self {
-        let mut noise = Noise::of_session(seed, Source::Contact, number);
+    fn new(seeds: Seeds, number: usize, pause_s: f64) -> Self {
+        let mut noise = Noise::of_session(seeds, Source::Contact, number);
         Self {
             start_s: pause_s + noise.between(PUSH_PAUSE_S),
             duration_s: noise.between(PUSH_DURATION_S),
@@ -96,8 +96,8 @@ pub(crate) struct Obstacle {
 }
 
 impl Obstacle {
-    pub(crate) fn new(seed: u64) -> Self {
-        let mut noise = Noise::of_session(seed, Source::Contact, 0);
+    pub(crate) fn new(seeds: Seeds) -> Self {
+        let mut noise = Noise::of_session(seeds, Source::Contact, 0);
         Self { side: noise.sign(), distance_m: noise.between(OBSTACLE_X_M) }
     }
 
@@ -136,16 +136,16 @@ fn chord_x_m(bends_rad: &[f64]) -> f64 {
 #[derive(Clone, Debug)]
 pub(crate) enum Contacts {
     None,
-    Sticks { seed: u64, begun: Vec<Push>, next: Push },
+    Sticks { seeds: Seeds, begun: Vec<Push>, next: Push },
     Obstacle(Obstacle),
 }
 
 impl Contacts {
-    pub(crate) fn new(scenario: Scenario, seed: u64) -> Self {
+    pub(crate) fn new(scenario: Scenario, seeds: Seeds) -> Self {
         match scenario {
             Scenario::Sweep | Scenario::One => Self::None,
-            Scenario::Two => Self::Sticks { seed, begun: Vec::new(), next: Push::new(seed, 0, REST_S) },
-            Scenario::Three => Self::Obstacle(Obstacle::new(seed)),
+            Scenario::Two => Self::Sticks { seeds, begun: Vec::new(), next: Push::new(seeds, 0, REST_S) },
+            Scenario::Three => Self::Obstacle(Obstacle::new(seeds)),
         }
     }
 
@@ -153,10 +153,10 @@ impl Contacts {
     pub(crate) fn touches(&mut self, time_s: f64, free_rad: &[f64; SEGMENTS]) -> [Touch; SEGMENTS] {
         match self {
             Self::None => [Touch::NONE; SEGMENTS],
-            Self::Sticks { seed, begun, next } => {
+            Self::Sticks { seeds, begun, next } => {
                 if time_s >= next.start_s {
                     begun.push(*next);
-                    *next = Push::new(*seed, begun.len(), next.end_s());
+                    *next = Push::new(*seeds, begun.len(), next.end_s());
                 }
                 begun.last().map_or([Touch::NONE; SEGMENTS], |push| push.touches(time_s))
             }

@@ -1,9 +1,16 @@
 //! Random numbers: one ChaCha stream for each source, so that no reading disturbs another.
 
-use crate::constants::{ARM_SEED, TOLERANCE_LIMIT_SIGMA};
+use crate::constants::{REFERENCE_ARM_SEED, TOLERANCE_LIMIT_SIGMA};
 use core::f64::consts::TAU;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
+
+/// Seeds of a session: the arm's and its own.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Seeds {
+    pub(crate) arm: u64,
+    pub(crate) session: u64,
+}
 
 /// What the numbers are for. Each source, and each of its devices, has a stream of its own.
 #[derive(Clone, Copy)]
@@ -17,6 +24,14 @@ pub(crate) enum Source {
     Contact,
     CommonMode,
     Camera,
+    Regulator,
+    Temperature,
+    SharedError,
+    SlowCreep,
+    TurnOn,
+    Instability,
+    HeadingWalk,
+    Schedule,
 }
 
 /// A stream of random numbers.
@@ -27,20 +42,20 @@ pub(crate) struct Noise {
 }
 
 impl Noise {
-    /// The arm's tolerances: the same in every session.
-    pub(crate) fn of_arm(source: Source, device: usize) -> Self {
-        Self::new(ARM_SEED, 1, source, device)
+    /// Tolerances of an arm: the same in every session.
+    pub(crate) fn of_arm(arm_seed: u64, source: Source, device: usize) -> Self {
+        let (seed, domain) = if arm_seed == 0 { (REFERENCE_ARM_SEED, 1) } else { (arm_seed, 2) };
+        Self::new(key(seed, domain), source, device)
     }
 
-    /// What differs between sessions.
-    pub(crate) fn of_session(seed: u64, source: Source, device: usize) -> Self {
-        Self::new(seed, 0, source, device)
+    /// What differs between sessions, and from arm to arm.
+    pub(crate) fn of_session(seeds: Seeds, source: Source, device: usize) -> Self {
+        let mut key = key(seeds.session, 0);
+        key[16..24].copy_from_slice(&seeds.arm.to_le_bytes());
+        Self::new(key, source, device)
     }
 
-    fn new(seed: u64, domain: u8, source: Source, device: usize) -> Self {
-        let mut key = [0; 32];
-        key[..8].copy_from_slice(&seed.to_le_bytes());
-        key[8] = domain;
+    fn new(key: [u8; 32], source: Source, device: usize) -> Self {
         let mut stream = ChaCha8Rng::from_seed(key);
         stream.set_stream(((source as u64) << 32) | device as u64);
         Self { stream, spare: None }
@@ -83,13 +98,22 @@ impl Noise {
     }
 }
 
+fn key(seed: u64, domain: u8) -> [u8; 32] {
+    let mut key = [0; 32];
+    key[..8].copy_from_slice(&seed.to_le_bytes());
+    key[8] = domain;
+    key
+}
+
 #[cfg(test)]
 mod tests {
-    use super::{Noise, Source};
+    use super::{Noise, Seeds, Source};
+
+    const SEEDS: Seeds = Seeds { arm: 0, session: 1 };
 
     #[test]
     fn gaussian_has_mean_zero_and_variance_one() {
-        let mut noise = Noise::of_session(1, Source::Converter, 0);
+        let mut noise = Noise::of_session(SEEDS, Source::Converter, 0);
         let draws: Vec<f64> = (0..20_000).map(|_| noise.gaussian()).collect();
         let mean = draws.iter().sum::<f64>() / draws.len() as f64;
         let variance = draws.iter().map(|x| x * x).sum::<f64>() / draws.len() as f64;
@@ -99,8 +123,13 @@ mod tests {
 
     #[test]
     fn streams_of_two_devices_differ() {
-        let mut first = Noise::of_session(1, Source::Imu, 0);
-        let mut second = Noise::of_session(1, Source::Imu, 1);
+        let mut first = Noise::of_session(SEEDS, Source::Imu, 0);
+        let mut second = Noise::of_session(SEEDS, Source::Imu, 1);
+        assert!(first.uniform().to_bits() != second.uniform().to_bits());
+    }
+    #[test]
+    fn sessions_of_one_seed_on_two_arms_share_no_numbers() {
+        let [mut first, mut second] = [1, 2].map(|arm| Noise::of_session(Seeds { arm, session: 1 }, Source::Imu, 0));
         assert!(first.uniform().to_bits() != second.uniform().to_bits());
     }
 }

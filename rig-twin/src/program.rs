@@ -2,14 +2,16 @@
 
 use crate::constants::{
     CONTACT_DRIVE, CONTACT_PERIODS_S, ENVELOPE, ENVELOPE_PERIODS, FADE_IN_S, FREE_DRIVE, FREE_PERIODS_S, FULL_BEND_RAD,
-    MODULES, OBSTACLE_LEAN_DRIVE, PACE_PERIODS, PACE_RAD, REGULATORS, REST_S, SEGMENTS, SWEEP_DRIVE, SWEEP_PERIODS_S,
-    TOTAL_HEADING_RAD,
+    MODULES, OBSTACLE_LEAN_DRIVE, PACE_PERIODS, PACE_RAD, REGULATORS, REST_S, SEGMENTS, START_DRIVE, SWEEP_DRIVE,
+    SWEEP_PERIODS_S, TOTAL_HEADING_RAD,
 };
 use crate::contact::Obstacle;
+use crate::motion::{Motion, Pauses, leaning_pose};
 use crate::noise::{Noise, Source};
+use crate::setup::Setup;
 use core::f64::consts::TAU;
 
-/// What happens in a session. Each begins with 5 s at rest, straight.
+/// What touches the arm in a session, and how large its swings are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scenario {
     /// Calibration: every module swings slowly through its whole range, free.
@@ -25,37 +27,54 @@ pub enum Scenario {
 /// The motion of a session: duties of the regulators over time.
 #[derive(Clone, Debug)]
 pub struct Program {
+    motion: Motion,
     swings: [Swing; MODULES],
     heading_limit_rad: f64,
+    pauses: Option<Pauses>,
+    /// Drive of each module before the first swing, a share of full pressure.
+    start_pose: [f64; MODULES],
 }
 
 impl Program {
-    /// The motion of `scenario` in the session of `seed`.
+    /// The motion of `scenario` in the session of `seed` on the reference arm.
     pub fn new(scenario: Scenario, seed: u64) -> Self {
+        Self::of(&Setup::new(scenario, seed))
+    }
+
+    /// The motion of a session.
+    pub fn of(setup: &Setup) -> Self {
+        let (scenario, seeds) = (setup.scenario, setup.seeds());
         let (drive, periods_s) = match scenario {
             Scenario::Sweep => (SWEEP_DRIVE, SWEEP_PERIODS_S),
             Scenario::One => (FREE_DRIVE, FREE_PERIODS_S),
             Scenario::Two | Scenario::Three => (CONTACT_DRIVE, CONTACT_PERIODS_S),
         };
-        let lean = match scenario {
-            Scenario::Three => OBSTACLE_LEAN_DRIVE * Obstacle::new(seed).side,
-            _ => 0.0,
-        };
+        let periods_s = (setup.motion.periods() * periods_s.0, setup.motion.periods() * periods_s.1);
+        let side = if scenario == Scenario::Three { Obstacle::new(seeds).side } else { 0.0 };
+        let mut schedule = Noise::of_session(seeds, Source::Schedule, 0);
+        let moving = (setup.motion == Motion::OneModule).then(|| schedule.pick(MODULES));
         let heading_limit_rad = if scenario == Scenario::Sweep { f64::INFINITY } else { TOTAL_HEADING_RAD };
         let swings = core::array::from_fn(|module| {
-            let lean = if module + 1 < MODULES { lean } else { 0.0 };
-            Swing::new(drive, lean, periods_s, &mut Noise::of_session(seed, Source::Motion, module))
+            let lean = if module + 1 < MODULES { OBSTACLE_LEAN_DRIVE * side } else { 0.0 };
+            let drive = if moving.is_none_or(|moving| moving == module) { drive } else { 0.0 };
+            Swing::new(drive, lean, periods_s, &mut Noise::of_session(seeds, Source::Motion, module))
         });
-        Self { swings, heading_limit_rad }
+        let is_bent = setup.motion == Motion::BentStart;
+        Self {
+            motion: setup.motion,
+            swings,
+            heading_limit_rad,
+            pauses: Pauses::new(setup.motion, side, &mut schedule),
+            start_pose: if is_bent { leaning_pose(START_DRIVE, side, &mut schedule) } else { [0.0; MODULES] },
+        }
     }
 
     /// Duties of the regulators at `t_s` seconds, each 0 … 1: module 1 right, left, module 2 right, left, module 3 right, left.
     pub fn duties(&self, t_s: f64) -> [f64; REGULATORS] {
-        if !t_s.is_finite() || t_s <= REST_S {
+        if !t_s.is_finite() || (self.motion.starts_at_rest() && t_s <= REST_S) {
             return [0.0; REGULATORS];
         }
-        let fade = smooth_step((t_s - REST_S) / FADE_IN_S);
-        let drives: [f64; MODULES] = core::array::from_fn(|module| fade * self.swings[module].drive(t_s));
+        let drives = self.drives(t_s);
         let heading_rad = drives.iter().sum::<f64>() * FULL_BEND_RAD * (SEGMENTS / MODULES) as f64;
         let excess = heading_rad / self.heading_limit_rad;
         let share = 1.0 / libm::sqrt(libm::sqrt(1.0 + excess * excess * excess * excess));
@@ -63,6 +82,16 @@ impl Program {
             let drive = share * drives[regulator / 2];
             if regulator % 2 == 0 { drive.max(0.0) } else { (-drive).max(0.0) }
         })
+    }
+
+    /// Right minus left of each module at `t_s`, a share of full pressure, before the heading is limited.
+    fn drives(&self, t_s: f64) -> [f64; MODULES] {
+        let is_moving = self.motion == Motion::MovingStart;
+        let fade = if is_moving { 1.0 } else { smooth_step((t_s - REST_S) / FADE_IN_S) };
+        let drives = core::array::from_fn(|module| {
+            fade * self.swings[module].drive(t_s) + (1.0 - fade) * self.start_pose[module]
+        });
+        self.pauses.as_ref().map_or(drives, |pauses| pauses.interrupt(t_s - REST_S, drives))
     }
 }
 

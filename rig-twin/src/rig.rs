@@ -1,53 +1,82 @@
 //! The rig: arm, contacts and sensors on one fixed grid of time.
 
 use crate::actuator::{Actuator, Regulator};
+use crate::arm::ArmParameters;
 use crate::bno055::Imu;
 use crate::constants::{
-    BEND_SENSORS, FULL_SCALE_PA, FUSION_S, GRID_POINTS_PER_FUSION, GRID_S, GRID_SLACK_S, LONGEST_STEP_S, REGULATORS,
-    SEGMENTS, STRETCH_AT_FULL_PRESSURE,
+    BEND_SENSORS, FUSION_S, GRID_POINTS_PER_FUSION, GRID_S, GRID_SLACK_S, LEAD_IN_S, LONGEST_STEP_S, REGULATORS,
+    SEGMENTS,
 };
 use crate::contact::{Contacts, Push};
-use crate::flex::{BendSensor, CommonMode};
+use crate::flex::{BendSensor, PairError, PairErrors};
 use crate::noise::{Noise, Source};
-use crate::program::Scenario;
+use crate::program::{Program, Scenario};
+use crate::setup::Setup;
 use crate::shape::{Curve, EndPose, poses};
+use crate::temperature::Temperature;
+use core::array::from_fn;
 
 /// The simulated arm with its regulators, bend sensors and IMUs.
 ///
-/// The arm is always the same one: tolerances do not depend on the seed, so a calibration from one session holds in another. The
-/// seed gives what differs between sessions: noise, contacts, power-up headings, and what the strips remember from their storage.
+/// The arm's tolerances depend on the arm's seed alone, so a calibration from one session holds in another of the same arm. The
+/// session's seed gives what differs between sessions: noise, contacts, power-up headings, turn-on biases, temperature, and what
+/// the strips remember from their storage.
 #[derive(Clone, Debug)]
 pub struct Rig {
-    grid_points: u64,
+    /// Since the start of the session; negative before it.
+    grid_points: i64,
     pending_s: f64,
     regulators: [Regulator; REGULATORS],
     actuators: [Actuator; SEGMENTS],
     contacts: Contacts,
     curves: [Curve; SEGMENTS],
     bend_sensors: [BendSensor; BEND_SENSORS],
-    common_modes: [CommonMode; SEGMENTS],
-    common_rad: [f64; SEGMENTS],
+    pair_errors: [PairErrors; SEGMENTS],
+    pair_error: [PairError; SEGMENTS],
+    temperature: Temperature,
+    temperature_k: f64,
     imus: [Imu; SEGMENTS],
     converter_noise: Noise,
 }
 
 impl Rig {
-    /// The rig at rest, vented and straight, in the session of `seed`. The scenario decides what touches the arm.
+    /// The reference arm at rest, vented and straight, in the session of `seed`. The scenario decides what touches the arm.
     pub fn new(scenario: Scenario, seed: u64) -> Self {
-        let curves = core::array::from_fn(Curve::new);
+        Self::of(&Setup::new(scenario, seed))
+    }
+
+    /// The arm of a session at its start.
+    pub fn of(setup: &Setup) -> Self {
+        let mut rig = Self::at_rest(setup);
+        if !setup.motion.starts_at_rest() {
+            let program = Program::of(setup);
+            rig.grid_points = -(LEAD_IN_S / GRID_S) as i64;
+            while rig.grid_points < 0 {
+                rig.advance(program.duties(rig.time_s()));
+            }
+        }
+        rig
+    }
+
+    /// The arm, vented and straight.
+    fn at_rest(setup: &Setup) -> Self {
+        let (arm, seeds) = (ArmParameters::new(setup.arm_seed), setup.seeds());
+        let curves = arm.curves.map(Curve::new);
         let poses = poses(&curves);
         Self {
             grid_points: 0,
             pending_s: 0.0,
-            regulators: core::array::from_fn(|_| Regulator::vented()),
-            actuators: core::array::from_fn(Actuator::new),
-            contacts: Contacts::new(scenario, seed),
+            regulators: arm.regulators.map(Regulator::vented),
+            actuators: arm.actuators.map(Actuator::new),
+            contacts: Contacts::new(setup.scenario, seeds),
             curves,
-            bend_sensors: core::array::from_fn(|index| BendSensor::new(index, seed)),
-            common_modes: core::array::from_fn(|segment| CommonMode::new(segment, seed, FUSION_S)),
-            common_rad: [0.0; SEGMENTS],
-            imus: core::array::from_fn(|segment| Imu::new(segment, seed, poses[segment])),
-            converter_noise: Noise::of_session(seed, Source::Converter, 0),
+            bend_sensors: from_fn(|index| BendSensor::new(arm.strips[index], index, seeds)),
+            pair_errors: from_fn(|segment| PairErrors::new(arm.pairs[segment], segment, seeds)),
+            pair_error: [PairError::default(); SEGMENTS],
+            temperature: Temperature::new(seeds, FUSION_S),
+            temperature_k: 0.0,
+            imus: from_fn(|segment| Imu::new(arm.imus[segment], segment, seeds, poses[segment])),
+            converter_noise: Noise::of_session(seeds, Source::Converter, 0),
         }
     }
 
@@ -68,25 +97,23 @@ impl Rig {
     /// One grid step.
     fn advance(&mut self, duties: [f64; REGULATORS]) {
         self.grid_points += 1;
-        let pressures_pa: [f64; REGULATORS] = core::array::from_fn(|index| self.regulators[index].step(duties[index]));
-        let free_rad: [f64; SEGMENTS] = core::array::from_fn(|segment| {
+        let pressures_pa: [f64; REGULATORS] = from_fn(|index| self.regulators[index].step(duties[index]));
+        let free_rad: [f64; SEGMENTS] = from_fn(|segment| {
             let [right, left] = of_segment(&pressures_pa, segment);
             self.actuators[segment].step(right - left)
         });
         let touches = self.contacts.touches(self.grid_points as f64 * GRID_S, &free_rad);
         for (segment, curve) in self.curves.iter_mut().enumerate() {
-            let [right, left] = of_segment(&pressures_pa, segment);
-            curve.free_rad = free_rad[segment];
-            curve.touch = touches[segment];
-            curve.stretch = STRETCH_AT_FULL_PRESSURE * (right + left) / (2.0 * FULL_SCALE_PA);
+            curve.bend(free_rad[segment], touches[segment], of_segment(&pressures_pa, segment));
         }
         for (index, sensor) in self.bend_sensors.iter_mut().enumerate() {
-            sensor.step(&self.curves[index / 2], self.common_rad[index / 2]);
+            sensor.step(&self.curves[index / 2], self.pair_error[index / 2], self.temperature_k);
         }
-        if self.grid_points.is_multiple_of(GRID_POINTS_PER_FUSION) {
-            self.common_rad = core::array::from_fn(|segment| self.common_modes[segment].step());
+        if self.grid_points % GRID_POINTS_PER_FUSION == 0 {
+            self.temperature_k = self.temperature.step();
+            self.pair_error = from_fn(|segment| self.pair_errors[segment].step(self.temperature_k));
             for (imu, pose) in self.imus.iter_mut().zip(poses(&self.curves)) {
-                imu.fuse(pose);
+                imu.fuse(pose, self.temperature_k);
             }
         }
     }
@@ -103,7 +130,7 @@ impl Rig {
 
     /// Fresh conversions of the bend sensors, 0 … 4095, in the order 1a, 1b, 2a, … 6b. Each call draws new noise.
     pub fn adc_counts(&mut self) -> [u16; BEND_SENSORS] {
-        core::array::from_fn(|index| self.convert(index))
+        from_fn(|index| self.convert(index))
     }
 
     /// One fresh conversion of one bend sensor, counted from 0 in the order of [`adc_counts`](Self::adc_counts): what a
@@ -118,7 +145,7 @@ impl Rig {
 
     /// The IMUs' last fusion output, at most 10 ms old: w, x, y, z of each segment's unit, in steps of 1/16384.
     pub fn imu_quaternions(&self) -> [[i16; 4]; SEGMENTS] {
-        core::array::from_fn(|segment| self.imus[segment].quaternion())
+        from_fn(|segment| self.imus[segment].quaternion())
     }
 
     /// What contacts add to each segment's bend angle now, rad; 0 where the arm is free.

@@ -6,11 +6,9 @@
 //!
 //! m₁ and m₂ multiply the first two Legendre polynomials of the curvature; B is the integral of a biweight kernel.
 
-use crate::constants::{
-    BULGE_MEAN, BULGE_SIGMA, CONNECTOR_LENGTH_M, CURVE_LENGTH_M, SEGMENTS, SIMPSON_INTERVALS, SLOPE_MEAN, SLOPE_SIGMA,
-};
+use crate::arm::CurveParameters;
+use crate::constants::{FULL_SCALE_PA, SEGMENTS, SIMPSON_INTERVALS};
 use crate::contact::Touch;
-use crate::noise::{Noise, Source};
 
 /// World position and heading of a segment's end.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -26,36 +24,37 @@ pub struct EndPose {
 /// One segment's curve at one moment.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Curve {
-    slope: f64,
-    bulge: f64,
+    parameters: CurveParameters,
     pub(crate) free_rad: f64,
     pub(crate) touch: Touch,
     pub(crate) stretch: f64,
 }
 
 impl Curve {
-    /// Segment `segment` of the arm, counted from 0, straight.
-    pub(crate) fn new(segment: usize) -> Self {
-        let mut arm = Noise::of_arm(Source::Curve, segment);
-        Self {
-            slope: arm.tolerance((SLOPE_MEAN, SLOPE_SIGMA)),
-            bulge: arm.tolerance((BULGE_MEAN, BULGE_SIGMA)),
-            free_rad: 0.0,
-            touch: Touch::NONE,
-            stretch: 0.0,
-        }
+    /// At rest and untouched.
+    pub(crate) fn new(parameters: CurveParameters) -> Self {
+        Self { parameters, free_rad: parameters.rest_bend_rad, touch: Touch::NONE, stretch: 0.0 }
+    }
+
+    /// Bends as the actuator does, `touch` added, under the pressures of its module.
+    pub(crate) fn bend(&mut self, actuator_rad: f64, touch: Touch, [right_pa, left_pa]: [f64; 2]) {
+        self.free_rad = actuator_rad + self.parameters.rest_bend_rad;
+        self.touch = touch;
+        self.stretch = self.parameters.stretch_at_full_pressure * (right_pa + left_pa) / (2.0 * FULL_SCALE_PA);
     }
 
     /// How far the tangent has turned at the share `along` of the curve, rad.
     pub(crate) fn turned_rad(&self, along: f64) -> f64 {
         let slope = along * (along - 1.0);
         let bulge = along * (1.0 + along * (2.0 * along - 3.0));
-        self.free_rad * (along + self.slope * slope + self.bulge * bulge) + self.touch.turned_rad(along)
+        self.free_rad * (along + self.parameters.slope * slope + self.parameters.bulge * bulge)
+            + self.touch.turned_rad(along)
     }
 
     /// End of the segment that starts at `start`, its connector included.
     fn end(&self, start: EndPose, connector_first: bool) -> EndPose {
-        let start = if connector_first { start.ahead(CONNECTOR_LENGTH_M) } else { start };
+        let CurveParameters { length_m, connector_m, .. } = self.parameters;
+        let start = if connector_first { start.ahead(connector_m) } else { start };
         let (mut x, mut y) = (0.0, 0.0);
         for node in 0..=SIMPSON_INTERVALS {
             let weight = match node {
@@ -68,13 +67,13 @@ impl Curve {
             x += weight * sin;
             y += weight * cos;
         }
-        let scale = CURVE_LENGTH_M * (1.0 + self.stretch) / (3 * SIMPSON_INTERVALS) as f64;
+        let scale = length_m * (1.0 + self.stretch) / (3 * SIMPSON_INTERVALS) as f64;
         let end = EndPose {
             x_m: start.x_m + scale * x,
             y_m: start.y_m + scale * y,
             heading_rad: start.heading_rad + self.turned_rad(1.0),
         };
-        if connector_first { end } else { end.ahead(CONNECTOR_LENGTH_M) }
+        if connector_first { end } else { end.ahead(connector_m) }
     }
 }
 
@@ -100,12 +99,19 @@ pub(crate) fn poses(curves: &[Curve; SEGMENTS]) -> [EndPose; SEGMENTS] {
 
 #[cfg(test)]
 mod tests {
-    use super::{Curve, EndPose, poses};
+    use super::{Curve, CurveParameters, EndPose, poses};
     use crate::constants::{CONNECTOR_LENGTH_M, CURVE_LENGTH_M, SEGMENTS};
-    use crate::contact::Touch;
 
     fn uniform(bend_rad: f64) -> Curve {
-        Curve { slope: 0.0, bulge: 0.0, free_rad: bend_rad, touch: Touch::NONE, stretch: 0.0 }
+        let parameters = CurveParameters {
+            length_m: CURVE_LENGTH_M,
+            connector_m: CONNECTOR_LENGTH_M,
+            slope: 0.0,
+            bulge: 0.0,
+            rest_bend_rad: 0.0,
+            stretch_at_full_pressure: 0.0,
+        };
+        Curve { free_rad: bend_rad, ..Curve::new(parameters) }
     }
 
     #[test]

@@ -8,12 +8,14 @@ use proprio::output::OutputFile;
 use proprio::progress::Progress;
 use proprio::session::{CameraWriter, SessionWriter};
 use proprio::simulate::Simulation;
-use rig_twin::{Camera, Scenario};
+use rig_twin::{Camera, Motion, Scenario, Setup};
 
-use crate::cli::{ScenarioName, Simulate};
+use crate::cli::{MotionName, ScenarioName, Simulate};
 
 pub fn run(args: &Simulate) -> Result<(), Error> {
-    let mut simulation = Simulation::new(args.scenario.into(), args.seed, args.seconds, args.rate)?;
+    let setup =
+        Setup { arm_seed: args.arm_seed, scenario: args.scenario.into(), motion: args.motion.into(), seed: args.seed };
+    let mut simulation = Simulation::of(&setup, args.seconds, args.rate)?;
     if args.camera.as_ref() == Some(&args.output) {
         return Err(Error::OutputTwice(args.output.clone()));
     }
@@ -47,6 +49,21 @@ pub fn run(args: &Simulate) -> Result<(), Error> {
 /// The error of a file that cannot be written.
 fn to_write(path: &Path) -> impl Fn(io::Error) -> Error {
     move |source| Error::Output { path: path.to_owned(), source }
+}
+
+impl From<MotionName> for Motion {
+    fn from(name: MotionName) -> Self {
+        match name {
+            MotionName::Swings => Self::Swings,
+            MotionName::Slow => Self::Slow,
+            MotionName::Fast => Self::Fast,
+            MotionName::OneModule => Self::OneModule,
+            MotionName::Rests => Self::Rests,
+            MotionName::Lean => Self::Lean,
+            MotionName::BentStart => Self::BentStart,
+            MotionName::MovingStart => Self::MovingStart,
+        }
+    }
 }
 
 impl From<ScenarioName> for Scenario {

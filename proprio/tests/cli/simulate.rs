@@ -125,6 +125,25 @@ fn quaternions_are_of_unit_length_and_have_the_headings() {
     }
 }
 
+#[test]
+fn arm_seed_zero_is_the_reference_arm_and_another_seed_another_arm() {
+    let args = "--scenario 2 --seconds 20 --seed 70";
+    let [zero, one] = [0, 1].map(|arm| simulate(&format!("{args} --arm-seed {arm}")));
+    assert!(zero == simulate(args));
+    assert_ne!(zero.numbers("truth6_y_mm"), one.numbers("truth6_y_mm"));
+}
+
+#[test]
+fn motions_differ_and_swings_are_the_default() {
+    let args = "--scenario 1 --seconds 20 --seed 71";
+    let motions = ["swings", "slow", "fast", "one-module", "bent-start", "moving-start"];
+    let sessions = motions.map(|motion| simulate(&format!("{args} --motion {motion}")));
+    assert!(sessions[0] == simulate(args));
+    for (index, session) in sessions.iter().enumerate() {
+        assert!(!sessions[..index].contains(session), "{}", motions[index]);
+    }
+}
+
 fn refused(name: &str, value: &str) -> String {
     let mut args = vec!["simulate", "--scenario", "1", "--seed", "1", "-o", "session.csv"];
     let option = format!("--{name}={value}");

@@ -1,7 +1,7 @@
 //! The same seed gives the same bits, on every machine and however time is cut.
 
-use crate::recording::{Sample, record};
-use rig_twin::{Program, Rig, Scenario};
+use crate::recording::{Sample, record, record_of};
+use rig_twin::{Motion, Program, Rig, Scenario, Setup};
 
 /// All readings and truths of a session in one number (FNV-1a).
 fn checksum(samples: &[Sample]) -> u64 {
@@ -42,6 +42,20 @@ fn bits_are_those_of_every_platform() {
     let found = [Scenario::Sweep, Scenario::One, Scenario::Two, Scenario::Three]
         .map(|scenario| checksum(&record(scenario, 1, 60)));
     let golden = [0x6000_896a_e7bf_f627, 0x08f5_859b_d9d9_691a, 0xd561_64b8_e133_2c20, 0x4f6c_6b18_cfb0_38f1];
+    assert_eq!(found, golden, "found {found:#018x?}");
+}
+
+#[test]
+fn bits_of_other_arms_and_motions_are_those_of_every_platform() {
+    let found = [Motion::Swings, Motion::OneModule, Motion::Rests, Motion::BentStart, Motion::MovingStart]
+        .map(|motion| checksum(&record_of(&Setup { arm_seed: 1, motion, ..Setup::new(Scenario::Three, 1) }, 60)));
+    let golden = [
+        0xe19d_7c99_d9bd_c699,
+        0xf5b6_9ad9_f19f_bc90,
+        0xb76a_7819_d3a5_d4d8,
+        0x884f_c69c_8db6_aaae,
+        0x95d4_bcda_12e2_064a,
+    ];
     assert_eq!(found, golden, "found {found:#018x?}");
 }
 

@@ -3,8 +3,10 @@
 mod calibration;
 mod camera;
 mod determinism;
+mod family;
 mod kinematics;
 mod motion;
+mod programs;
 mod recording;
 mod robustness;
 mod sensors;

@@ -1,6 +1,6 @@
 //! Sessions recorded at 10 Hz, and the angles in them.
 
-use rig_twin::{BEND_SENSORS, EndPose, Program, Rig, SEGMENTS, Scenario};
+use rig_twin::{BEND_SENSORS, EndPose, Program, Rig, SEGMENTS, Scenario, Setup};
 use std::f64::consts::TAU;
 
 /// What one tick of a session holds.
@@ -12,8 +12,12 @@ pub struct Sample {
 }
 
 pub fn record(scenario: Scenario, seed: u64, seconds: u32) -> Vec<Sample> {
-    let program = Program::new(scenario, seed);
-    let mut rig = Rig::new(scenario, seed);
+    record_of(&Setup::new(scenario, seed), seconds)
+}
+
+/// A session of any setup.
+pub fn record_of(setup: &Setup, seconds: u32) -> Vec<Sample> {
+    let (program, mut rig) = (Program::of(setup), Rig::of(setup));
     let sample = |_| {
         for _ in 0..10 {
             rig.step(0.01, program.duties(rig.time_s()));

@@ -129,3 +129,6 @@ impl<S: Scalar, const N: usize> RestDetector<S, N> {
         self.is_resting().then_some(RestWindow { headings, bend, length_us })
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -37,7 +37,7 @@ struct Freeze<S> {
     reading: Turns,
     since_us: u64,
     theta: S,
-    bend: S,
+    bend: Option<S>,
     is_frozen: bool,
 }
 
@@ -56,6 +56,8 @@ pub struct Expected<S> {
     pub bend: Option<S>,
     /// Motion of the bend sensors during which an IMU must change, rad.
     pub frozen_motion: S,
+    /// Deviation of the next IMU's reading from the same prediction, where it was read.
+    pub above: Option<Turns>,
 }
 
 /// Verdict on one reading.
@@ -76,7 +78,7 @@ pub enum Verdict<S> {
 impl<S: Scalar> HeadingGate<S> {
     /// An IMU that was not read yet.
     pub const fn new(zero: S) -> Self {
-        let freeze = Freeze { reading: Turns::ZERO, since_us: 0, theta: zero, bend: zero, is_frozen: false };
+        let freeze = Freeze { reading: Turns::ZERO, since_us: 0, theta: zero, bend: None, is_frozen: false };
         Self { raw: Turns::ZERO, scaled: Turns::ZERO, accepted_at_us: None, suspect_since_us: None, freeze }
     }
 
@@ -100,14 +102,10 @@ impl<S: Scalar> HeadingGate<S> {
             self.accept(reading, expected.heading + expected.bias, time_us);
             return Verdict::Restarted(Turns::ZERO, ABSENCE_US);
         };
-        if self.is_frozen(reading, expected, time_us) {
-            let bend = expected.bend.unwrap_or(self.freeze.bend);
-            return Verdict::Frozen(self.freeze.theta + bend - self.freeze.bend);
+        if let Some(theta) = self.frozen_theta(reading, expected, time_us) {
+            return Verdict::Frozen(theta);
         }
-        let delta = reading - self.raw;
-        let scaled = self.scaled + delta - delta.scaled_by(scale_error);
-        // Whole turns are those of the prediction.
-        let deviation = Turns::from((scaled - expected.bias - expected.heading).phase());
+        let deviation = self.deviation(reading, scale_error, expected.heading + expected.bias);
         let absence_us = time_us.saturating_sub(accepted_at_us);
         if self.is_far(deviation, expected, absence_us) {
             let since_us = *self.suspect_since_us.get_or_insert(time_us);
@@ -138,19 +136,43 @@ impl<S: Scalar> HeadingGate<S> {
             S::constant(JUMP) + moved
         };
         let limit = if self.suspect_since_us.is_some() { limit.half() } else { limit };
-        magnitude(S::from_phase(deviation.phase())) > limit
+        // Where the next IMU deviates alike, the segment has moved and not the IMU: a push that the bend sensors miss.
+        let is_shared = expected.above.is_some_and(|above| is_within(above - deviation, limit.half()));
+        !is_within(deviation, limit) && !is_shared
     }
 
-    /// Whether the output has not changed by a bit while the bend sensors have moved.
-    fn is_frozen(&mut self, reading: Turns, expected: &Expected<S>, time_us: u64) -> bool {
+    /// Deviation of a reading from a predicted one (heading and bias), whole turns aside.
+    pub fn deviation(&self, reading: Turns, scale_error: i32, predicted: Turns) -> Turns {
+        let delta = reading - self.raw;
+        let scaled = self.scaled + delta - delta.scaled_by(scale_error);
+        Turns::from((scaled - predicted).phase())
+    }
+
+    /// Whether a reading was accepted before, so that a deviation is known.
+    pub fn is_known(&self) -> bool {
+        self.accepted_at_us.is_some()
+    }
+
+    /// θ by the bend sensors where the output has not changed by a bit while they have moved.
+    fn frozen_theta(&mut self, reading: Turns, expected: &Expected<S>, time_us: u64) -> Option<S> {
         let freeze = &mut self.freeze;
-        let Some(bend) = expected.bend.filter(|_| reading == freeze.reading) else {
-            let bend = expected.bend.unwrap_or(freeze.bend);
-            *freeze = Freeze { reading, since_us: time_us, theta: expected.theta, bend, is_frozen: false };
-            return false;
-        };
+        if reading != freeze.reading || freeze.bend.is_none() {
+            let theta = expected.theta + expected.motion;
+            *freeze = Freeze { reading, since_us: time_us, theta, bend: expected.bend, is_frozen: false };
+            return None;
+        }
+        // Without bend sensors it stays what it was.
+        let motion = expected.bend.zip(freeze.bend).map(|(bend, start)| bend - start);
         let is_old = time_us.saturating_sub(freeze.since_us) >= FROZEN_US;
-        freeze.is_frozen |= is_old && magnitude(bend - freeze.bend) > expected.frozen_motion;
-        freeze.is_frozen
+        freeze.is_frozen |= is_old && motion.is_some_and(|motion| magnitude(motion) > expected.frozen_motion);
+        freeze.is_frozen.then(|| motion.map_or(expected.theta, |motion| freeze.theta + motion))
     }
 }
+
+/// Whether an angle is within ±`limit`.
+fn is_within<S: Scalar>(angle: Turns, limit: S) -> bool {
+    magnitude(S::from_phase(angle.phase())) <= limit
+}
+
+#[cfg(test)]
+mod tests;
