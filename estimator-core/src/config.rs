@@ -84,7 +84,6 @@ pub struct BendSensorConfig<S> {
 
 /// V–Orient map of one bend sensor.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[expect(clippy::large_enum_variant, reason = "configurations are constants, never moved")]
 pub enum BendMap<S> {
     /// The paper's quadratic.
     Quadratic(QuadraticMap<S>),

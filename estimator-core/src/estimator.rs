@@ -42,7 +42,6 @@ pub struct Estimator<'t, S, const N: usize, const W: usize> {
 /// Drift correction by what the configuration asks for. The bias filter works in fixed point whatever `S` is, so that every
 /// number type takes the same decisions.
 #[derive(Debug, Clone)]
-#[expect(clippy::large_enum_variant, reason = "made in place, and never moved")]
 enum Drift<const N: usize, const W: usize> {
     MovingAverage(MovingAverage<N, W>),
     BiasFilter(BiasFilter<Q, N>),

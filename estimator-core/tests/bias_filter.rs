@@ -249,7 +249,7 @@ fn a_bend_sensor_that_breaks_away_moves_nothing() {
     let segments = segments();
     let broken = |k: u64, sample: &mut Sample<N>| {
         if k >= 3000 {
-            sample.bend[1][0] = counts(70.0);
+            sample.bend[1][0] = Some(counts(70.0));
         }
     };
     let worst = worst_from(&config(&segments, 10.0), &mut drifting(), 0..6000, 3000, broken);
@@ -322,4 +322,17 @@ fn a_slow_motion_that_the_bend_sensors_show_is_not_taken_for_rest() {
     let mut arm = Arm { amplitude: [40.0; N], period: [1000.0; N], map_error: 0.0, ..Arm::default() };
     let worst = worst_from(&config(&segments, 10.0), &mut arm, 0..10_000, 100, |_, _| {});
     assert!(largest(worst) < 3.0, "{worst:?}");
+}
+
+#[test]
+fn absolute_headings_are_used_from_the_first_reading_on() {
+    let segments = segments();
+    let config = ArmConfig { tare_samples: 0, ..config(&segments, 10.0) };
+    let mut arm = Arm { rest: [15.0, -20.0, 10.0], map_error: 0.0, ..Arm::default() };
+    let worst = worst_from(&config, &mut arm, 0..600, 0, |k, sample| {
+        if k < 20 {
+            sample.imu[1] = None;
+        }
+    });
+    assert!(largest(worst) < 1.0, "{worst:?}");
 }

@@ -66,7 +66,7 @@ fn expected(jacobian: impl Fn(usize, usize) -> Vector2<f64>) -> Vec<[f64; 3]> {
     let of_end = |i: usize| {
         let jacobian = Matrix2x6::from_columns(&core::array::from_fn::<_, 6, _>(|j| jacobian(i, j)));
         let points = Matrix2::identity() * ((i + 1) as f64 * POINT * POINT);
-        deviations(&jacobian * heading_covariance() * jacobian.transpose() + points)
+        deviations(jacobian * heading_covariance() * jacobian.transpose() + points)
     };
     (0..6).map(of_end).collect()
 }

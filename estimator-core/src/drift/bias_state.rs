@@ -69,6 +69,12 @@ fn eighth<S: Scalar>(value: S) -> S {
     value.half().half().half()
 }
 
+impl<S: Scalar, const N: usize> Default for BiasState<S, N> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
 impl<S: Scalar, const N: usize> BiasState<S, N> {
     /// Nothing known: zero states without variance.
     pub fn new() -> Self {

@@ -27,7 +27,10 @@ pub struct HeadingGate<S> {
     raw: Turns,
     scaled: Turns,
     accepted_at_us: Option<u64>,
-    suspect_since_us: Option<u64>,
+    /// First and last reading that was far off, since the last accepted one.
+    suspect_us: Option<[u64; 2]>,
+    /// Whether the first reading has its zero already.
+    is_absolute: bool,
     freeze: Freeze<S>,
 }
 
@@ -79,12 +82,24 @@ impl<S: Scalar> HeadingGate<S> {
     /// An IMU that was not read yet.
     pub const fn new(zero: S) -> Self {
         let freeze = Freeze { reading: Turns::ZERO, since_us: 0, theta: zero, bend: None, is_frozen: false };
-        Self { raw: Turns::ZERO, scaled: Turns::ZERO, accepted_at_us: None, suspect_since_us: None, freeze }
+        Self {
+            raw: Turns::ZERO,
+            scaled: Turns::ZERO,
+            accepted_at_us: None,
+            suspect_us: None,
+            is_absolute: false,
+            freeze,
+        }
     }
 
     /// Sets the zero at the end of a tare: the newest reading, unwrapped, and the heading in {W} that it stands for.
     pub fn tare(&mut self, raw: Turns, heading: Turns, time_us: u64) {
         *self = Self { raw, scaled: heading, accepted_at_us: Some(time_us), ..Self::new(S::zero()) };
+    }
+
+    /// Waits for the first reading of an IMU whose headings are absolute.
+    pub fn expect_absolute(&mut self) {
+        *self = Self { is_absolute: true, ..Self::new(S::zero()) };
     }
 
     /// Takes a reading, unwrapped, or `None` where the IMU was not read. `scale_error` is that of the gyroscope's
@@ -98,6 +113,11 @@ impl<S: Scalar> HeadingGate<S> {
     ) -> Verdict<S> {
         let Some(reading) = reading else { return Verdict::Absent };
         let Some(accepted_at_us) = self.accepted_at_us else {
+            if self.is_absolute {
+                let deviation = Turns::from((reading - expected.bias - expected.heading).phase());
+                self.accept(reading, expected.heading + expected.bias + deviation, time_us);
+                return Verdict::Accepted(expected.heading + deviation);
+            }
             // First read after the tare: its zero is unknown.
             self.accept(reading, expected.heading + expected.bias, time_us);
             return Verdict::Restarted(Turns::ZERO, ABSENCE_US);
@@ -108,8 +128,7 @@ impl<S: Scalar> HeadingGate<S> {
         let deviation = self.deviation(reading, scale_error, expected.heading + expected.bias);
         let absence_us = time_us.saturating_sub(accepted_at_us);
         if self.is_far(deviation, expected, absence_us) {
-            let since_us = *self.suspect_since_us.get_or_insert(time_us);
-            if time_us.saturating_sub(since_us) < CONFIRMATION_US {
+            if time_us.saturating_sub(self.suspect_since(time_us)) < CONFIRMATION_US {
                 return Verdict::Absent;
             }
             self.accept(reading, expected.heading + expected.bias + deviation, time_us);
@@ -122,7 +141,15 @@ impl<S: Scalar> HeadingGate<S> {
 
     fn accept(&mut self, reading: Turns, scaled: Turns, time_us: u64) {
         (self.raw, self.scaled) = (reading, scaled);
-        (self.accepted_at_us, self.suspect_since_us) = (Some(time_us), None);
+        (self.accepted_at_us, self.suspect_us) = (Some(time_us), None);
+    }
+
+    /// Begin of the far readings that go up to this one; those before an absence do not count.
+    fn suspect_since(&mut self, time_us: u64) -> u64 {
+        let recent = self.suspect_us.filter(|[_, last_us]| time_us.saturating_sub(*last_us) <= ABSENCE_US);
+        let since_us = recent.map_or(time_us, |[since_us, _]| since_us);
+        self.suspect_us = Some([since_us, time_us]);
+        since_us
     }
 
     /// Whether a deviation is more than the arm can have moved.
@@ -135,7 +162,7 @@ impl<S: Scalar> HeadingGate<S> {
         } else {
             S::constant(JUMP) + moved
         };
-        let limit = if self.suspect_since_us.is_some() { limit.half() } else { limit };
+        let limit = if self.suspect_us.is_some() { limit.half() } else { limit };
         // Where the next IMU deviates alike, the segment has moved and not the IMU: a push that the bend sensors miss.
         let is_shared = expected.above.is_some_and(|above| is_within(above - deviation, limit.half()));
         !is_within(deviation, limit) && !is_shared

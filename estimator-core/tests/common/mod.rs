@@ -82,7 +82,7 @@ impl Arm {
         for (i, theta) in self.theta(seconds).into_iter().enumerate() {
             heading += theta;
             let bend = theta + self.bend_offset[i] + self.map_error * (theta / 10.0 + i as f64).sin();
-            sample.bend[i] = [counts(bend + 0.5), counts(bend - 0.5)];
+            sample.bend[i] = [bend + 0.5, bend - 0.5].map(|degrees| Some(counts(degrees)));
             let read = heading + self.drift[i] * seconds + self.imu_noise * self.noise();
             sample.imu[i] = Some(ImuReading::Heading(Phase::from_degrees((read * 16.0).round() / 16.0)));
         }
@@ -91,8 +91,8 @@ impl Arm {
 }
 
 /// Counts of a sensor of 1 rad/V that reads 1.5 V when straight.
-pub fn counts(degrees: f64) -> Option<u16> {
-    Some(((degrees.to_radians() + 1.5) / 3.3 * 4095.0).round() as u16)
+pub fn counts(degrees: f64) -> u16 {
+    ((degrees.to_radians() + 1.5) / 3.3 * 4095.0).round() as u16
 }
 
 /// Its V–Orient map.

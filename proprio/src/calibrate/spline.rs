@@ -44,7 +44,7 @@ struct Sums {
 /// Fits angles (rad) over voltage (V) at this sample rate; `None` where the voltage hardly changes.
 pub(super) fn fit(observations: &[Observation], rate_hz: f64) -> Option<FittedCurve> {
     let volts @ [lo, hi] = voltage_range(observations)?;
-    let mut folds = [Sums::ZERO; FOLDS];
+    let mut folds = vec![Sums::ZERO; FOLDS];
     for observation in observations {
         folds[observation.fold].add(observation, volts);
     }

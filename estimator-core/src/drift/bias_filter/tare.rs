@@ -152,11 +152,15 @@ impl<F: Scalar, const N: usize> BiasFilter<F, N> {
             track.offset_prior = F::from_q(filter.offset) + excess;
             track.last_bend = track.bend.map(|bend| bend.theta);
             track.motion = F::zero();
-            if let Some(in_world) = heading.in_world() {
+            let is_tared = config.tare_samples > 0;
+            if let Some(in_world) = heading.in_world().filter(|_| is_tared || heading.is_read()) {
                 track.gate.tare(heading.unwrapped(), in_world, sensed.time_us);
                 (track.heading, track.heading_read_at_us) = (in_world, sensed.time_us);
+            } else if is_tared {
+                track.heading = segment.reference;
             } else {
-                track.heading = if config.tare_samples > 0 { segment.reference } else { below };
+                track.gate.expect_absolute();
+                track.heading = below + track.last_bend.unwrap_or_else(F::zero).to_turns();
             }
             below = track.heading;
         }
@@ -182,8 +186,8 @@ impl<F: Scalar, const N: usize> BiasFilter<F, N> {
             track.heading = track.heading - bias;
             track.theta = F::from_phase((track.heading - below).phase());
             below = track.heading;
-            track.updated_theta = track.theta;
-            track.updated_bend = track.last_bend.unwrap_or_else(F::zero);
+            track.counted_theta = track.theta;
+            track.counted_bend = track.last_bend.unwrap_or_else(F::zero);
             track.updated_at_us = time_us;
         }
     }

@@ -12,6 +12,8 @@ use crate::numeric::variance::{degrees, is_beyond, larger, magnitude, scaled_squ
 /// Travel of the IMUs and of the bend sensors since the last update, below which there is no new information.
 const IMU_TRAVEL: Constant = degrees(1.0);
 const BEND_TRAVEL: Constant = degrees(0.5);
+/// Travel is counted up to this, rad.
+const LONGEST_TRAVEL: Constant = Constant::new(16.0);
 /// Factor on the measurement noise: errors that last longer than ℓ and τ.
 const LONG_ERRORS: i32 = 2;
 /// Factor on the measurement noise of one sensor whose twin is missing, and the largest noise that it multiplies.
@@ -96,7 +98,7 @@ impl<F: Scalar, const N: usize> BiasFilter<F, N> {
             let r = F::from_int(LONG_ERRORS) * ratio * sigma;
             let r = if bend.is_single { F::from_int(SINGLE) * smaller(r, F::constant(LARGEST_SINGLE)) } else { r };
             self.state.update(&innovation, nu, r);
-            (track.updated_theta, track.updated_bend, track.updated_at_us) = (track.theta, bend.theta, time_us);
+            (track.travelled, track.updated_at_us) = (F::zero(), time_us);
         }
     }
 
@@ -144,13 +146,15 @@ impl<F: Scalar> SegmentTrack<F> {
 
     /// Factor on the measurement noise of an update after a short travel or time; `None` where so little has moved that an
     /// update is worth nothing. It then waits: to cut the factor off instead would count the same error several times.
-    fn noise_ratio(&self, error: &BendErrorConfig, bend: F, time_us: u64) -> Option<F> {
-        let travel = magnitude(self.theta - self.updated_theta);
-        let bend_travel = magnitude(bend - self.updated_bend);
+    fn noise_ratio(&mut self, error: &BendErrorConfig, bend: F, time_us: u64) -> Option<F> {
+        let travel = magnitude(self.theta - self.counted_theta);
+        let bend_travel = magnitude(bend - self.counted_bend);
         if travel < F::constant(IMU_TRAVEL) || bend_travel < F::constant(BEND_TRAVEL) {
             return None;
         }
-        let by_travel = bounded_ratio(F::from_q(error.travel), travel);
+        (self.counted_theta, self.counted_bend) = (self.theta, bend);
+        self.travelled = smaller(self.travelled + travel, F::constant(LONGEST_TRAVEL));
+        let by_travel = bounded_ratio(F::from_q(error.travel), self.travelled);
         let by_time = bounded_ratio(F::from_q(error.correlation_time).half(), since(self.updated_at_us, time_us));
         let ratio = larger(larger(by_travel, by_time), F::one());
         (ratio < F::from_int(MAX_RATIO)).then_some(ratio)

@@ -17,6 +17,7 @@ fn still() -> Expected<f64> {
         theta: 0.0,
         bend: Some(0.0),
         frozen_motion: 8.0_f64.to_radians(),
+        above: None,
     }
 }
 
@@ -77,6 +78,30 @@ fn two_wild_readings_with_a_good_one_between_them_are_not_a_new_zero() {
         let verdict = gate.take(Some(degrees(heading)), 0, &still(), SECOND + time_us);
         assert!(matches!(verdict, Verdict::Absent | Verdict::Accepted(_)), "{verdict:?}");
     }
+}
+
+#[test]
+fn two_wild_readings_seconds_apart_are_not_a_new_zero() {
+    let mut gate = tared();
+    for time_us in [2 * SECOND, 7 * SECOND] {
+        assert_eq!(gate.take(Some(degrees(30.0)), 0, &still(), time_us), Verdict::Absent);
+        assert_eq!(gate.take(None, 0, &still(), time_us + TICK), Verdict::Absent);
+    }
+}
+
+#[test]
+fn a_jump_is_confirmed_although_every_third_reading_is_missing() {
+    let mut gate = tared();
+    let at = |k: u64| gate.take((!k.is_multiple_of(3)).then(|| degrees(30.0)), 0, &still(), SECOND + k * TICK);
+    assert!((0..50).map(at).any(|verdict| matches!(verdict, Verdict::Restarted(..))));
+}
+
+#[test]
+fn an_absolute_heading_that_is_read_late_keeps_its_zero() {
+    let mut gate = HeadingGate::new(0.0);
+    gate.expect_absolute();
+    let verdict = gate.take(Some(degrees(77.0)), 0, &still(), 5 * SECOND);
+    assert!((heading_deg(verdict) - 77.0).abs() < 1e-6);
 }
 
 #[test]

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use calibration_tables::{ArmFile, DriftKind, TuningKeys};
 use host_tests::contact::{Found, Run as ContactRun};
-use proprio::calibrate::Correct;
+use proprio::calibrate::HysteresisMode;
 use proprio::honesty::HonestyFigures;
 use proprio::score::{Figures, Score};
 use rig_twin::Scenario;
@@ -28,10 +28,10 @@ const DAY_S: f64 = 86_400.0;
 pub const ANCHOR: usize = 0;
 pub const OBSERVER: usize = 1;
 pub const HYSTERESIS: usize = 2;
-const TABLES: [(&str, DriftKind, Correct); 3] = [
-    ("anchor", DriftKind::Anchor, Correct::Auto),
-    ("observer", DriftKind::Observer, Correct::Auto),
-    ("hysteresis", DriftKind::Observer, Correct::Always),
+const TABLES: [(&str, DriftKind, HysteresisMode); 3] = [
+    ("anchor", DriftKind::Anchor, HysteresisMode::Auto),
+    ("observer", DriftKind::Observer, HysteresisMode::Auto),
+    ("hysteresis", DriftKind::Observer, HysteresisMode::Always),
 ];
 
 /// All figures of the page. Of several methods, RMSE of the tip in mm.

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use calibration_tables::{ArmFile, DriftKeys, DriftKind, TuningKeys};
 use estimator_core::Q;
-use proprio::calibrate::{Calibration, Correct, calibrate};
+use proprio::calibrate::{Calibration, CalibrationOptions, HysteresisMode, MapMode, calibrate};
 use proprio::output::OutputFile;
 use proprio::replay::{NamedTable, replay};
 use proprio::score::Score;
@@ -35,12 +35,13 @@ pub fn calibrated(
     arm: &ArmFile,
     sweep: &Path,
     drift: DriftKind,
-    hysteresis: Correct,
+    hysteresis: HysteresisMode,
     table: &Path,
 ) -> Result<f64, Box<dyn Error>> {
     let arm = ArmFile { drift: Some(DriftKeys { kind: drift, ..DriftKeys::observer() }), ..arm.clone() };
     let arm = NamedTable { file: arm, path: table };
-    let Calibration { table: file, sensors, .. } = calibrate(sweep, &arm, hysteresis)?;
+    let options = CalibrationOptions { maps: MapMode::Auto, hysteresis };
+    let Calibration { table: file, sensors, .. } = calibrate(&[sweep.to_owned()], &arm, options)?;
     fs::write(table, file.to_toml())?;
     Ok(sensors.iter().map(|sensor| sensor.rmse_deg).sum::<f64>() / sensors.len() as f64)
 }
