@@ -3,7 +3,8 @@
 use std::f64::consts::{PI, TAU};
 
 use estimator_core::{
-    AnchorConfig, BendMap, BendSensorConfig, FusedOps, KalmanParams, OffsetAt, Phase, QuadraticMap, Sample, SegmentConfig, Turns,
+    AnchorConfig, BendMap, BendSensorConfig, FusedOps, KalmanParams, OffsetAt, Phase, QuadraticMap, Sample,
+    SegmentConfig, Turns,
 };
 use host_tests::literal;
 

@@ -84,10 +84,7 @@ const CURVE_SENSOR: BendSensorConfig<Q> = {
     let (first, last) = (CENTER - (1 << RANGE), CENTER + (1 << RANGE) - 1);
     let range = [first, last];
     let curve = CurveMap { first, shift: RANGE - 5, knots, readable: range, calibrated: range };
-    BendSensorConfig {
-        map: BendMap::Curve(curve),
-        memory: Some(MemoryConfig { lags: [LAG; 2], plays: [PLAY; 2] }),
-    }
+    BendSensorConfig { map: BendMap::Curve(curve), memory: Some(MemoryConfig { lags: [LAG; 2], plays: [PLAY; 2] }) }
 };
 
 /// Segments with all that a table can have beside the paper's method.
