@@ -38,7 +38,7 @@ pub fn calibrated(
     hysteresis: HysteresisMode,
     table: &Path,
 ) -> Result<f64, Box<dyn Error>> {
-    let arm = ArmFile { drift: Some(DriftKeys { kind: drift, ..DriftKeys::observer() }), ..arm.clone() };
+    let arm = ArmFile { drift: Some(DriftKeys { kind: drift, ..DriftKeys::kalman() }), ..arm.clone() };
     let arm = NamedTable { file: arm, path: table };
     let options = CalibrationOptions { maps: MapMode::Auto, hysteresis };
     let Calibration { table: file, sensors, .. } = calibrate(&[sweep.to_owned()], &arm, options)?;
