@@ -8,7 +8,7 @@ use clap::builder::Styles;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 pub use link::{Convert, Drive, Flash, LinkArgs, Monitor, Ports, Record, Recover, Status};
-use proprio::calibrate::Correct;
+use proprio::calibrate::{HysteresisMode, MapMode};
 use proprio::session::ImuColumns;
 
 /// Colours of help and errors; off where stderr is no terminal or NO_COLOR is set.
@@ -84,9 +84,12 @@ pub struct Calibrate {
     /// Table to write
     #[arg(short, long, value_name = "TABLE.toml")]
     pub output: PathBuf,
-    /// Segments whose bend sensors are corrected for hysteresis
-    #[arg(long, value_enum, default_value_t = Correct::Auto)]
-    pub hysteresis: Correct,
+    /// V–Orient maps of the bend sensors
+    #[arg(long, value_enum, default_value_t = MapMode::Auto)]
+    pub map: MapMode,
+    /// Compensation of the bend sensors' hysteresis and creep
+    #[arg(long, value_enum, default_value_t = HysteresisMode::Auto)]
+    pub hysteresis: HysteresisMode,
 }
 
 #[derive(Debug, Args)]

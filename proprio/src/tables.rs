@@ -6,7 +6,7 @@ use calibration_tables::{DriftTuningKeys, RmseKeys, Stopped, TuningKeys};
 use comfy_table::presets::NOTHING;
 use comfy_table::{CellAlignment, Table};
 use estimator_core::Method;
-use proprio::calibrate::SensorReport;
+use proprio::calibrate::{MapKind, SegmentReport, SensorReport};
 use proprio::figures::{AllFigures, ByMethod};
 use proprio::link::Port;
 use proprio::score::Figures;
@@ -27,6 +27,33 @@ pub fn sensors(sensors: &[SensorReport]) -> String {
     }
     let mean = sensors.iter().map(|sensor| sensor.rmse_deg).sum::<f64>() / sensors.len() as f64;
     format!("{}\nmean RMSE of the V–Orient maps: {mean:.2} deg\n", text(&mut table))
+}
+
+/// Expected errors of the segments' bend angles.
+pub fn segments(segments: &[SegmentReport]) -> String {
+    let mut table = table(&["segment", "expected error deg", "maps", "memory", "IMU scale"]);
+    for segment in segments {
+        let kind = |(kind, _): &(MapKind, bool)| match kind {
+            MapKind::Quadratic => "quadratic",
+            MapKind::Curve => "curve",
+        };
+        let memory = |(_, memory): &(MapKind, bool)| if *memory { "yes" } else { "no" };
+        table.add_row([
+            segment.segment.to_string(),
+            format!("{:.2}", segment.held_back_rmse_deg),
+            joined(segment.maps.iter().map(kind)),
+            joined(segment.maps.iter().map(memory)),
+            segment.imu_scale.map_or_else(|| "-".to_owned(), |scale| format!("{scale:.4}")),
+        ]);
+    }
+    format!("\n{}\n", text(&mut table))
+}
+
+/// A word for both sensors where they agree.
+fn joined<'w>(words: impl Iterator<Item = &'w str>) -> String {
+    let mut words: Vec<&str> = words.collect();
+    words.dedup();
+    words.join(", ")
 }
 
 /// What a tuning has brought, of which each iteration took `iteration_time`.

@@ -1,4 +1,4 @@
-//! Hysteresis: whether plays on top of the quadratics bring the bend sensors nearer to the truth.
+//! Hysteresis compensation of a segment by plays on top of its quadratics, for tables that use the moving-average anchor.
 //!
 //! The weights of plays of fixed widths, and a scale of the maps beside them, come by least squares from the first four
 //! fifths of the sweep. They are kept where they lower the error on the last fifth enough for it to be more than luck.
@@ -31,26 +31,26 @@ struct Rows {
     terms: Vec<Vector4<f64>>,
 }
 
-/// Which segments get a correction.
+/// Compensation of hysteresis and creep.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-pub enum Correct {
-    /// Those that gain by it on held-back data
+pub enum HysteresisMode {
+    /// Where it lowers the error on held-back data
     Auto,
-    /// All
+    /// Everywhere
     Always,
-    /// None
+    /// Nowhere
     Never,
 }
 
 /// Sets `hysteresis` of the segments that are to have it, and scales their maps; clears it from the others.
-pub(super) fn set(sweep: &Sweep, segments: &mut [SegmentKeys], which: Correct) {
+pub(super) fn set(sweep: &Sweep, segments: &mut [SegmentKeys], which: HysteresisMode) {
     for (i, segment) in segments.iter_mut().enumerate() {
         segment.hysteresis.clear();
         let rows = Rows::new(sweep, i, segment.bend.as_deref().unwrap_or_default());
         let is_wanted = match which {
-            Correct::Auto => rows.gain(),
-            Correct::Always => true,
-            Correct::Never => false,
+            HysteresisMode::Auto => rows.gain(),
+            HysteresisMode::Always => true,
+            HysteresisMode::Never => false,
         };
         if let Some(weights) = is_wanted.then(|| rows.fit(rows.error.len())).flatten() {
             apply(&rows, weights, segment);

@@ -3,8 +3,7 @@
 //! R_bend is the mean square of the bend sensors' error, of each segment by itself. R_imu is R_bend times a ratio of two
 //! mean squares, for which the IMUs' error is the one that they would have if perfect bend sensors anchored them. What they
 //! really have on top of it behind the anchor is the slow part of the bend sensors' error, which the anchor passes on; it is in
-//! both measurements, no filter can remove it, and it must not count against one of them. Behind the observer it is the
-//! drift that the observer has not learned yet, which a session of some minutes has too much of.
+//! both measurements, no filter can remove it, and it must not count against one of them.
 //!
 //! For KF_coord these are the errors of a segment's end in its own frame. For KF_orient they are those of the headings
 //! that the bend angles add up to, the same for the whole arm: along the chain the errors of bend sensors grow, where
@@ -14,19 +13,16 @@ use std::path::Path;
 
 use calibration_tables::{MAX_WINDOW, NoiseKeys};
 use estimator_core::{
-    Angle, Decimated, Decimator, MovingAverageAnchor, Pcc, SegmentConfig, SegmentEstimate, Turns, forward_kinematics,
+    Angle, Decimated, Decimator, MovingAverageAnchor, Pcc, SegmentConfig, SegmentEstimate, Turns,
 };
 use nalgebra::Vector2;
 
 use crate::error::Error;
 use crate::replay::{NamedTable, replay};
-use crate::session::Row;
 
-/// Bounds of R_imu : R_bend for KF_orient and, behind anchor and observer, for KF_coord: the session is only a sample, and
-/// slower than what follows.
+/// Bounds of R_imu : R_bend for KF_orient and for KF_coord: the session is only a sample, and slower than what follows.
 const ORIENT_RATIO: [f64; 2] = [0.01, 1.0];
-const ANCHORED_COORD_RATIO: [f64; 2] = [0.1, 1.0];
-const OBSERVED_COORD_RATIO: [f64; 2] = [0.01, 1.0];
+const COORD_RATIO: [f64; 2] = [0.1, 1.0];
 
 /// Mean squares of errors.
 #[derive(Debug, Clone, Copy, Default)]
@@ -55,7 +51,7 @@ impl Errors {
 }
 
 /// What is gathered of one segment while the session is replayed.
-struct Gatherer<'t> {
+struct ResidualAccumulator<'t> {
     segment: &'t SegmentConfig<f64>,
     /// Anchors to the truth, as perfect bend sensors would be.
     anchor: MovingAverageAnchor<{ MAX_WINDOW as usize }>,
@@ -63,35 +59,30 @@ struct Gatherer<'t> {
     coord: Errors,
 }
 
-/// Sets `orient` and `coord` of every segment that has bend sensors. Gives the root mean square distance, m, of the true
-/// tip from the chain of the true bend angles.
-pub(super) fn set_filters(session: &Path, table: &mut NamedTable, rate_hz: f64) -> Result<f64, Error> {
+/// Sets `orient` and `coord` of every segment that has bend sensors.
+pub(super) fn set_filters(session: &Path, table: &mut NamedTable, rate_hz: f64) -> Result<(), Error> {
     let baked = table.bake::<f64>(rate_hz)?;
     let baked = baked.config();
-    let coord_ratio = if baked.bias_filter.is_some() { OBSERVED_COORD_RATIO } else { ANCHORED_COORD_RATIO };
-    let gatherer = |segment| Gatherer {
+    let accumulator = |segment| ResidualAccumulator {
         segment,
         anchor: MovingAverageAnchor::new(),
         orient: Errors::default(),
         coord: Errors::default(),
     };
-    let mut gatherers: Vec<Gatherer> = baked.segments.iter().map(gatherer).collect();
+    let mut accumulators: Vec<ResidualAccumulator> = baked.segments.iter().map(accumulator).collect();
     let mut headings = Errors::default();
-    let (mut pace, mut misfit, mut tips) = (Decimator::new(), 0.0, 0.0);
+    let mut decimator = Decimator::new();
     replay::<f64>(session, table, |row, outcome| {
-        if let Some(distance) = truth_misfit(row, baked.segments) {
-            (misfit, tips) = (misfit + distance * distance, tips + 1.0);
-        }
         if row.starts {
-            pace = Decimator::new();
-            for gatherer in &mut gatherers {
-                gatherer.anchor = MovingAverageAnchor::new();
+            decimator = Decimator::new();
+            for accumulator in &mut accumulators {
+                accumulator.anchor = MovingAverageAnchor::new();
             }
         }
-        let slot = pace.tick(&baked.anchor);
+        let slot = decimator.tick(&baked.anchor);
         let mut sums = Some([0.0, 0.0]);
-        for (i, (gatherer, estimate)) in gatherers.iter_mut().zip(&outcome.estimate.segments).enumerate() {
-            let errors = gatherer.add_row(row.true_theta(i), estimate, slot);
+        for (i, (accumulator, estimate)) in accumulators.iter_mut().zip(&outcome.estimate.segments).enumerate() {
+            let errors = accumulator.add_row(row.true_theta(i), estimate, slot);
             sums = sums.zip(errors).map(|(sums, errors)| [sums[0] + errors[0], sums[1] + errors[1]]);
             if let Some([imu, bend]) = sums {
                 headings.add(imu * imu, bend * bend, 1.0);
@@ -99,23 +90,14 @@ pub(super) fn set_filters(session: &Path, table: &mut NamedTable, rate_hz: f64) 
         }
         Ok(())
     })?;
-    for (segment, gatherer) in table.file.segments.iter_mut().zip(&gatherers) {
-        segment.orient = gatherer.orient.noise(headings.ratio(ORIENT_RATIO));
-        segment.coord = gatherer.coord.noise(gatherer.coord.ratio(coord_ratio));
+    for (segment, accumulator) in table.file.segments.iter_mut().zip(&accumulators) {
+        segment.orient = accumulator.orient.noise(headings.ratio(ORIENT_RATIO));
+        segment.coord = accumulator.coord.noise(accumulator.coord.ratio(COORD_RATIO));
     }
-    Ok((misfit / f64::max(tips, 1.0)).sqrt())
+    Ok(())
 }
 
-/// Distance of the true tip from the chain of the true bend angles, m.
-pub(crate) fn truth_misfit(row: &Row, segments: &[SegmentConfig<f64>]) -> Option<f64> {
-    let thetas = segments.iter().enumerate().map(|(i, segment)| (row.true_theta(i), segment));
-    let links = thetas.map(|(theta, segment)| theta.map(|theta| Pcc::new(segment).link(Angle::from(theta))));
-    let tip = forward_kinematics(links).last()?.end?;
-    let truth = row.truth.get(segments.len() - 1)?.as_ref()?;
-    Some((tip - Vector2::new(truth.x_m, truth.y_m)).norm())
-}
-
-impl Gatherer<'_> {
+impl ResidualAccumulator<'_> {
     /// Adds one row; gives the errors of θ by the IMUs and by the bend sensors, rad, where both are known.
     fn add_row(&mut self, truth: Option<f64>, estimate: &SegmentEstimate<f64>, slot: Decimated) -> Option<[f64; 2]> {
         let imu = estimate.imu_o.map(Angle::rad);

@@ -2,9 +2,10 @@
 
 use calibration_tables::BendKeys;
 
-use super::SensorReport;
+use super::{CalibrationOptions, SensorReport};
 use super::error::{CalibrationError, Warning};
 use super::fit::{Fit, quadratic, volts};
+use super::maps::{self, FittedMap};
 use super::sweep::{LEAST_ROWS, SensorColumn, Sweep, range};
 
 /// A sensor whose readings stay within this range is dead: ten times the noise of a good one.
@@ -29,19 +30,30 @@ const GOOD_ENOUGH: f64 = 0.1;
 pub(super) struct Sensor {
     pub segment: usize,
     pub map: BendKeys,
+    pub fitted: FittedMap,
     pub report: SensorReport,
     place: usize,
 }
 
 /// Fits all sensors of the sweep.
-pub(super) fn fit(sweep: &Sweep, warnings: &mut Vec<Warning>) -> Result<Vec<Sensor>, CalibrationError> {
-    let sensors = sweep.sensors.iter().map(|column| fit_one(sweep, column, warnings)).collect::<Result<Vec<_>, _>>()?;
+pub(super) fn fit(
+    sweep: &Sweep,
+    options: CalibrationOptions,
+    warnings: &mut Vec<Warning>,
+) -> Result<Vec<Sensor>, CalibrationError> {
+    let columns = sweep.sensors.iter();
+    let sensors = columns.map(|column| fit_one(sweep, column, options, warnings)).collect::<Result<Vec<_>, _>>()?;
     let names = sensors.iter().filter(|sensor| runs_against_its_like(sensor, &sensors));
     warnings.extend(names.map(|sensor| Warning::Inverted { name: sensor.report.name.clone() }));
     Ok(sensors)
 }
 
-fn fit_one(sweep: &Sweep, column: &SensorColumn, warnings: &mut Vec<Warning>) -> Result<Sensor, CalibrationError> {
+fn fit_one(
+    sweep: &Sweep,
+    column: &SensorColumn,
+    options: CalibrationOptions,
+    warnings: &mut Vec<Warning>,
+) -> Result<Sensor, CalibrationError> {
     let name = column.name.clone();
     let pairs = pairs(column, &sweep.theta[column.segment]);
     if pairs.len() < LEAST_ROWS {
@@ -62,7 +74,9 @@ fn fit_one(sweep: &Sweep, column: &SensorColumn, warnings: &mut Vec<Warning>) ->
         volts: fit.map.volts.unwrap_or_default(),
         range_deg: range(pairs.iter().map(|(_, theta)| *theta)).map(f64::to_degrees),
     };
-    Ok(Sensor { segment: column.segment, map: fit.map, report, place: column.place })
+    let fitted = maps::fit(sweep, column, &fit.map, options);
+    let map = BendKeys { curve: fitted.curve.clone(), memory: fitted.memory.clone(), ..fit.map };
+    Ok(Sensor { segment: column.segment, map, fitted, report, place: column.place })
 }
 
 /// Readings and true angles of the rows that have both.

@@ -3,8 +3,9 @@
 use std::path::Path;
 
 use calibration_tables::{ArmFile, MAX_SEGMENTS};
-use estimator_core::{HeadingTracker, ImuReading, Phase, SENSORS_PER_SEGMENT, Turns};
+use estimator_core::{HeadingTracker, ImuReading, Phase, SENSORS_PER_SEGMENT, SegmentConfig, Turns};
 
+use super::curvature::{constant_curvature_error, end_error, geometry};
 use super::error::{CalibrationError, Warning};
 use crate::error::Error;
 use crate::progress::Progress;
@@ -14,8 +15,8 @@ use crate::session::{Needs, Problem, Row, SENSOR_NAMES, SessionError, SessionRea
 const LEAST_RANGE_DEG: f64 = 10.0;
 /// Bending that a good sweep goes beyond, degrees.
 const GOOD_RANGE_DEG: f64 = 45.0;
-/// Squared correlation from which on two segments bend alike: a sensor's error is a few percent of its signal.
-const ALIKE: f64 = 0.98;
+/// Squared correlation from which on two segments are coupled: a sensor's error is a few percent of its signal.
+const COUPLED: f64 = 0.98;
 /// Rows that a fit needs at least.
 pub(super) const LEAST_ROWS: usize = 50;
 
@@ -33,6 +34,8 @@ pub(super) struct SensorColumn {
 /// Readings and truth of a session; all columns have one value a row.
 pub(super) struct Sweep {
     pub rate_hz: f64,
+    /// Time of each row, µs, from its own session's zero.
+    pub time_us: Vec<u64>,
     pub ends_with_line: bool,
     /// In which run of the estimator each row is: where a new one starts, headings have a new zero and plays are at rest.
     pub runs: Vec<u32>,
@@ -43,10 +46,22 @@ pub(super) struct Sweep {
     /// Unwrapped heading of each IMU, rad; its zero is the run's own.
     pub imu: Vec<Vec<Option<f64>>>,
     pub sensors: Vec<SensorColumn>,
+    /// Error of constant curvature at each segment's end in its own frame, of both coordinates.
+    pub ends: Vec<MeanSquare>,
+    /// Distance of the tip from the chain of the true bend angles.
+    pub tip: MeanSquare,
+    segments: Vec<SegmentConfig<f64>>,
+}
+
+/// Mean square of lengths.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct MeanSquare {
+    sum: f64,
+    count: f64,
 }
 
 /// Two segments that bend alike.
-pub(super) struct Like {
+pub(super) struct Coupling {
     /// Number of the earlier, from 1.
     pub first: usize,
     /// Number of the later.
@@ -72,12 +87,16 @@ impl Sweep {
         let refuse = |source| Error::Calibration { path: session.to_owned(), source };
         let mut sweep = Self {
             rate_hz: reader.rate_hz(arm.rate_hz),
+            time_us: Vec::new(),
             ends_with_line: reader.ends_with_line(),
             runs: Vec::new(),
             theta: vec![Vec::new(); n],
             heading: vec![Vec::new(); n],
             imu: vec![Vec::new(); n],
             sensors: sensor_columns(&reader).map_err(refuse)?,
+            ends: vec![MeanSquare::default(); n],
+            tip: MeanSquare::default(),
+            segments: arm.segments.iter().map(geometry).collect(),
         };
         let unread = [HeadingTracker::new(0, Turns::ZERO); MAX_SEGMENTS];
         let mut unwrap = Unwrap { imu: unread, truth: unread };
@@ -91,6 +110,8 @@ impl Sweep {
 
     fn push(&mut self, row: &Row, unwrap: &mut Unwrap) {
         self.runs.push(self.runs.last().copied().unwrap_or_default() + u32::from(row.starts));
+        self.time_us.push(row.sample.time_us);
+        self.push_shape(row);
         for i in 0..self.theta.len() {
             self.theta[i].push(row.true_theta(i));
             let truth = row.truth[i].and_then(|pose| pose.heading_rad).map(Phase::from_rad);
@@ -100,6 +121,15 @@ impl Sweep {
         }
         for sensor in &mut self.sensors {
             sensor.counts.push(row.sample.bend[sensor.segment][sensor.place]);
+        }
+    }
+
+    /// Compares the true ends with constant curvature.
+    fn push_shape(&mut self, row: &Row) {
+        self.tip.extend(constant_curvature_error(row, &self.segments));
+        for (i, segment) in self.segments.iter().enumerate() {
+            let error = end_error(row, i, segment);
+            self.ends[i].extend(error.into_iter().flat_map(|error| [error.x, error.y]));
         }
     }
 
@@ -120,26 +150,40 @@ impl Sweep {
                 warnings.push(Warning::NarrowSweep { segment: i + 1, range_deg });
             }
         }
-        let alike = self.alike();
-        let pairs: Vec<_> = alike.iter().map(|like| (like.first, like.second)).collect();
+        let coupled = self.coupled();
+        let pairs: Vec<_> = coupled.iter().map(|pair| (pair.first, pair.second)).collect();
         warnings.extend((!pairs.is_empty()).then_some(Warning::Alike(pairs)));
         warnings.extend((!self.ends_with_line).then_some(Warning::LastLine));
         Ok(warnings)
     }
 
     /// Pairs of segments whose bend angles are the same but for a factor.
-    pub fn alike(&self) -> Vec<Like> {
+    pub fn coupled(&self) -> Vec<Coupling> {
         let n = self.theta.len();
         let pairs = (0..n).flat_map(|i| (i + 1..n).map(move |j| (i, j)));
-        let like = |(i, j): (usize, usize)| {
+        let coupling = |(i, j): (usize, usize)| {
             let both = self.theta[i].iter().zip(&self.theta[j]).filter_map(|(a, b)| a.zip(*b));
             let (mut aa, mut ab, mut bb) = (0.0, 0.0, 0.0);
             for (a, b) in both {
                 (aa, ab, bb) = (aa + a * a, ab + a * b, bb + b * b);
             }
-            (ab * ab > ALIKE * aa * bb).then(|| Like { first: i + 1, second: j + 1, ratio: ab / aa })
+            (ab * ab > COUPLED * aa * bb).then(|| Coupling { first: i + 1, second: j + 1, ratio: ab / aa })
         };
-        pairs.filter_map(like).collect()
+        pairs.filter_map(coupling).collect()
+    }
+}
+
+impl MeanSquare {
+    fn extend(&mut self, values: impl IntoIterator<Item = f64>) {
+        for value in values {
+            self.sum += value * value;
+            self.count += 1.0;
+        }
+    }
+
+    /// Root mean square; `None` of no values.
+    pub fn rms(&self) -> Option<f64> {
+        (self.count > 0.0).then(|| (self.sum / self.count).sqrt())
     }
 }
 

@@ -6,7 +6,7 @@ use calibration_tables::{ArmFile, MAX_SEGMENTS};
 use estimator_core::{Estimator, Sample};
 
 use super::error::TuningError;
-use crate::calibrate::{MISFIT_PERCENT, truth_misfit};
+use crate::calibrate::{MISFIT_PERCENT, constant_curvature_error};
 use crate::error::Error;
 use crate::progress::Progress;
 use crate::replay::{HostEstimator, NamedTable};
@@ -70,7 +70,7 @@ impl Training {
         let (mut samples, mut measured, mut starts) = (Vec::new(), Vec::new(), Vec::new());
         let (mut misfit, mut tips) = (0.0, 0.0);
         while let Some(row) = reader.next_row()? {
-            if let Some(distance) = truth_misfit(&row, segments) {
+            if let Some(distance) = constant_curvature_error(&row, segments) {
                 (misfit, tips) = (misfit + distance * distance, tips + 1.0);
             }
             samples.push(row.sample);

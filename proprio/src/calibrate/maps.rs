@@ -1,0 +1,188 @@
+//! Maps of the bend sensors: the paper's quadratic or a curve, with or without memory, by held-back error.
+
+use calibration_tables::{BendKeys, CurveKeys, MemoryKeys};
+use estimator_core::{BendMap, CurveMap, QuadraticMap};
+
+use super::fit::{quadratic, volts};
+use super::folds::{FOLDS, Observation, fold};
+use super::hysteresis::HysteresisMode;
+use super::sweep::{SensorColumn, Sweep};
+use super::{CalibrationOptions, memory, quantile, spline};
+
+/// Share of the bend angles' sizes that are below the largest that the plays refer to.
+const LARGEST: f64 = 0.99;
+
+/// V–Orient maps that a table gets.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum MapMode {
+    /// For each sensor the one with the smaller held-back error
+    Auto,
+    /// Monotone curves
+    Curve,
+    /// The paper's quadratics
+    Quadratic,
+}
+
+/// Form of a sensor's map.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum MapKind {
+    /// θ = c2 V² + c1 V + c0.
+    Quadratic,
+    /// A monotone curve.
+    Curve,
+}
+
+/// A sensor's map and the errors that it leaves, θ − truth, rad; a value a row of the sweep.
+pub(super) struct FittedMap {
+    pub kind: MapKind,
+    pub curve: Option<CurveKeys>,
+    pub memory: Option<MemoryKeys>,
+    pub errors: Vec<Option<f64>>,
+    /// Each tenth of the sweep by a map fitted without it.
+    pub held_back: Vec<Option<f64>>,
+}
+
+/// A map without memory, and those that were fitted without one tenth each.
+struct Form {
+    curve: Option<CurveKeys>,
+    map: BendMap<f64>,
+    held_back: Vec<BendMap<f64>>,
+}
+
+/// Everything that the fits of one sensor have in common.
+struct Fitter<'s> {
+    sweep: &'s Sweep,
+    counts: &'s [Option<u16>],
+    observations: Vec<Observation>,
+    largest_rad: f64,
+}
+
+impl FittedMap {
+    /// Root mean square of the held-back errors, rad.
+    fn held_back_rmse(&self) -> f64 {
+        super::rms(self.held_back.iter().flatten().copied())
+    }
+}
+
+/// Fits a sensor whose quadratic is known.
+pub(super) fn fit(
+    sweep: &Sweep,
+    column: &SensorColumn,
+    plain: &BendKeys,
+    CalibrationOptions { maps, hysteresis }: CalibrationOptions,
+) -> FittedMap {
+    let fitter = Fitter::new(sweep, column);
+    let mut candidates = Vec::new();
+    let mut add = |form: Option<Form>, kind: MapKind| {
+        let Some(form) = form else { return };
+        let with_memory = (hysteresis != HysteresisMode::Never).then(|| fitter.with_memory(&form, kind)).flatten();
+        if hysteresis != HysteresisMode::Always || with_memory.is_none() {
+            candidates.push(fitter.without_memory(form, kind));
+        }
+        candidates.extend(with_memory);
+    };
+    if maps != MapMode::Quadratic {
+        add(fitter.curve(&fitter.observations), MapKind::Curve);
+    }
+    if maps != MapMode::Curve {
+        add(Some(fitter.quadratic(plain)), MapKind::Quadratic);
+    }
+    let best = candidates.into_iter().min_by(|a, b| a.held_back_rmse().total_cmp(&b.held_back_rmse()));
+    // Too narrow for a curve.
+    best.unwrap_or_else(|| fitter.without_memory(fitter.quadratic(plain), MapKind::Quadratic))
+}
+
+impl<'s> Fitter<'s> {
+    fn new(sweep: &'s Sweep, column: &'s SensorColumn) -> Self {
+        let rows = column.counts.len();
+        let pairs = column.counts.iter().zip(&sweep.theta[column.segment]).enumerate();
+        let observation = |(row, (counts, theta)): (usize, (&Option<u16>, &Option<f64>))| {
+            Some(Observation { row, volts: volts((*counts)?), theta: (*theta)?, fold: fold(row, rows) })
+        };
+        let mut sizes: Vec<f64> = sweep.theta[column.segment].iter().flatten().map(|theta| theta.abs()).collect();
+        sizes.sort_unstable_by(f64::total_cmp);
+        Self {
+            sweep,
+            counts: &column.counts,
+            observations: pairs.filter_map(observation).collect(),
+            largest_rad: quantile(&sizes, LARGEST),
+        }
+    }
+
+    fn curve(&self, observations: &[Observation]) -> Option<Form> {
+        let fitted = spline::fit(observations, self.sweep.rate_hz)?;
+        let map = |curve: &CurveKeys| {
+            let angles: Vec<f64> = curve.theta_deg.iter().copied().map(f64::to_radians).collect();
+            BendMap::Curve(CurveMap::from_volts(&angles, curve.volts))
+        };
+        Some(Form { map: map(&fitted.curve), held_back: fitted.held_back.iter().map(map).collect(), curve: Some(fitted.curve) })
+    }
+
+    fn quadratic(&self, plain: &BendKeys) -> Form {
+        let map = |of: &BendKeys| BendMap::Quadratic(QuadraticMap::from_volts(of.c2, of.c1, of.c0, of.range_volts()));
+        let held_back = |fold: usize| {
+            let others = self.observations.iter().filter(|observation| observation.fold != fold);
+            let pairs: Vec<_> = others.filter_map(|of| Some((self.counts[of.row]?, of.theta))).collect();
+            quadratic(&pairs).map_or_else(|| map(plain), |fit| map(&fit.map))
+        };
+        Form { curve: None, map: map(plain), held_back: (0..FOLDS).map(held_back).collect() }
+    }
+
+    /// Angle of every row by `map`.
+    fn angles(&self, map: &BendMap<f64>) -> Vec<Option<f64>> {
+        self.counts.iter().map(|counts| map.angle((*counts)?)).collect()
+    }
+
+    /// A value a row of the sweep, of the rows that have truth.
+    fn errors(&self, error: impl Fn(&Observation) -> Option<f64>) -> Vec<Option<f64>> {
+        let mut errors = vec![None; self.counts.len()];
+        for observation in &self.observations {
+            errors[observation.row] = error(observation);
+        }
+        errors
+    }
+
+    fn held_back_angle(&self, form: &Form, of: &Observation) -> Option<f64> {
+        form.held_back[of.fold].angle(self.counts[of.row]?)
+    }
+
+    fn without_memory(&self, form: Form, kind: MapKind) -> FittedMap {
+        let angles = self.angles(&form.map);
+        let errors = self.errors(|of| Some(angles[of.row]? - of.theta));
+        let held_back = self.errors(|of| Some(self.held_back_angle(&form, of)? - of.theta));
+        FittedMap { kind, curve: form.curve, memory: None, errors, held_back }
+    }
+
+    /// A curve is fitted twice, the second time to what the memory leaves. A quadratic stays as it is.
+    fn with_memory(&self, form: &Form, kind: MapKind) -> Option<FittedMap> {
+        let second;
+        let form = match kind {
+            MapKind::Quadratic => form,
+            MapKind::Curve => {
+                let (features, fitted) = self.memory(form)?;
+                let without_memory = |of: &Observation| {
+                    Some(Observation { theta: of.theta - fitted.weights.dot(features[of.row].as_ref()?), ..*of })
+                };
+                second = self.curve(&self.observations.iter().filter_map(without_memory).collect::<Vec<_>>())?;
+                &second
+            }
+        };
+        let (features, fitted) = self.memory(form)?;
+        let angles = self.angles(&form.map);
+        let errors = self.errors(|of| Some(angles[of.row]? + fitted.weights.dot(&features[of.row]?) - of.theta));
+        let held_back = self.errors(|of| {
+            let memory = fitted.held_back[of.fold].dot(&features[of.row]?);
+            Some(self.held_back_angle(form, of)? + memory - of.theta)
+        });
+        let memory = Some(memory::keys(&fitted.weights, self.largest_rad));
+        Some(FittedMap { kind, curve: form.curve.clone(), memory, errors, held_back })
+    }
+
+    fn memory(&self, form: &Form) -> Option<(memory::Features, memory::FittedMemory)> {
+        let angles = self.angles(&form.map);
+        let features = memory::features(&angles, self.sweep, self.largest_rad);
+        let errors = self.errors(|of| Some(of.theta - angles[of.row]?));
+        let fitted = memory::fit(&features, &errors)?;
+        Some((features, fitted))
+    }
+}
