@@ -128,7 +128,7 @@ impl Spoiler<'_> {
 /// Turns an IMU's heading clockwise.
 fn turn(sample: &mut Recorded, imu: usize, turn_deg: f64) {
     let Some([w, x, y, z]) = sample.quaternions[imu].map(|quaternion| quaternion.map(f64::from)) else { return };
-    let (sin, cos) = (-turn_deg.to_radians() / 2.0).sin_cos();
+    let (sin, cos) = libm::sincos(-turn_deg.to_radians() / 2.0);
     let turned = [cos * w - sin * z, cos * x - sin * y, cos * y + sin * x, cos * z + sin * w];
     sample.quaternions[imu] = Some(turned.map(|component| component.round() as i16));
 }

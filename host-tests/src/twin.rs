@@ -46,6 +46,11 @@ impl TwinSession {
         self.samples.partition_point(|sample| (sample.time_us as f64) < time_s * 1e6)
     }
 
+    /// The rows, as a session's file would have them.
+    pub fn rows(&self) -> impl Iterator<Item = Row> {
+        self.samples.iter().enumerate().map(|(k, sample)| row(sample, k == 0))
+    }
+
     /// Replays the session; `visit` receives every row with its outcome and the segments' conditions.
     ///
     /// # Errors
@@ -55,7 +60,7 @@ impl TwinSession {
         table: &ArmFile,
         visit: impl FnMut(&Row, &Outcome<Q>, &[Condition]),
     ) -> Result<(), FileError> {
-        replay(table, self.rate_hz, self.samples.iter().enumerate().map(|(k, sample)| row(sample, k == 0)), visit)
+        replay(table, self.rate_hz, self.rows(), visit)
     }
 }
 

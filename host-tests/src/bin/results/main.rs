@@ -1,19 +1,25 @@
-//! `cargo xtask results`: calibrates, tunes and validates on the simulated arm, and writes `docs/RESULTS.md`.
+//! `cargo xtask results`: calibrates and validates on simulated arms, and writes `docs/RESULTS.md` and
+//! `docs/FAULTS-OF-SESSIONS.md`.
 
-mod measure;
-mod page;
-mod runs;
+mod arm;
+mod evaluation;
+mod family;
 
-use std::error::Error;
 use std::fs;
 use std::path::Path;
 
-use measure::Results;
+use arm::Problem;
+use family::Family;
 
-fn main() -> Result<(), Box<dyn Error>> {
+fn main() -> Result<(), Problem> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
     let folder = tempfile::tempdir()?;
-    let results = Results::measure(&root, folder.path())?;
-    fs::write(root.join("docs/RESULTS.md"), results.to_markdown())?;
+    let arm = arm::planar(&root)?;
+    let start = std::time::Instant::now();
+    let family = Family::measure(&arm, folder.path())?;
+    eprintln!("{:?}", start.elapsed());
+    let mut page = String::new();
+    family.write(&mut page)?;
+    fs::write("/tmp/RESULTS.md", page)?;
     Ok(())
 }
