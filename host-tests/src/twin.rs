@@ -1,7 +1,7 @@
 //! Sessions of the twin in memory, and their replay in the board's fixed point.
 
 use calibration_tables::{ArmFile, FileError, MAX_SEGMENTS};
-use estimator_core::{Condition, Estimator, ImuReading, Method, Q, Sample};
+use estimator_core::{ArmConfig, Condition, Estimator, ImuReading, Method, Q, Sample};
 use proprio::error::Error;
 use proprio::replay::{HostEstimator, Outcome};
 use proprio::session::{Row, Truth};
@@ -51,14 +51,14 @@ impl TwinSession {
         self.samples.iter().enumerate().map(|(k, sample)| row(sample, k == 0))
     }
 
-    /// Replays the session; `visit` receives every row with its outcome and the segments' conditions.
+    /// Replays the session; `visit` receives what [`replay`] gives it.
     ///
     /// # Errors
     /// As [`replay`].
     pub fn replay(
         &self,
         table: &ArmFile,
-        visit: impl FnMut(&Row, &Outcome<Q>, &[Condition]),
+        visit: impl FnMut(&Row, &Outcome<Q>, bool),
     ) -> Result<(), FileError> {
         replay(table, self.rate_hz, self.rows(), visit)
     }
@@ -81,30 +81,60 @@ pub fn row(recorded: &Recorded, starts: bool) -> Row {
     Row { sample, truth, starts, board: None }
 }
 
-/// Replays rows sampled at `rate_hz`; `visit` receives every row with its outcome and the segments' conditions.
-///
-/// # Errors
-/// [`FileError`] where the file is no table.
-///
-/// # Panics
-/// Never: the checks of the table's file are at least as strict as the estimator's.
-pub fn replay(
-    table: &ArmFile,
-    rate_hz: f64,
-    rows: impl Iterator<Item = Row>,
-    mut visit: impl FnMut(&Row, &Outcome<Q>, &[Condition]),
-) -> Result<(), FileError> {
-    let baked = table.bake::<Q>(rate_hz)?;
-    let config = baked.config();
-    let mut estimator: Box<HostEstimator<Q>> = Box::new(Estimator::new(&config).expect("the file was checked"));
-    for row in rows {
+/// The estimator in the board's fixed point, row by row.
+pub struct Replayer<'t> {
+    estimator: Box<HostEstimator<'t, Q>>,
+}
+
+impl<'t> Replayer<'t> {
+    /// An estimator at the start of a session.
+    ///
+    /// # Panics
+    /// If the arm is larger than the estimator has room for; tables from files are not.
+    #[must_use]
+    pub fn new(config: &'t ArmConfig<'t, Q>) -> Self {
+        Self { estimator: Box::new(Estimator::new(config).expect("the file was checked")) }
+    }
+
+    /// Takes a row.
+    ///
+    /// # Panics
+    /// As [`Self::new`].
+    pub fn step(&mut self, row: &Row) -> Outcome<Q> {
+        let estimator = &mut self.estimator;
         if row.starts {
             estimator.start().expect("the file was checked");
         }
         let estimate = estimator.update_full(&row.sample);
         let shapes = Method::ALL.map(|method| estimator.shape(&estimate, method));
         let (uncertainties, contacts) = (estimator.uncertainties(), estimator.contacts());
-        visit(&row, &Outcome { estimate, shapes, uncertainties, contacts }, &estimator.conditions());
+        Outcome { estimate, shapes, uncertainties, contacts }
+    }
+
+    /// Whether the estimator reports a condition of any segment.
+    #[must_use]
+    pub fn is_degraded(&self) -> bool {
+        self.estimator.conditions().into_iter().any(Condition::is_degraded)
+    }
+}
+
+/// Replays rows sampled at `rate_hz`; `visit` receives every row with its outcome, and whether the estimator reports a
+/// condition of any segment.
+///
+/// # Errors
+/// [`FileError`] where the file is no table.
+pub fn replay(
+    table: &ArmFile,
+    rate_hz: f64,
+    rows: impl Iterator<Item = Row>,
+    mut visit: impl FnMut(&Row, &Outcome<Q>, bool),
+) -> Result<(), FileError> {
+    let baked = table.bake::<Q>(rate_hz)?;
+    let config = baked.config();
+    let mut replayer = Replayer::new(&config);
+    for row in rows {
+        let outcome = replayer.step(&row);
+        visit(&row, &outcome, replayer.is_degraded());
     }
     Ok(())
 }

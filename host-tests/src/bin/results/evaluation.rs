@@ -1,7 +1,7 @@
 //! Errors of one session by the tables of its arm.
 
-use calibration_tables::FileError;
-use estimator_core::{Condition, Method, Q};
+use calibration_tables::{ArmFile, FileError};
+use estimator_core::{Method, Q};
 use host_tests::contact::in_contact;
 use host_tests::twin::{TwinSession, replay};
 use proprio::replay::Outcome;
@@ -47,7 +47,7 @@ impl Evaluation {
     ) -> Result<Self, FileError> {
         let score = || Score::new(tables.own.length_mm());
         let mut evaluation = Self { own: score(), paper: score(), contact: Vec::new(), flagged: 0 };
-        replay(&tables.own, rate_hz, rows(), |row, outcome, conditions| evaluation.add(row, outcome, conditions))?;
+        replay(&tables.own, rate_hz, rows(), |row, outcome, is_degraded| evaluation.add(row, outcome, is_degraded))?;
         replay(&tables.paper, rate_hz, rows(), |row, outcome, _| evaluation.paper.add(row, outcome))?;
         Ok(evaluation)
     }
@@ -57,10 +57,10 @@ impl Evaluation {
         Self::of(tables, session.rate_hz, || session.rows())
     }
 
-    fn add(&mut self, row: &Row, outcome: &Outcome<Q>, conditions: &[Condition]) {
+    fn add(&mut self, row: &Row, outcome: &Outcome<Q>, is_degraded: bool) {
         self.own.add(row, outcome);
         self.contact.push(in_contact(outcome));
-        self.flagged += usize::from(conditions.iter().any(|condition| condition.is_degraded()));
+        self.flagged += usize::from(is_degraded);
     }
 
     /// The figures.
@@ -82,7 +82,7 @@ impl Evaluation {
 }
 
 /// RMSE of fusion by one table, mm.
-pub fn fusion_mm(table: &calibration_tables::ArmFile, session: &TwinSession) -> Result<f64, FileError> {
+pub fn fusion_mm(table: &ArmFile, session: &TwinSession) -> Result<f64, FileError> {
     let mut score = Score::new(table.length_mm());
     session.replay(table, |row, outcome, _| score.add(row, outcome))?;
     Ok(score.figures()[Method::Fusion as usize].tip_rmse_mm.unwrap_or(f64::INFINITY))

@@ -92,6 +92,11 @@ impl Family {
         self.arms.iter().find(|arm| arm.seed == seed)
     }
 
+    /// The tables of an arm that was measured.
+    pub fn tables(&self, seed: u64) -> Result<&Tables, Problem> {
+        Ok(&self.arm(seed).ok_or_else(|| format!("arm {seed} was not measured"))?.tables)
+    }
+
     fn of<'f>(&'f self, seeds: &[u64]) -> Vec<&'f ArmFigures> {
         seeds.iter().filter_map(|seed| self.arm(*seed)).collect()
     }

@@ -2,24 +2,28 @@
 //! `docs/FAULTS-OF-SESSIONS.md`.
 
 mod arm;
+mod day;
 mod evaluation;
 mod family;
+mod faults;
+mod motions;
+mod page;
+mod real_drift;
+mod rigs;
 
 use std::fs;
 use std::path::Path;
 
 use arm::Problem;
-use family::Family;
+use faults::Faults;
+use page::Results;
 
 fn main() -> Result<(), Problem> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
     let folder = tempfile::tempdir()?;
-    let arm = arm::planar(&root)?;
-    let start = std::time::Instant::now();
-    let family = Family::measure(&arm, folder.path())?;
-    eprintln!("{:?}", start.elapsed());
-    let mut page = String::new();
-    family.write(&mut page)?;
-    fs::write("/tmp/RESULTS.md", page)?;
+    let results = Results::measure(&root, folder.path())?;
+    let faults = Faults::measure(&results.family)?;
+    fs::write(root.join("docs/RESULTS.md"), results.to_markdown()?)?;
+    fs::write(root.join("docs/FAULTS-OF-SESSIONS.md"), faults.to_markdown()?)?;
     Ok(())
 }
