@@ -18,7 +18,7 @@ struct Moment {
     is_flagged: bool,
 }
 
-/// The fused tip of a session.
+/// The fused tip of a session, from the first estimate on.
 pub struct Trace {
     moments: Vec<Moment>,
 }
@@ -38,7 +38,9 @@ impl Trace {
                 is_flagged,
             });
         })?;
-        Ok(Self { moments })
+        // None before the tare is complete.
+        let first = moments.iter().position(|moment| moment.error_mm.is_finite()).unwrap_or(moments.len());
+        Ok(Self { moments: moments.split_off(first) })
     }
 
     fn within(&self, seconds: Range<f64>) -> &[Moment] {
