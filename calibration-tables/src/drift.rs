@@ -147,11 +147,11 @@ impl DriftKeys {
     }
 
     const fn offset_deg() -> f64 {
-        1.0
+        1.5
     }
 
     const fn offset_s() -> f64 {
-        2000.0
+        1000.0
     }
 
     pub(crate) fn check(&self) -> Result<(), FileError> {

@@ -3,7 +3,8 @@
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
 use estimator_core::{
-    AnchorConfig, ArmConfig, BendMap, Estimator, ImuReading, Phase, Q, Sample, Scalar, SegmentConfig, Turns,
+    AnchorConfig, ArmConfig, BendMap, BendSensorConfig, BiasFilterConfig, Estimator, FusedOps, ImuReading, Phase, Q,
+    QuadraticMap, Sample, SegmentConfig, Turns,
 };
 
 const SEGMENTS: [usize; 3] = [6, 12, 16];
@@ -14,9 +15,10 @@ fn main() {
     divan::main();
 }
 
-fn segments<S: Scalar>(count: usize) -> Vec<SegmentConfig<S>> {
-    let map = BendMap::from_volts(0.1, 1.2, -2.0, [0.5, 2.5]);
-    (0..count).map(|_| SegmentConfig { bend: [Some(map); 2], ..SegmentConfig::uncalibrated(0.080, 0.017) }).collect()
+fn segments<S: FusedOps>(count: usize) -> Vec<SegmentConfig<S>> {
+    let map = BendMap::Quadratic(QuadraticMap::from_volts(0.1, 1.2, -2.0, [0.5, 2.5]));
+    let sensor = BendSensorConfig { map, memory: None };
+    (0..count).map(|_| SegmentConfig { bend: [Some(sensor); 2], ..SegmentConfig::uncalibrated(0.080, 0.017) }).collect()
 }
 
 /// An arm that swings, with drift; no two samples are the same.
@@ -34,7 +36,7 @@ fn samples(count: usize) -> Vec<Sample<16>> {
     (0..SAMPLES).map(sample).collect()
 }
 
-fn steps<S: Scalar>(bencher: Bencher, count: usize) {
+fn steps<S: FusedOps>(bencher: Bencher, count: usize, bias_filter: Option<BiasFilterConfig>) {
     let segments = segments::<S>(count);
     let anchor = AnchorConfig {
         window: 100,
@@ -42,7 +44,7 @@ fn steps<S: Scalar>(bencher: Bencher, count: usize) {
         sample_rate_millihertz: 100_000,
         threshold: Turns::from_bits(5_965_232),
     };
-    let table = ArmConfig { tare_samples: 100, anchor, ..ArmConfig::uncalibrated(&segments) };
+    let table = ArmConfig { tare_samples: 100, anchor, bias_filter, ..ArmConfig::uncalibrated(&segments) };
     let samples = samples(count);
     let mut estimator = Estimator::<S, 16, 100>::new(&table).expect("a valid table");
     // All samples at once, as one is shorter than the clock's own noise; the counter divides by them.
@@ -55,10 +57,15 @@ fn steps<S: Scalar>(bencher: Bencher, count: usize) {
 
 #[divan::bench(args = SEGMENTS)]
 fn fixed_point(bencher: Bencher, segments: usize) {
-    steps::<Q>(bencher, segments);
+    steps::<Q>(bencher, segments, None);
 }
 
 #[divan::bench(args = SEGMENTS)]
 fn float(bencher: Bencher, segments: usize) {
-    steps::<f64>(bencher, segments);
+    steps::<f64>(bencher, segments, None);
+}
+
+#[divan::bench(args = SEGMENTS)]
+fn bias_filter(bencher: Bencher, segments: usize) {
+    steps::<Q>(bencher, segments, Some(BiasFilterConfig::BNO055));
 }

@@ -84,7 +84,6 @@ pub struct BendSensorConfig<S> {
 
 /// V–Orient map of one bend sensor.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[expect(clippy::large_enum_variant, reason = "configurations are constants, never moved")]
 pub enum BendMap<S> {
     /// The paper's quadratic.
     Quadratic(QuadraticMap<S>),
@@ -285,8 +284,8 @@ impl BiasFilterConfig {
         // 0.01 °/√s and 2e-4 °/s/√s, over a time unit of 64 s.
         bias_noise: variance_deg(0.01 * 8.0).q,
         rate_noise: variance_deg(2e-4 * TIME_UNIT_S * 8.0).q,
-        offset: variance_deg(1.0).q,
-        offset_rate: Q::from_f64(TIME_UNIT_S / 2000.0),
+        offset: variance_deg(1.5).q,
+        offset_rate: Q::from_f64(TIME_UNIT_S / 1000.0),
     };
 }
 

@@ -17,7 +17,9 @@ use crate::numeric::q::Q;
 use crate::segment::SegmentState;
 use crate::sensing::bend_sensors::BendAngles;
 use crate::sensing::heading::SegmentHeading;
-use crate::types::{Condition, Contacts, Estimate, Method, Sample, SegmentShape, Shape, Uncertainties, Uncertainty};
+use crate::types::{
+    Condition, Conditions, Contacts, Estimate, Method, Sample, SegmentShape, Shape, Uncertainties, Uncertainty,
+};
 
 /// State of the pipeline for an arm of up to `N` segments and an anchor of up to `W` values.
 ///
@@ -40,7 +42,6 @@ pub struct Estimator<'t, S, const N: usize, const W: usize> {
 /// Drift correction by what the configuration asks for. The bias filter works in fixed point whatever `S` is, so that every
 /// number type takes the same decisions.
 #[derive(Debug, Clone)]
-#[expect(clippy::large_enum_variant, reason = "made in place, and never moved")]
 enum Drift<const N: usize, const W: usize> {
     MovingAverage(MovingAverage<N, W>),
     BiasFilter(BiasFilter<Q, N>),
@@ -224,7 +225,7 @@ impl<'t, S: FusedOps, const N: usize, const W: usize> Estimator<'t, S, N, W> {
 
     /// Conditions of the newest sample, from the base to the tip; none hold behind the moving-average anchor.
     #[must_use]
-    pub fn conditions(&self) -> Vec<Condition, N> {
+    pub fn conditions(&self) -> Conditions<N> {
         let condition = |i| match &self.drift {
             Drift::MovingAverage(_) => Condition::default(),
             Drift::BiasFilter(filter) => filter.condition(i),
@@ -327,7 +328,7 @@ impl<'t, S: FusedOps, const N: usize, const W: usize> Estimator<'t, S, N, W> {
 fn theta_variance<const N: usize>(headings: &[[Q; N]; N], i: usize) -> Q {
     let at = |i: usize, j: usize| headings.get(i).and_then(|row| row.get(j)).copied().unwrap_or(Q::from_f64(0.0));
     match i.checked_sub(1) {
-        Some(below) => at(i, i) + at(below, below) - at(i, below) - at(i, below),
+        Some(below) => (at(i, i) - at(i, below)) + (at(below, below) - at(i, below)),
         None => at(i, i),
     }
 }

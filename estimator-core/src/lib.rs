@@ -32,13 +32,13 @@
 //! use estimator_core::{Estimator, ImuReading, Method, Phase, Q, Sample, SegmentConfig, ArmConfig};
 //!
 //! // One segment of 80 mm with a 17 mm connector and no bend sensor; headings are absolute.
-//! let segments = [SegmentConfig::<Q>::bare(0.080, 0.017)];
-//! let table = ArmConfig::bare(&segments);
+//! let segments = [SegmentConfig::<Q>::uncalibrated(0.080, 0.017)];
+//! let table = ArmConfig::uncalibrated(&segments);
 //! let mut estimator = Estimator::<Q, 1, 100>::new(&table)?;
 //!
 //! let mut sample = Sample::missing(0);
 //! sample.imu[0] = Some(ImuReading::Heading(Phase::from_degrees(30.0)));
-//! let estimate = estimator.step(&sample);
+//! let estimate = estimator.update_full(&sample);
 //! let tip = estimator.shape(&estimate, Method::ImuO)[0].end.expect("the IMU was read");
 //! assert!((tip.x.to_f64() - 0.02897).abs() < 1e-5 && (tip.y.to_f64() - 0.09111).abs() < 1e-5);
 //! # Ok::<(), estimator_core::ConfigError>(())
@@ -61,7 +61,7 @@ pub use config::{
     CoupledSegment, CurveMap, KNOTS, KalmanParams, Lag, MemoryConfig, OffsetAt, PLAYS, Play, QuadraticMap,
     SENSORS_PER_SEGMENT, SegmentConfig, UncertaintyConfig, VARIANCE_SCALE,
 };
-pub use drift::bias_filter::state::{BiasState, Innovation, Row};
+pub use drift::bias_state::{BiasState, Innovation, Row};
 pub use drift::decimator::{Decimated, Decimator};
 pub use drift::moving_average::MovingAverageAnchor;
 pub use drift::{CorrectedArm, DriftCorrection, SensedArm};
@@ -79,6 +79,6 @@ pub use sensing::bend_map::VOLTS_PER_COUNT;
 pub use sensing::bend_sensors::BendAngles;
 pub use sensing::heading::{HeadingTracker, SegmentHeading};
 pub use types::{
-    Condition, Contact, Contacts, Covariance, Estimate, ImuReading, Method, Sample, SegmentEstimate, SegmentShape,
-    Shape, Uncertainties, Uncertainty,
+    Condition, Conditions, Contact, Contacts, Covariance, Estimate, ImuReading, Method, Sample, SegmentEstimate,
+    SegmentShape, Shape, Uncertainties, Uncertainty,
 };

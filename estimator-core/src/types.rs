@@ -166,6 +166,9 @@ impl Condition {
     }
 }
 
+/// Conditions of the segments, from the base to the tip.
+pub type Conditions<const N: usize> = Vec<Condition, N>;
+
 /// Contact of one segment and its score.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Contact {

@@ -15,9 +15,9 @@ fn mean(values: &[Option<i64>]) -> Option<i64> {
 }
 
 fn pushed<const W: usize>(rule: &AnchorConfig, values: &[Option<i64>]) -> Vec<Option<i64>> {
-    let (mut pace, mut anchor) = (Decimator::new(), MovingAverageAnchor::<W>::new());
+    let (mut decimator, mut anchor) = (Decimator::new(), MovingAverageAnchor::<W>::new());
     let push = |value: &Option<i64>| {
-        anchor.push(pace.tick(rule), value.map(Turns::from_bits));
+        anchor.push(decimator.tick(rule), value.map(Turns::from_bits));
         anchor.offset().map(Turns::bits)
     };
     values.iter().map(push).collect()
@@ -116,13 +116,13 @@ fn sums_stay_exact_over_100_million_samples() {
     const SAMPLES: u64 = 100_000_000;
     const WINDOW: u16 = 100;
     let rule = rule(WINDOW, 1);
-    let (mut pace, mut anchor) = (Decimator::new(), MovingAverageAnchor::<{ WINDOW as usize }>::new());
+    let (mut decimator, mut anchor) = (Decimator::new(), MovingAverageAnchor::<{ WINDOW as usize }>::new());
     let mut newest = [None; WINDOW as usize];
     let mut noise = 1_u64;
     for t in 0..SAMPLES {
         noise = noise.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         let value = (t % 1000 != 7).then_some((noise >> 35) as i64 + t as i64 * 5965);
-        anchor.push(pace.tick(&rule), value.map(Turns::from_bits));
+        anchor.push(decimator.tick(&rule), value.map(Turns::from_bits));
         newest[t as usize % newest.len()] = value;
     }
     assert_eq!(anchor.offset().map(Turns::bits), mean(&newest));

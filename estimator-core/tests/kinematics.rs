@@ -2,7 +2,7 @@
 
 use std::f64::consts::{FRAC_2_PI, FRAC_PI_2, PI, TAU};
 
-use estimator_core::{Angle, Link, OffsetAt, Pcc, Q, Scalar, SegmentConfig, Turns, UnitArc, chain};
+use estimator_core::{Angle, FusedOps, Link, OffsetAt, Pcc, Q, SegmentConfig, Turns, UnitArc, forward_kinematics};
 use nalgebra::Vector2;
 use proptest::prelude::*;
 
@@ -16,7 +16,7 @@ const FIXED_ERROR: f64 = 4.0 * LSB;
 /// Beyond, the polynomials' terms add up and θ multiplies them; swept over ±1000 rad, the worst are 15.3 steps at π.
 const FIXED_ERROR_FAR: f64 = 16.0 * LSB;
 
-fn numbers<S: Scalar>(arc: UnitArc<S>) -> [f64; 4] {
+fn numbers<S: FusedOps>(arc: UnitArc<S>) -> [f64; 4] {
     [arc.lateral, arc.axial, arc.cos, arc.sin].map(S::to_f64)
 }
 
@@ -31,7 +31,7 @@ fn differ(one: [f64; 4], other: [f64; 4]) -> f64 {
 }
 
 /// θ on both sides of a seam, so close that the arc itself changes by less than `LSB`.
-fn step_across<S: Scalar>(seam: f64) -> f64 {
+fn step_across<S: FusedOps>(seam: f64) -> f64 {
     let sides = [-LSB / 2.0, LSB].map(|off| numbers(UnitArc::new(Angle::from(S::from_f64(seam + off)))));
     differ(sides[0], sides[1])
 }
@@ -127,11 +127,11 @@ fn end_by_formula(theta: f64, (length, offset, start): (f64, f64, bool)) -> Vect
     Vector2::new(length * lateral, length * axial) + connector
 }
 
-fn link<S: Scalar>(theta: S, segment: &SegmentConfig<S>) -> Link<S> {
+fn link<S: FusedOps>(theta: S, segment: &SegmentConfig<S>) -> Link<S> {
     Pcc::new(segment).link(Angle::from(theta))
 }
 
-fn segment<S: Scalar>(length: f64, offset: f64, start: bool) -> SegmentConfig<S> {
+fn segment<S: FusedOps>(length: f64, offset: f64, start: bool) -> SegmentConfig<S> {
     let offset_at = if start { OffsetAt::Start } else { OffsetAt::End };
     SegmentConfig { offset_at, ..SegmentConfig::uncalibrated(length, offset) }
 }

@@ -1,10 +1,12 @@
 //! The count of saturations, which is of the whole program and therefore has a test program of its own.
 
+mod common;
+
 use std::sync::{Mutex, PoisonError};
 
 use estimator_core::{
-    AnchorConfig, ArmConfig, BendMap, Estimator, ImuReading, Phase, Q, Sample, Scalar, SegmentConfig, Turns,
-    saturations,
+    AnchorConfig, ArmConfig, BendMap, BendSensorConfig, Estimator, ImuReading, Phase, Q, QuadraticMap, Sample, Scalar,
+    SegmentConfig, Turns, saturations,
 };
 use num_traits::Zero;
 
@@ -57,8 +59,9 @@ fn floats_from_tables_saturate_uncounted() {
 
 /// Steps of an arm with one sensor of θ = 1.2 (V − 1.5) at these counts.
 fn run(counts: u16, steps: u32) {
-    let map = BendMap::from_volts(0.0, 1.2, -1.8, [0.5, 2.5]);
-    let segments = [SegmentConfig { bend: [Some(map), None], ..SegmentConfig::<Q>::uncalibrated(0.08, 0.017) }; 3];
+    let map = BendMap::Quadratic(QuadraticMap::from_volts(0.0, 1.2, -1.8, [0.5, 2.5]));
+    let sensor = BendSensorConfig { map, memory: None };
+    let segments = [SegmentConfig { bend: [Some(sensor), None], ..SegmentConfig::<Q>::uncalibrated(0.08, 0.017) }; 3];
     let anchor = AnchorConfig {
         window: 10,
         rate_millihertz: 10_000,
@@ -83,6 +86,33 @@ fn run(counts: u16, steps: u32) {
 #[test]
 fn a_session_with_turns_and_turns_of_drift_counts_nothing() {
     assert_eq!(counted(|| run(1900, 1100)), 0);
+}
+
+/// An hour of swings, rests and outages with the bias filter, and what it gives of them.
+fn run_bias_filter() {
+    let segments = common::segments::<Q>();
+    let config = common::config(&segments, 10.0);
+    let mut estimator = Estimator::<Q, { common::N }, 100>::new(&config).expect("a valid configuration");
+    let mut arm = common::Arm { drift: [0.05, -0.03, 0.02], bend_offset: [2.0, -3.0, 1.0], ..Default::default() };
+    for k in 0..36_000 {
+        let mut sample = arm.sample(k);
+        match k {
+            4_000..7_000 => sample.imu[0] = None,
+            8_000..11_000 => sample.bend = [[None; 2]; common::N],
+            // A rest of five minutes, at the last angles.
+            12_000..15_000 => sample = Sample { time_us: sample.time_us, ..arm.sample(12_000) },
+            16_000..19_000 => continue,
+            20_000..36_000 => sample.bend[1] = [None; 2],
+            _ => {}
+        }
+        estimator.update(&sample);
+        let _ = (estimator.uncertainties(), estimator.contacts());
+    }
+}
+
+#[test]
+fn an_hour_of_the_bias_filter_counts_nothing() {
+    assert_eq!(counted(run_bias_filter), 0);
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use estimator_core::{Phase, Q, Scalar};
+use estimator_core::{FusedOps, Phase, Q, Scalar};
 use num_traits::{One, Zero};
 use proptest::prelude::*;
 
@@ -61,7 +61,7 @@ proptest! {
     fn turns_vectors_clockwise_and_saturates(x in q(), y in q(), angle in -PI..PI) {
         let (sin, cos) = (Q::from_f64(angle.sin()), Q::from_f64(angle.cos()));
         let sums = [wide(x) * wide(cos) + wide(y) * wide(sin), wide(y) * wide(cos) - wide(x) * wide(sin)];
-        let (across, along) = Q::turned(x, y, sin, cos);
+        let (across, along) = Q::rotate_clockwise(x, y, sin, cos);
         for (turned, sum) in [across, along].into_iter().zip(sums) {
             prop_assert!((wide(turned) - wide(saturated(sum.div_euclid(ONE)))).abs() <= 1);
         }
@@ -139,7 +139,7 @@ proptest! {
     /// `rest` may be half a step off 2π·turns' own rounding; the quotient is as good as 26 bits allow.
     #[test]
     fn the_share_of_an_unwrapped_angle_is_that_of_floats(rest in -3.1..3.1, turns in prop_oneof![-9..0, 1..9, 100..10_000]) {
-        let exact = <f64 as Scalar>::share_of_unwrapped(rest, turns);
+        let exact = <f64 as FusedOps>::share_of_unwrapped(rest, turns);
         let share = Q::share_of_unwrapped(Q::from_f64(rest), turns).to_f64();
         prop_assert!((share - exact).abs() <= 2.0 * LSB, "{} instead of {}", share, exact);
     }

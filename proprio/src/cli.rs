@@ -76,8 +76,9 @@ pub struct Align {
 
 #[derive(Debug, Args)]
 pub struct Calibrate {
-    /// Session with truth: a slow sweep of every segment through its whole range
-    pub session: PathBuf,
+    /// Sessions with truth: slow sweeps of every segment through its whole range, of one day or of several
+    #[arg(required = true, value_name = "SESSION")]
+    pub sessions: Vec<PathBuf>,
     /// Arm description: its geometry
     #[arg(long, value_name = "ARM.toml")]
     pub arm: PathBuf,

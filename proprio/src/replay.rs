@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use calibration_tables::{ArmFile, Baked, FileError, MAX_SEGMENTS, MAX_WINDOW};
-use estimator_core::{Contacts, Estimate, Estimator, FusedOps, Method, Q, Shape, Uncertainties};
+use estimator_core::{Conditions, Contacts, Estimate, Estimator, FusedOps, Method, Q, Shape, Uncertainties};
 use telemetry::{Hello, TICK_HZ};
 
 use crate::error::Error;
@@ -72,6 +72,8 @@ pub struct Outcome<S> {
     pub uncertainties: Uncertainties<MAX_SEGMENTS>,
     /// What touches the segments.
     pub contacts: Contacts<MAX_SEGMENTS>,
+    /// Conditions that make the estimate less certain, by segment.
+    pub conditions: Conditions<MAX_SEGMENTS>,
 }
 
 /// The extent of a session.
@@ -131,7 +133,8 @@ pub fn replay<S: FusedOps>(
         let estimate = estimator.update_full(&row.sample);
         let shapes = Method::ALL.map(|method| estimator.shape(&estimate, method));
         let (uncertainties, contacts) = (estimator.uncertainties(), estimator.contacts());
-        visit(&row, &Outcome { estimate, shapes, uncertainties, contacts })?;
+        let conditions = estimator.conditions();
+        visit(&row, &Outcome { estimate, shapes, uncertainties, contacts, conditions })?;
         last_us = row.sample.time_us;
         first_us.get_or_insert(last_us);
         samples += 1;

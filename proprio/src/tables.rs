@@ -6,7 +6,7 @@ use calibration_tables::{DriftTuningKeys, RmseKeys, Stopped, TuningKeys};
 use comfy_table::presets::NOTHING;
 use comfy_table::{CellAlignment, Table};
 use estimator_core::Method;
-use proprio::calibrate::{MapKind, SegmentReport, SensorReport};
+use proprio::calibrate::{HeldOut, MapKind, SegmentReport, SensorReport};
 use proprio::figures::{AllFigures, ByMethod};
 use proprio::link::Port;
 use proprio::score::Figures;
@@ -47,6 +47,16 @@ pub fn segments(segments: &[SegmentReport]) -> String {
         ]);
     }
     format!("\n{}\n", text(&mut table))
+}
+
+/// Errors on the last fifth of the sweep.
+pub fn held_out(held_out: &HeldOut) -> String {
+    let mut table = table(&["method", "tip RMSE mm"]);
+    for (method, tip_rmse_mm) in Method::ALL.iter().zip(held_out.tip_rmse_mm) {
+        let cell = tip_rmse_mm.map_or_else(|| "-".to_owned(), |rmse_mm| format!("{rmse_mm:.2}"));
+        table.add_row([method.name().to_owned(), cell]);
+    }
+    format!("\non the last fifth, by a table of the rest:\n{}\n", text(&mut table))
 }
 
 /// A word for both sensors where they agree.

@@ -168,7 +168,7 @@ mod tests {
 
     use std::vec::Vec;
 
-    use super::{ChangeDetector, CoupledSegment, TIMEOUT, Thresholds, Value};
+    use super::{ChangeDetector, CoupledSegment, Residual, TIMEOUT, Thresholds};
 
     /// 4° and 1°, in units of 2⁻³² turns.
     const LIMIT: u32 = 47_721_859;
@@ -211,7 +211,7 @@ mod tests {
 
     #[test]
     fn a_residual_that_stays_is_no_contact_for_ever() {
-        let seen = touched(COUPLING, [0; 10].into_iter().forward_kinematics([20; TIMEOUT as usize + 20]));
+        let seen = touched(COUPLING, [0; 10].into_iter().chain([20; TIMEOUT as usize + 20]));
         assert!(seen[10] && !seen[seen.len() - 1]);
     }
 

@@ -22,9 +22,9 @@ use crate::sensing::heading::SegmentHeading;
 ///     sample_rate_millihertz: 10_000,
 ///     threshold: Turns::ZERO,
 /// };
-/// let (mut pace, mut anchor) = (Decimator::new(), MovingAverageAnchor::<2>::new());
+/// let (mut decimator, mut anchor) = (Decimator::new(), MovingAverageAnchor::<2>::new());
 /// for value in [1, 3, 5] {
-///     anchor.push(pace.tick(&rule), Some(Turns::from_bits(value)));
+///     anchor.push(decimator.tick(&rule), Some(Turns::from_bits(value)));
 /// }
 /// assert_eq!(anchor.offset(), Some(Turns::from_bits(4)));
 /// ```

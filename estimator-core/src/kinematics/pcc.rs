@@ -94,7 +94,7 @@ pub struct Link<S> {
 /// Kinematics of one segment, P_i = C_i + D_i with C_i = L ((1 − cos θ)/θ, sin θ/θ), and D_i along the tangent where the
 /// connector is: d (sin θ, cos θ) at the end, d (0, 1) at the start.
 ///
-/// Both coordinates are polynomials like those of [`Arc`], whose terms are worked out once.
+/// Both coordinates are polynomials like those of [`UnitArc`], whose terms are worked out once.
 ///
 /// ```
 /// use estimator_core::{Angle, Pcc, SegmentConfig};

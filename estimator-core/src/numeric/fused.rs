@@ -75,7 +75,8 @@ pub trait FusedOps: Scalar {
         self.polynomials(&AXIAL.map(Self::constant), &COSINE.map(Self::constant))
     }
 
-    /// (x, y) rotate_clockwise clockwise by the angle of this sine and cosine: (x cos + y sin, y cos − x sin). It may be rounded down.
+    /// (x, y) rotated clockwise by the angle of this sine and cosine: (x cos + y sin, y cos − x sin). It may be rounded
+    /// down.
     #[must_use]
     fn rotate_clockwise(x: Self, y: Self, sin: Self, cos: Self) -> (Self, Self) {
         plain::rotate_clockwise(x, y, sin, cos)

@@ -94,6 +94,7 @@ mod tests {
 
     use super::{Memory, Play, PrandtlIshlinskii};
     use crate::config::{Lag, MemoryConfig};
+    use crate::numeric::q::Q;
 
     const PLAYS: [Play<f64>; 3] =
         [Play { radius: 0.1, weight: 0.5 }, Play { radius: 0.0, weight: 1.0 }, Play { radius: 1.0, weight: 0.0 }];
@@ -135,6 +136,51 @@ mod tests {
         let after_4_s = (1..=400).map(|k| memory.compensate(&LAG, 1.0, k * 10_000)).last();
         let expected = 1.0 - (-1.0_f64).exp();
         assert!((after_4_s.expect("400 angles") - expected).abs() < 2e-3);
+    }
+
+    /// A play of ±0.1 rad and weight 0.5 beside lags without weight.
+    const PLAY: MemoryConfig<f64> = MemoryConfig {
+        lags: [Lag { rate: 16.0, weight: 0.0 }; 2],
+        plays: [Play { radius: 0.1, weight: 0.5 }, Play { radius: 0.1, weight: 0.0 }],
+    };
+
+    #[test]
+    fn a_sensor_is_corrected_by_the_side_that_it_comes_from() {
+        let at_half = |from: f64| {
+            let mut memory = Memory::new();
+            memory.compensate(&PLAY, from, 0);
+            memory.compensate(&PLAY, 0.5, 10_000)
+        };
+        assert!((at_half(0.0) - 0.55).abs() < 1e-12 && (at_half(1.0) - 0.45).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_lag_takes_the_same_time_at_any_rate() {
+        let after_2_s = |step_us: u64| {
+            let mut memory = Memory::new();
+            memory.compensate(&LAG, 0.0, 0);
+            (1..=2_000_000 / step_us).map(|k| memory.compensate(&LAG, 1.0, k * step_us)).last().expect("some angles")
+        };
+        assert!((after_2_s(10_000) - after_2_s(100_000)).abs() < 0.01);
+    }
+
+    #[test]
+    fn in_fixed_point_a_memory_is_that_of_floats() {
+        let config = MemoryConfig {
+            lags: [Lag { rate: 16.0, weight: 0.3 }, Lag { rate: 2.0, weight: -0.2 }],
+            plays: [Play { radius: 0.1, weight: 0.5 }, Play { radius: 0.3, weight: 0.2 }],
+        };
+        let lag = |lag: Lag<f64>| Lag { rate: Q::from_f64(lag.rate), weight: Q::from_f64(lag.weight) };
+        let play = |play: Play<f64>| Play { radius: Q::from_f64(play.radius), weight: Q::from_f64(play.weight) };
+        let fixed = MemoryConfig { lags: config.lags.map(lag), plays: config.plays.map(play) };
+        let (mut float_memory, mut fixed_memory) = (Memory::new(), Memory::new());
+        for k in 0..100_000_u32 {
+            let theta = (f64::from(k) / 150.0).sin();
+            let float = float_memory.compensate(&config, theta, u64::from(k) * 10_000);
+            let fixed = fixed_memory.compensate(&fixed, Q::from_f64(theta), u64::from(k) * 10_000).to_f64();
+            // A share of a lag is rounded to half a step of 2⁻²⁶ in 0.0003, 2e-5 of it.
+            assert!((fixed - float).abs() < 1e-4, "{fixed} instead of {float} at {k}");
+        }
     }
 
     #[test]

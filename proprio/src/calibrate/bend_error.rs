@@ -9,6 +9,9 @@ use super::sweep::{LEAST_ROWS, Sweep};
 const RATE_HZ: f64 = 10.0;
 /// Smallest deviation: what a sweep of a quarter of an hour can show.
 const LEAST_DEG: f64 = 0.3;
+/// Smallest offset of a session that a few sweeps can show, and the largest of the table's format.
+const LEAST_OFFSET_DEG: f64 = 0.5;
+const MAX_OFFSET_DEG: f64 = 20.0;
 /// Held-back error over that of the fit.
 const HELD_BACK_RATIO: [f64; 2] = [1.0, 1.5];
 /// Time of a mean of the slow errors, s.
@@ -26,10 +29,11 @@ struct Series {
 
 /// Errors of the sensors of `segment`; `None` where they were hardly ever read together.
 pub(super) fn of(sweep: &Sweep, segment: usize, sensors: &[&FittedMap]) -> Option<BendErrorKeys> {
-    let errors: Vec<Series> = sensors.iter().map(|sensor| Series::new(&sensor.errors, sweep)).collect();
+    let errors = sensors.iter().map(|sensor| Series::new(&centred(&sensor.errors, sweep), sweep));
+    let errors: Vec<Series> = errors.collect();
     let first = errors.first()?;
     let second = errors.get(1).unwrap_or(first);
-    let mean = first.combine(second, |a, b| (a + b) / 2.0);
+    let mean = first.combine(second, f64::midpoint);
     let difference = first.combine(second, |a, b| (a - b) / 2.0);
     if mean.values.iter().flatten().count() < LEAST_ROWS {
         return None;
@@ -50,13 +54,51 @@ pub(super) fn of(sweep: &Sweep, segment: usize, sensors: &[&FittedMap]) -> Optio
     })
 }
 
+/// Errors less their session's mean, which is an offset of its own.
+fn centred(errors: &[Option<f64>], sweep: &Sweep) -> Vec<Option<f64>> {
+    let means = session_means(errors, sweep);
+    let rows = errors.iter().zip(&sweep.sessions);
+    rows.map(|(error, session)| Some((*error)? - means[*session]?)).collect()
+}
+
+/// Mean of each session.
+fn session_means(errors: &[Option<f64>], sweep: &Sweep) -> Vec<Option<f64>> {
+    let sessions = sweep.sessions.last().map_or(0, |last| last + 1);
+    let mut sums = vec![(0.0, 0.0_f64); sessions];
+    for (error, session) in errors.iter().zip(&sweep.sessions) {
+        if let Some(error) = error {
+            sums[*session].0 += error;
+            sums[*session].1 += 1.0;
+        }
+    }
+    sums.into_iter().map(|(sum, count)| (count > 0.0).then(|| sum / count)).collect()
+}
+
+/// Standard deviation of the sessions' mean errors of a segment, rad; `None` of a single session.
+pub(super) fn session_deviation(sweep: &Sweep, sensors: &[&FittedMap]) -> Option<f64> {
+    let first = sensors.first()?;
+    let last = sensors.last()?;
+    let both = first.errors.iter().zip(&last.errors);
+    let mean: Vec<_> = both.map(|(a, b)| Some(f64::midpoint((*a)?, (*b)?))).collect();
+    let means: Vec<f64> = session_means(&mean, sweep).into_iter().flatten().collect();
+    let count = means.len() as f64;
+    // Of few sessions: the mean is theirs, too.
+    (means.len() > 1).then(|| deviation(&means) * (count / (count - 1.0)).sqrt())
+}
+
+/// `drift.offset_deg` of all segments' deviations, rad.
+pub(super) fn offset_deg(deviations: &[f64]) -> f64 {
+    rounded(super::rms(deviations.iter().copied()).to_degrees().clamp(LEAST_OFFSET_DEG, MAX_OFFSET_DEG))
+}
+
 /// Four digits behind the point.
 fn rounded(value: f64) -> f64 {
     (value * 1e4).round() / 1e4
 }
 
 fn held_back_ratio(sensor: &FittedMap) -> f64 {
-    let [fitted, held_back] = [&sensor.errors, &sensor.held_back].map(|errors| super::rms(errors.iter().flatten().copied()));
+    let [fitted, held_back] =
+        [&sensor.errors, &sensor.held_back].map(|errors| super::rms(errors.iter().flatten().copied()));
     if fitted > 0.0 { (held_back / fitted).clamp(HELD_BACK_RATIO[0], HELD_BACK_RATIO[1]) } else { HELD_BACK_RATIO[0] }
 }
 
@@ -85,7 +127,7 @@ impl Series {
     }
 
     fn deviation(&self) -> f64 {
-        deviation(&self.values)
+        deviation(&self.values.iter().flatten().copied().collect::<Vec<f64>>())
     }
 
     /// Standard deviation of the means of every stretch of [`SLOW_S`]; `None` where there is none.
@@ -101,7 +143,7 @@ impl Series {
                 count -= usize::from(self.values[gone].is_some());
             }
             let is_whole = last + 1 >= length && self.runs[last + 1 - length] == self.runs[last];
-            means.extend((is_whole && 2 * count > length).then(|| Some(sum / count as f64)));
+            means.extend((is_whole && 2 * count > length).then(|| sum / count as f64));
         }
         (means.len() > 1).then(|| deviation(&means))
     }
@@ -161,9 +203,73 @@ impl ChunkByRun for [Option<f64>] {
     }
 }
 
-/// Standard deviation of the values that are there.
-fn deviation(values: &[Option<f64>]) -> f64 {
-    let count = values.iter().flatten().count().max(1) as f64;
-    let mean = values.iter().flatten().sum::<f64>() / count;
-    super::rms(values.iter().flatten().map(|value| value - mean))
+/// Standard deviation.
+fn deviation(values: &[f64]) -> f64 {
+    let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
+    super::rms(values.iter().map(|value| value - mean))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::sweep::Sweep;
+    use super::{FittedMap, of, offset_deg, session_deviation};
+    use crate::calibrate::MapKind;
+
+    const ROWS: usize = 9000;
+
+    /// 15 min at 10 Hz, a swing of 20 s.
+    fn sweep() -> Sweep {
+        let theta =
+            (0..ROWS).map(|row| Some(0.8 * libm::sin(row as f64 * 0.1 * std::f64::consts::TAU / 20.0))).collect();
+        Sweep::of_sensor(10.0, vec![Some(2000); ROWS], theta, vec![0; ROWS])
+    }
+
+    fn sensor(error_deg: impl Fn(usize) -> f64) -> FittedMap {
+        let errors: Vec<_> = (0..ROWS).map(|row| Some(error_deg(row).to_radians())).collect();
+        FittedMap { kind: MapKind::Curve, curve: None, memory: None, held_back: errors.clone(), errors }
+    }
+
+    /// Errors of 1° and independent of each other: signs by two patterns that have nothing in common.
+    fn sign(row: usize, shift: u32) -> f64 {
+        if (row as u32).wrapping_mul(2_654_435_769) >> shift & 1 == 0 { 1.0 } else { -1.0 }
+    }
+
+    #[test]
+    fn two_sensors_with_independent_errors_have_a_mean_that_is_better_by_the_root_of_two() {
+        let error =
+            of(&sweep(), 0, &[&sensor(|row| sign(row, 20)), &sensor(|row| sign(row, 25))]).expect("both are read");
+        assert!((error.sensor_deg[0] - 1.0).abs() < 0.01 && (error.sensor_deg[1] - 1.0).abs() < 0.01);
+        assert!((error.mean_deg - 0.707).abs() < 0.03 && (error.difference_deg - 0.707).abs() < 0.03, "{error:?}");
+        assert!(error.slow_difference_deg < 0.1, "{error:?}");
+    }
+
+    #[test]
+    fn an_error_that_changes_every_ten_seconds_has_a_correlation_of_ten_seconds() {
+        let one = sensor(|row| sign(row / 100, 20));
+        let error = of(&sweep(), 0, &[&one, &one]).expect("both are read");
+        // A triangle of 10 s: twice its integral.
+        assert!((7.0..13.0).contains(&error.correlation_s), "{error:?}");
+        // 4 · 0.8 rad in 20 s.
+        let speed_deg_per_s = 4.0 * 0.8_f64.to_degrees() / 20.0;
+        assert!((error.travel_deg / error.correlation_s - speed_deg_per_s).abs() < 0.2, "{error:?}");
+        assert!(error.difference_deg == 0.0 && error.slow_ratio == 0.0);
+    }
+
+    #[test]
+    fn a_segment_with_one_sensor_has_no_difference() {
+        let error = of(&sweep(), 0, &[&sensor(|row| sign(row, 20))]).expect("it is read");
+        assert_eq!((error.sensor_deg.len(), error.difference_deg, error.slow_difference_deg), (1, 0.0, 0.0));
+        assert!(of(&sweep(), 0, &[]).is_none());
+    }
+
+    #[test]
+    fn what_changes_between_two_sessions_is_an_offset_and_no_error_within_them() {
+        let mut sweep = sweep();
+        sweep.sessions = (0..ROWS).map(|row| row / (ROWS / 2)).collect();
+        let one = sensor(|row| if row < ROWS / 2 { 2.0 } else { -2.0 } + 0.5 * sign(row, 20));
+        let error = of(&sweep, 0, &[&one]).expect("it is read");
+        assert!((error.mean_deg - 0.5).abs() < 0.02, "{error:?}");
+        let deviation = session_deviation(&sweep, &[&one]).expect("two sessions");
+        assert!((offset_deg(&[deviation]) - 8.0_f64.sqrt()).abs() < 0.05);
+    }
 }

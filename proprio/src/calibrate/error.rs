@@ -14,6 +14,14 @@ pub enum CalibrationError {
         /// The segment, from 1.
         segment: usize,
     },
+    /// Sessions of different sample rates.
+    #[error("the sample rate is {found_hz:.1} Hz, that of the first session {expected_hz:.1} Hz")]
+    OtherRate {
+        /// Of this session.
+        found_hz: f64,
+        /// Of the first.
+        expected_hz: f64,
+    },
     /// The camera hardly saw a segment.
     #[error("the camera saw segment {segment} in {found} rows, expected at least {least}")]
     Unseen {
@@ -131,6 +139,7 @@ impl CalibrationError {
                 "x is to the right, y along the base, headings clockwise from y: check the axes and the arm's lengths"
                     .to_owned()
             }
+            Self::OtherRate { .. } => "record the sweeps of one calibration at the same rate".to_owned(),
             Self::Unseen { .. } | Self::TooFewRows { .. } => {
                 "record a longer sweep, with the camera seeing every segment".to_owned()
             }
@@ -195,12 +204,35 @@ pub enum Warning {
         /// Pairs of segments, from 1.
         Vec<(usize, usize)>,
     ),
+    /// A method that is better than the fusion of all sensors.
+    #[error(
+        "on the last fifth of the sweep {method} alone is better than fusion, {best_mm:.1} mm against {fusion_mm:.1} mm at \
+         the tip; {}",
+        better_alone(method)
+    )]
+    FusionIsWorse {
+        /// The method.
+        method: &'static str,
+        /// RMSE of its tip.
+        best_mm: f64,
+        /// RMSE of the fusion's tip.
+        fusion_mm: f64,
+    },
     /// An IMU without readings.
     #[error("imu{segment} was not read; the sweep says nothing about it")]
     ImuNotRead {
         /// The segment, from 1.
         segment: usize,
     },
+}
+
+/// Reason why a method alone may be better than fusion.
+fn better_alone(method: &str) -> &'static str {
+    if method == "bend" {
+        "look for an IMU that slips or is missing, and for a camera that is misaligned"
+    } else {
+        "the IMUs hardly drift in a session this long, or a bend sensor slips"
+    }
 }
 
 fn pairs(pairs: &[(usize, usize)]) -> String {

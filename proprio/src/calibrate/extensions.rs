@@ -4,9 +4,10 @@
 //! the bend sensors, and the error of constant curvature.
 
 use calibration_tables::{ArmFile, CoupledKeys, RATIO_RANGE, SegmentKeys, UncertaintyKeys};
+use serde::de::IgnoredAny;
 
 use super::quantile;
-use super::sweep::Sweep;
+use super::sweep::{MeanSquare, Sweep};
 
 /// Share of the bend sensors' error that the moving-average anchor passes on to θ.
 const ANCHORED_SHARE: f64 = 0.4;
@@ -24,7 +25,7 @@ pub(super) fn set(sweep: &Sweep, table: &mut ArmFile) {
     let deviations = UncertaintyKeys {
         theta_deg: ANCHORED_SHARE * bend_deg,
         bias_share: UncertaintyKeys::bias_share(),
-        retired: Default::default(),
+        retired: IgnoredAny,
         bend_deg,
         contact_deg: CONTACT_DEG,
         heading_deg: if is_filtered { HEADING_DEG } else { 0.0 },
@@ -44,7 +45,7 @@ pub(super) fn set(sweep: &Sweep, table: &mut ArmFile) {
 
 /// Error of constant curvature at a segment's end in its own frame, mm: the median segment's, of both coordinates together.
 fn end_mm(sweep: &Sweep) -> f64 {
-    let mut ends: Vec<f64> = sweep.ends.iter().filter_map(|end| end.rms()).collect();
+    let mut ends: Vec<f64> = sweep.ends.iter().filter_map(MeanSquare::rms).collect();
     ends.sort_unstable_by(f64::total_cmp);
     if ends.is_empty() { 0.0 } else { quantile(&ends, 0.5) * 1000.0 }
 }

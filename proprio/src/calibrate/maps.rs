@@ -115,7 +115,11 @@ impl<'s> Fitter<'s> {
             let angles: Vec<f64> = curve.theta_deg.iter().copied().map(f64::to_radians).collect();
             BendMap::Curve(CurveMap::from_volts(&angles, curve.volts))
         };
-        Some(Form { map: map(&fitted.curve), held_back: fitted.held_back.iter().map(map).collect(), curve: Some(fitted.curve) })
+        Some(Form {
+            map: map(&fitted.curve),
+            held_back: fitted.held_back.iter().map(map).collect(),
+            curve: Some(fitted.curve),
+        })
     }
 
     fn quadratic(&self, plain: &BendKeys) -> Form {
@@ -184,5 +188,68 @@ impl<'s> Fitter<'s> {
         let errors = self.errors(|of| Some(of.theta - angles[of.row]?));
         let fitted = memory::fit(&features, &errors)?;
         Some((features, fitted))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::fit::{quadratic, volts};
+    use super::super::sweep::Sweep;
+    use super::{CalibrationOptions, FittedMap, HysteresisMode, MapKind, MapMode, fit};
+
+    /// A sensor of this angle at its voltage, with noise of some tenths of a degree.
+    fn sweep(theta: impl Fn(f64) -> f64) -> Sweep {
+        let rows = 6000;
+        let counts = |row: usize| (2000.0 + 900.0 * libm::sin(row as f64 * 0.1 * std::f64::consts::TAU / 27.0)) as u16;
+        let noise = |row: usize| f64::from((row as u32).wrapping_mul(2_654_435_769) >> 16) / 65536.0 - 0.5;
+        let angle = |row: usize| theta(volts(counts(row))) + 0.01 * noise(row);
+        Sweep::of_sensor(
+            10.0,
+            (0..rows).map(|row| Some(counts(row))).collect(),
+            (0..rows).map(|row| Some(angle(row))).collect(),
+            vec![0; rows],
+        )
+    }
+
+    fn fitted(sweep: &Sweep, maps: MapMode, hysteresis: HysteresisMode) -> FittedMap {
+        let column = &sweep.sensors[0];
+        let pairs: Vec<_> = column.counts.iter().zip(&sweep.theta[0]).filter_map(|(a, b)| a.zip(*b)).collect();
+        let plain = quadratic(&pairs).expect("many voltages").map;
+        fit(sweep, column, &plain, CalibrationOptions { maps, hysteresis })
+    }
+
+    fn rippled(volts: f64) -> f64 {
+        0.9 * (volts - 1.6) + 0.05 * libm::sin(9.0 * volts)
+    }
+
+    #[test]
+    fn a_rippled_sensor_is_fitted_by_a_curve_better_than_by_a_quadratic() {
+        let sweep = sweep(rippled);
+        let [curve, quadratic] = [MapMode::Curve, MapMode::Quadratic]
+            .map(|maps| fitted(&sweep, maps, HysteresisMode::Never).held_back_rmse());
+        assert!(curve < 0.2 * quadratic, "{curve} and {quadratic} rad");
+        assert_eq!(fitted(&sweep, MapMode::Auto, HysteresisMode::Auto).kind, MapKind::Curve);
+    }
+
+    #[test]
+    fn a_quadratic_is_kept_where_it_is_asked_for() {
+        let found = fitted(&sweep(rippled), MapMode::Quadratic, HysteresisMode::Never);
+        assert!(found.kind == MapKind::Quadratic && found.curve.is_none() && found.memory.is_none());
+    }
+
+    /// The angle lags behind the map by 4 s: one of the features.
+    #[test]
+    fn a_sensor_that_creeps_gets_a_memory() {
+        let mut sweep = sweep(|volts| 0.9 * (volts - 1.6));
+        let mut lag = None;
+        for theta in sweep.theta[0].iter_mut().flatten() {
+            let lag = lag.get_or_insert(*theta);
+            *lag += 0.025 * (*theta - *lag);
+            *theta += 0.2 * (*theta - *lag);
+        }
+        let [without, with] =
+            [HysteresisMode::Never, HysteresisMode::Auto].map(|mode| fitted(&sweep, MapMode::Auto, mode));
+        assert!(with.memory.is_some() && without.memory.is_none());
+        assert!(with.held_back_rmse() < 0.3 * without.held_back_rmse());
     }
 }

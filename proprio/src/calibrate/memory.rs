@@ -132,3 +132,82 @@ impl Sums {
         self.square - 2.0 * self.right.dot(weights) + weights.dot(&(self.normal * weights))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use calibration_tables::{ArmFile, BendKeys, CurveKeys, PLANAR_6_ARM};
+    use estimator_core::{BendMap, CurveMap, Estimator, Sample};
+    use nalgebra::Vector4;
+
+    use super::super::sweep::Sweep;
+    use super::{features, keys};
+
+    const LARGEST_RAD: f64 = 0.8;
+    const WEIGHTS: Vector4<f64> = Vector4::new(0.3, -0.2, 0.25, -0.1);
+
+    /// Two swings at once, with every seventh reading missing and a restart.
+    fn sweep() -> Sweep {
+        let phase = |row: usize, period_s: f64| libm::sin(row as f64 * 0.1 * std::f64::consts::TAU / period_s);
+        let counts =
+            |row: usize| (row % 7 != 3).then(|| (2000.0 + 500.0 * phase(row, 23.0) + 400.0 * phase(row, 3.7)) as u16);
+        let runs = (0..2000).map(|row| u32::from(row >= 1200)).collect();
+        Sweep::of_sensor(10.0, (0..2000).map(counts).collect(), vec![Some(0.0); 2000], runs)
+    }
+
+    fn curve() -> CurveKeys {
+        CurveKeys { volts: [0.8, 2.4], theta_deg: (0..65).map(|k| f64::from(k * k) / 64.0 - 20.0).collect() }
+    }
+
+    /// The arm's first segment with this sensor.
+    fn table() -> ArmFile {
+        let mut table = ArmFile::parse(PLANAR_6_ARM).expect("it is committed");
+        table.segments.truncate(1);
+        table.segments[0].bend = Some(vec![BendKeys {
+            c0: 0.0,
+            c1: 1.0,
+            c2: 0.0,
+            rmse_deg: None,
+            volts: None,
+            curve: Some(curve()),
+            memory: Some(keys(&WEIGHTS, LARGEST_RAD)),
+        }]);
+        table
+    }
+
+    #[test]
+    fn the_features_are_those_of_the_estimator() {
+        let sweep = sweep();
+        let angles: Vec<f64> = curve().theta_deg.into_iter().map(f64::to_radians).collect();
+        let map = BendMap::Curve(CurveMap::from_volts(&angles, curve().volts));
+        let counts = &sweep.sensors[0].counts;
+        let angles: Vec<Option<f64>> = counts.iter().map(|counts| map.angle((*counts)?)).collect();
+        let features = features(&angles, &sweep, LARGEST_RAD);
+
+        let baked = table().bake::<f64>(10.0).expect("it is a table");
+        let config = baked.config();
+        let mut estimator = Estimator::<f64, 1, 1000>::new(&config).expect("it has one segment");
+        for (row, counts) in counts.iter().enumerate() {
+            if row > 0 && sweep.runs[row] != sweep.runs[row - 1] {
+                estimator.start().expect("it has one segment");
+            }
+            let sample = Sample { bend: [[*counts, None]], ..Sample::missing(sweep.time_us[row]) };
+            let bend = estimator.update_full(&sample).segments[0].bend.map(|link| link.theta.rad());
+            let expected = angles[row].zip(features[row]).map(|(angle, terms)| angle + WEIGHTS.dot(&terms));
+            assert_eq!(bend.is_some(), expected.is_some(), "row {row}");
+            if let Some((found, expected)) = bend.zip(expected) {
+                assert!((found - expected).abs() < 1e-12, "row {row}: {found} and {expected} rad");
+            }
+        }
+    }
+
+    #[test]
+    fn weights_that_made_the_data_are_found() {
+        let sweep = sweep();
+        let angles: Vec<_> =
+            sweep.sensors[0].counts.iter().map(|counts| Some(f64::from((*counts)?) / 1000.0 - 2.0)).collect();
+        let features = features(&angles, &sweep, LARGEST_RAD);
+        let errors: Vec<_> = features.iter().map(|terms| Some(WEIGHTS.dot(&(*terms)?))).collect();
+        let found = super::fit(&features, &errors).expect("four features").weights;
+        assert!((found - WEIGHTS).amax() < 0.05, "{found}");
+    }
+}

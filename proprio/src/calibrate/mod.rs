@@ -1,4 +1,4 @@
-//! Calibration: an arm description and a session with camera truth become a table.
+//! Calibration: an arm description and sessions with camera truth become a table.
 //!
 //! 1. Each bend sensor's quadratic is fitted to the truth by least squares (paper, eq. 1), after checks that name a
 //!    sensor that is dead, saturated, swapped or bent back.
@@ -7,16 +7,19 @@
 //! 3. What the maps leave of the sweep gives the errors that the bias filter reckons with; the IMUs' turns against the
 //!    camera's give their sensitivity.
 //! 4. The error sources of the estimates, contact detection and coupled segments are set.
+//! 5. The same is done without the last fifth of the session, on which the methods are then compared.
 //!
 //! An arm description with `[drift] kind = "anchor"` gets the paper's table: quadratics, and KF_orient and KF_coord with
 //! the errors that bend sensors and anchored IMUs make in a replay of the sweep.
 
 mod bend_error;
 mod curvature;
+mod derive;
 mod error;
 mod extensions;
 mod fit;
 mod folds;
+mod held_out;
 mod hysteresis;
 mod imu_scale;
 mod imus;
@@ -27,18 +30,18 @@ mod sensors;
 mod spline;
 mod sweep;
 
-use std::path::Path;
+use std::path::PathBuf;
 
-use calibration_tables::{ArmFile, BendKeys, DriftKeys};
+use calibration_tables::ArmFile;
 
 pub(crate) use curvature::constant_curvature_error;
 pub use error::{CalibrationError, Warning};
+pub use held_out::HeldOut;
 pub use hysteresis::HysteresisMode;
 pub use maps::{MapKind, MapMode};
 
 use crate::error::Error;
 use crate::replay::NamedTable;
-use sensors::Sensor;
 use sweep::Sweep;
 
 /// Truth whose tip lies further from the chain of its own headings than constant curvature explains, % of the length:
@@ -97,85 +100,27 @@ pub struct Calibration {
     pub sensors: Vec<SensorReport>,
     /// One report for each segment that has bend sensors.
     pub segments: Vec<SegmentReport>,
+    /// Errors on the last fifth of each session, by a table of the rest; `None` where the rest makes no table.
+    pub held_out: Option<HeldOut>,
     /// What deserves a look.
     pub warnings: Vec<Warning>,
 }
 
-/// Calibrates `arm` on a session with truth.
+/// Calibrates `arm` on one session with truth or on several, which may be of different days.
 ///
 /// # Errors
-/// [`Error::Session`] where the session cannot be used, [`Error::Calibration`] where no good table can be made of it.
-pub fn calibrate(session: &Path, arm: &NamedTable, options: CalibrationOptions) -> Result<Calibration, Error> {
-    let refuse = |source| Error::Calibration { path: session.to_owned(), source };
-    let sweep = Sweep::read(session, &arm.file)?;
+/// [`Error::Session`] where a session cannot be used, [`Error::Calibration`] where no good table can be made of them.
+pub fn calibrate(sessions: &[PathBuf], arm: &NamedTable, options: CalibrationOptions) -> Result<Calibration, Error> {
+    let sweep = Sweep::read(sessions, &arm.file)?;
+    let refuse = |source| Error::Calibration { path: sessions.first().cloned().unwrap_or_default(), source };
     let mut warnings = sweep.check_range().map_err(refuse)?;
     warnings.extend(imus::check(&sweep).map_err(refuse)?);
-    let mut table = ArmFile { tuning: None, ..arm.file.clone() };
-    table.drift.get_or_insert_with(DriftKeys::kalman);
-    let is_paper = table.bias_filter().is_none() && options.maps != MapMode::Curve;
-    let of_maps = if is_paper {
-        CalibrationOptions { maps: MapMode::Quadratic, hysteresis: HysteresisMode::Never }
-    } else {
-        options
-    };
-    let sensors = sensors::fit(&sweep, of_maps, &mut warnings).map_err(refuse)?;
-    let percent = sweep.tip.rms().unwrap_or(0.0) * 1e5 / table.length_mm();
-    if percent > MISFIT_PERCENT {
-        return Err(refuse(CalibrationError::TruthMisfit { percent }));
-    }
-    set_maps(&sensors, &mut table);
-    let segments = reports(&sweep, &sensors, &table);
-    if is_paper {
-        hysteresis::set(&sweep, &mut table.segments, options.hysteresis);
-    }
-    if table.bias_filter().is_some() {
-        set_errors(&sweep, &sensors, &mut table);
-    } else {
-        let mut named = NamedTable { file: table, path: arm.path };
-        residuals::set_filters(session, &mut named, sweep.rate_hz)?;
-        table = named.file;
-    }
-    extensions::set(&sweep, &mut table);
-    Ok(Calibration { table, sensors: sensors.into_iter().map(|sensor| sensor.report).collect(), segments, warnings })
-}
-
-/// Sets the maps, and clears all else that a calibration sets of the segments.
-fn set_maps(sensors: &[Sensor], table: &mut ArmFile) {
-    for (i, segment) in table.segments.iter_mut().enumerate() {
-        let of_segment = sensors.iter().filter(|sensor| sensor.segment == i);
-        segment.bend = Some(of_segment.map(|sensor| sensor.map.clone()).collect::<Vec<BendKeys>>());
-        segment.hysteresis.clear();
-        (segment.orient, segment.coord) = (None, None);
-        (segment.bend_error, segment.imu_scale) = (None, None);
-    }
-}
-
-/// Sets the errors that the bias filter reckons with, and the IMUs' sensitivity.
-fn set_errors(sweep: &Sweep, sensors: &[Sensor], table: &mut ArmFile) {
-    let scales = imu_scale::of(sweep);
-    for (i, (segment, scale)) in table.segments.iter_mut().zip(scales).enumerate() {
-        let of_segment: Vec<_> =
-            sensors.iter().filter(|sensor| sensor.segment == i).map(|sensor| &sensor.fitted).collect();
-        segment.bend_error = bend_error::of(sweep, i, &of_segment);
-        segment.imu_scale = scale;
-    }
-}
-
-/// The segments' expected errors.
-fn reports(sweep: &Sweep, sensors: &[Sensor], table: &ArmFile) -> Vec<SegmentReport> {
-    let scales = if table.bias_filter().is_some() { imu_scale::of(sweep) } else { vec![None; table.segments.len()] };
-    let report = |(i, imu_scale): (usize, Option<f64>)| {
-        let of_segment: Vec<&Sensor> = sensors.iter().filter(|sensor| sensor.segment == i).collect();
-        let mean = |row: usize| {
-            let errors = || of_segment.iter().filter_map(|sensor| sensor.fitted.held_back[row]);
-            let count = errors().count();
-            (count > 0).then(|| errors().sum::<f64>() / count as f64)
-        };
-        let held_back_rmse_deg = rms((0..sweep.runs.len()).filter_map(mean)).to_degrees();
-        let maps = of_segment.iter().map(|sensor| (sensor.fitted.kind, sensor.fitted.memory.is_some())).collect();
-        (!of_segment.is_empty()).then_some(SegmentReport { segment: i + 1, held_back_rmse_deg, maps, imu_scale })
-    };
-    scales.into_iter().enumerate().filter_map(report).collect()
+    let derived = derive::table(&sweep, sessions, arm, options, &mut warnings)?;
+    let segments = derived.segment_reports(&sweep);
+    let held_out = held_out::score(&sweep, sessions, arm, options)?;
+    warnings.extend(held_out.as_ref().and_then(HeldOut::warning));
+    let sensors = derived.sensors.into_iter().map(|sensor| sensor.report).collect();
+    Ok(Calibration { table: derived.table, sensors, segments, held_out, warnings })
 }
 
 /// Root mean square.

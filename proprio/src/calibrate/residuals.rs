@@ -9,16 +9,19 @@
 //! that the bend angles add up to, the same for the whole arm: along the chain the errors of bend sensors grow, where
 //! those of IMUs do not, as each heading is measured by itself.
 
-use std::path::Path;
+use std::path::PathBuf;
 
 use calibration_tables::{MAX_WINDOW, NoiseKeys};
 use estimator_core::{
-    Angle, Decimated, Decimator, MovingAverageAnchor, Pcc, SegmentConfig, SegmentEstimate, Turns,
+    AnchorConfig, Angle, ArmConfig, Decimated, Decimator, MovingAverageAnchor, Pcc, SegmentConfig, SegmentEstimate,
+    Turns,
 };
 use nalgebra::Vector2;
 
+use super::sweep::Sweep;
 use crate::error::Error;
 use crate::replay::{NamedTable, replay};
+use crate::session::Row;
 
 /// Bounds of R_imu : R_bend for KF_orient and for KF_coord: the session is only a sample, and slower than what follows.
 const ORIENT_RATIO: [f64; 2] = [0.01, 1.0];
@@ -50,7 +53,7 @@ impl Errors {
     }
 }
 
-/// What is gathered of one segment while the session is replayed.
+/// What is accumulated of one segment while the sessions are replayed.
 struct ResidualAccumulator<'t> {
     segment: &'t SegmentConfig<f64>,
     /// Anchors to the truth, as perfect bend sensors would be.
@@ -59,42 +62,76 @@ struct ResidualAccumulator<'t> {
     coord: Errors,
 }
 
-/// Sets `orient` and `coord` of every segment that has bend sensors.
-pub(super) fn set_filters(session: &Path, table: &mut NamedTable, rate_hz: f64) -> Result<(), Error> {
-    let baked = table.bake::<f64>(rate_hz)?;
+/// What is accumulated of the arm.
+struct Residuals<'t> {
+    accumulators: Vec<ResidualAccumulator<'t>>,
+    headings: Errors,
+    decimator: Decimator,
+    anchor: AnchorConfig,
+}
+
+/// Sets `orient` and `coord` of every segment that has bend sensors, from the rows of the sessions that are in the sweep.
+pub(super) fn set_filters(sessions: &[PathBuf], sweep: &Sweep, table: &mut NamedTable) -> Result<(), Error> {
+    let baked = table.bake::<f64>(sweep.rate_hz)?;
     let baked = baked.config();
-    let accumulator = |segment| ResidualAccumulator {
-        segment,
-        anchor: MovingAverageAnchor::new(),
-        orient: Errors::default(),
-        coord: Errors::default(),
-    };
-    let mut accumulators: Vec<ResidualAccumulator> = baked.segments.iter().map(accumulator).collect();
-    let mut headings = Errors::default();
-    let mut decimator = Decimator::new();
-    replay::<f64>(session, table, |row, outcome| {
-        if row.starts {
-            decimator = Decimator::new();
-            for accumulator in &mut accumulators {
-                accumulator.anchor = MovingAverageAnchor::new();
+    let mut residuals = Residuals::new(&baked);
+    for (number, session) in sessions.iter().enumerate() {
+        let mut rows_left = sweep.sessions.iter().filter(|of| **of == number).count();
+        residuals.start();
+        replay::<f64>(session, table, |row, outcome| {
+            if rows_left > 0 {
+                residuals.add_row(row, &outcome.estimate.segments);
+                rows_left -= 1;
             }
-        }
-        let slot = decimator.tick(&baked.anchor);
-        let mut sums = Some([0.0, 0.0]);
-        for (i, (accumulator, estimate)) in accumulators.iter_mut().zip(&outcome.estimate.segments).enumerate() {
-            let errors = accumulator.add_row(row.true_theta(i), estimate, slot);
-            sums = sums.zip(errors).map(|(sums, errors)| [sums[0] + errors[0], sums[1] + errors[1]]);
-            if let Some([imu, bend]) = sums {
-                headings.add(imu * imu, bend * bend, 1.0);
-            }
-        }
-        Ok(())
-    })?;
+            Ok(())
+        })?;
+    }
+    let Residuals { accumulators, headings, .. } = residuals;
     for (segment, accumulator) in table.file.segments.iter_mut().zip(&accumulators) {
         segment.orient = accumulator.orient.noise(headings.ratio(ORIENT_RATIO));
         segment.coord = accumulator.coord.noise(accumulator.coord.ratio(COORD_RATIO));
     }
     Ok(())
+}
+
+impl<'t> Residuals<'t> {
+    fn new(config: &ArmConfig<'t, f64>) -> Self {
+        let accumulator = |segment| ResidualAccumulator {
+            segment,
+            anchor: MovingAverageAnchor::new(),
+            orient: Errors::default(),
+            coord: Errors::default(),
+        };
+        Self {
+            accumulators: config.segments.iter().map(accumulator).collect(),
+            headings: Errors::default(),
+            decimator: Decimator::new(),
+            anchor: config.anchor,
+        }
+    }
+
+    /// Forgets the anchors: the estimator starts.
+    fn start(&mut self) {
+        self.decimator = Decimator::new();
+        for accumulator in &mut self.accumulators {
+            accumulator.anchor = MovingAverageAnchor::new();
+        }
+    }
+
+    fn add_row(&mut self, row: &Row, estimates: &[SegmentEstimate<f64>]) {
+        if row.starts {
+            self.start();
+        }
+        let slot = self.decimator.tick(&self.anchor);
+        let mut sums = Some([0.0, 0.0]);
+        for (i, (accumulator, estimate)) in self.accumulators.iter_mut().zip(estimates).enumerate() {
+            let errors = accumulator.add_row(row.true_theta(i), estimate, slot);
+            sums = sums.zip(errors).map(|(sums, errors)| [sums[0] + errors[0], sums[1] + errors[1]]);
+            if let Some([imu, bend]) = sums {
+                self.headings.add(imu * imu, bend * bend, 1.0);
+            }
+        }
+    }
 }
 
 impl ResidualAccumulator<'_> {

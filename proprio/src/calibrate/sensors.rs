@@ -2,11 +2,11 @@
 
 use calibration_tables::BendKeys;
 
-use super::{CalibrationOptions, SensorReport};
 use super::error::{CalibrationError, Warning};
 use super::fit::{Fit, quadratic, volts};
 use super::maps::{self, FittedMap};
 use super::sweep::{LEAST_ROWS, SensorColumn, Sweep, range};
+use super::{CalibrationOptions, SensorReport};
 
 /// A sensor whose readings stay within this range is dead: ten times the noise of a good one.
 const DEAD_COUNTS: u16 = 20;

@@ -44,14 +44,15 @@ struct Sums {
 /// Fits angles (rad) over voltage (V) at this sample rate; `None` where the voltage hardly changes.
 pub(super) fn fit(observations: &[Observation], rate_hz: f64) -> Option<FittedCurve> {
     let volts @ [lo, hi] = voltage_range(observations)?;
-    let mut folds = [Sums::ZERO; FOLDS];
+    let mut folds = vec![Sums::ZERO; FOLDS];
     for observation in observations {
         folds[observation.fold].add(observation, volts);
     }
     let all = folds.iter().fold(Sums::ZERO, |all, fold| all.plus(fold, 1.0));
     let penalty = third_differences();
     let solve = |sums: &Sums, factor: f64| sums.solve(&penalty, factor * rate_hz / 10.0);
-    let held_back = |factor: f64| folds.iter().map(|fold| solve(&all.plus(fold, -1.0), factor)).collect::<Option<Vec<_>>>();
+    let held_back =
+        |factor: f64| folds.iter().map(|fold| solve(&all.plus(fold, -1.0), factor)).collect::<Option<Vec<_>>>();
 
     let fits = PENALTIES.iter().filter_map(|factor| {
         let coefficients = held_back(*factor)?;
@@ -111,8 +112,11 @@ fn third_differences() -> Normal {
 }
 
 impl Sums {
-    const ZERO: Self =
-        Self { normal: Normal::from_array_storage(nalgebra::ArrayStorage([[0.0; BASIS]; BASIS])), right: ZEROS, square: 0.0 };
+    const ZERO: Self = Self {
+        normal: Normal::from_array_storage(nalgebra::ArrayStorage([[0.0; BASIS]; BASIS])),
+        right: ZEROS,
+        square: 0.0,
+    };
 
     fn add(&mut self, observation: &Observation, volts: [f64; 2]) {
         let (first, splines) = basis(observation.volts, volts);

@@ -1,6 +1,6 @@
 //! The calibration session, column by column.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use calibration_tables::{ArmFile, MAX_SEGMENTS};
 use estimator_core::{HeadingTracker, ImuReading, Phase, SENSORS_PER_SEGMENT, SegmentConfig, Turns};
@@ -17,10 +17,13 @@ const LEAST_RANGE_DEG: f64 = 10.0;
 const GOOD_RANGE_DEG: f64 = 45.0;
 /// Squared correlation from which on two segments are coupled: a sensor's error is a few percent of its signal.
 const COUPLED: f64 = 0.98;
+/// Difference of two sessions' sample rates, as a share, that is none.
+const SAME_RATE: f64 = 0.02;
 /// Rows that a fit needs at least.
 pub(super) const LEAST_ROWS: usize = 50;
 
 /// Readings of one bend sensor.
+#[derive(Clone)]
 pub(super) struct SensorColumn {
     /// Such as `bend3b`.
     pub name: String,
@@ -39,6 +42,8 @@ pub(super) struct Sweep {
     pub ends_with_line: bool,
     /// In which run of the estimator each row is: where a new one starts, headings have a new zero and plays are at rest.
     pub runs: Vec<u32>,
+    /// The session that each row is of.
+    pub sessions: Vec<usize>,
     /// True bend angle of each segment, rad.
     pub theta: Vec<Vec<Option<f64>>>,
     /// True heading of each segment's end, unwrapped, rad.
@@ -77,39 +82,63 @@ struct Unwrap {
 }
 
 impl Sweep {
-    pub fn read(session: &Path, arm: &ArmFile) -> Result<Self, Error> {
-        let mut reader = SessionReader::open(session, &Needs::of_calibration(arm))?;
-        if !reader.is_regular_file() {
-            let path = session.to_owned();
-            return Err(SessionError { path, line: None, column: None, problem: Problem::NotAFile }.into());
-        }
+    /// Reads one sweep or several of the same arm, one after the other.
+    pub fn read(sessions: &[PathBuf], arm: &ArmFile) -> Result<Self, Error> {
         let n = arm.segments.len();
-        let refuse = |source| Error::Calibration { path: session.to_owned(), source };
         let mut sweep = Self {
-            rate_hz: reader.rate_hz(arm.rate_hz),
+            rate_hz: arm.rate_hz,
             time_us: Vec::new(),
-            ends_with_line: reader.ends_with_line(),
+            ends_with_line: true,
             runs: Vec::new(),
+            sessions: Vec::new(),
             theta: vec![Vec::new(); n],
             heading: vec![Vec::new(); n],
             imu: vec![Vec::new(); n],
-            sensors: sensor_columns(&reader).map_err(refuse)?,
+            sensors: Vec::new(),
             ends: vec![MeanSquare::default(); n],
             tip: MeanSquare::default(),
             segments: arm.segments.iter().map(geometry).collect(),
         };
-        let unread = [HeadingTracker::new(0, Turns::ZERO); MAX_SEGMENTS];
-        let mut unwrap = Unwrap { imu: unread, truth: unread };
-        let mut progress = Progress::new(format!("reading {}", session.display()), reader.progress().1);
-        while let Some(row) = reader.next_row()? {
-            sweep.push(&row, &mut unwrap);
-            progress.set(reader.progress().0);
+        let mut needs = Needs::of_calibration(arm);
+        for (number, session) in sessions.iter().enumerate() {
+            sweep.read_one(session, number, arm, &mut needs)?;
         }
         Ok(sweep)
     }
 
-    fn push(&mut self, row: &Row, unwrap: &mut Unwrap) {
-        self.runs.push(self.runs.last().copied().unwrap_or_default() + u32::from(row.starts));
+    fn read_one(&mut self, session: &Path, number: usize, arm: &ArmFile, needs: &mut Needs) -> Result<(), Error> {
+        let mut reader = SessionReader::open(session, needs)?;
+        if !reader.is_regular_file() {
+            let path = session.to_owned();
+            return Err(SessionError { path, line: None, column: None, problem: Problem::NotAFile }.into());
+        }
+        let refuse = |source| Error::Calibration { path: session.to_owned(), source };
+        let rate_hz = reader.rate_hz(arm.rate_hz);
+        if number == 0 {
+            self.rate_hz = rate_hz;
+            self.sensors = sensor_columns(&reader).map_err(refuse)?;
+            // Those of the first session are needed of all.
+            for (count, present) in needs.bend.iter_mut().zip(reader.bend_sensors()) {
+                *count = Some(present.into_iter().filter(|present| *present).count());
+            }
+        } else if (rate_hz / self.rate_hz - 1.0).abs() > SAME_RATE {
+            return Err(refuse(CalibrationError::OtherRate { found_hz: rate_hz, expected_hz: self.rate_hz }));
+        }
+        self.ends_with_line &= reader.ends_with_line();
+        let unread = [HeadingTracker::new(0, Turns::ZERO); MAX_SEGMENTS];
+        let mut unwrap = Unwrap { imu: unread, truth: unread };
+        let mut progress = Progress::new(format!("reading {}", session.display()), reader.progress().1);
+        while let Some(row) = reader.next_row()? {
+            self.push(&row, number, &mut unwrap);
+            progress.set(reader.progress().0);
+        }
+        Ok(())
+    }
+
+    fn push(&mut self, row: &Row, session: usize, unwrap: &mut Unwrap) {
+        let starts = row.starts || self.sessions.last().is_some_and(|last| *last != session);
+        self.runs.push(self.runs.last().copied().unwrap_or_default() + u32::from(starts));
+        self.sessions.push(session);
         self.time_us.push(row.sample.time_us);
         self.push_shape(row);
         for i in 0..self.theta.len() {
@@ -122,6 +151,35 @@ impl Sweep {
         for sensor in &mut self.sensors {
             sensor.counts.push(row.sample.bend[sensor.segment][sensor.place]);
         }
+    }
+
+    /// The sweep without the last `share` of each session's rows.
+    pub fn without_last(&self, share: f64) -> Self {
+        let is_kept: Vec<bool> = self.last_rows(share).into_iter().map(|is_last| !is_last).collect();
+        let columns = |columns: &[Vec<Option<f64>>]| columns.iter().map(|column| kept(column, &is_kept)).collect();
+        let sensor = |sensor: &SensorColumn| SensorColumn { counts: kept(&sensor.counts, &is_kept), ..sensor.clone() };
+        Self {
+            time_us: kept(&self.time_us, &is_kept),
+            runs: kept(&self.runs, &is_kept),
+            sessions: kept(&self.sessions, &is_kept),
+            theta: columns(&self.theta),
+            heading: columns(&self.heading),
+            imu: columns(&self.imu),
+            sensors: self.sensors.iter().map(sensor).collect(),
+            ends: self.ends.clone(),
+            segments: self.segments.clone(),
+            ..*self
+        }
+    }
+
+    /// Whether each row is in the last `share` of its session.
+    pub fn last_rows(&self, share: f64) -> Vec<bool> {
+        let sessions = self.sessions.chunk_by(|a, b| a == b);
+        let is_last = |rows: &[usize]| {
+            let first = ((1.0 - share) * rows.len() as f64).round() as usize;
+            (0..rows.len()).map(move |row| row >= first)
+        };
+        sessions.flat_map(is_last).collect()
     }
 
     /// Compares the true ends with constant curvature.
@@ -187,6 +245,11 @@ impl MeanSquare {
     }
 }
 
+/// The rows of a column that are kept.
+fn kept<T: Copy>(column: &[T], is_kept: &[bool]) -> Vec<T> {
+    column.iter().zip(is_kept).filter(|(_, is_kept)| **is_kept).map(|(value, _)| *value).collect()
+}
+
 fn sensor_columns(reader: &SessionReader) -> Result<Vec<SensorColumn>, CalibrationError> {
     let mut columns = Vec::new();
     for (segment, present) in reader.bend_sensors().enumerate() {
@@ -204,4 +267,26 @@ fn sensor_columns(reader: &SessionReader) -> Result<Vec<SensorColumn>, Calibrati
 /// The smallest and the largest value.
 pub(super) fn range(values: impl Iterator<Item = f64>) -> [f64; 2] {
     values.fold([f64::INFINITY, f64::NEG_INFINITY], |[lo, hi], value| [lo.min(value), hi.max(value)])
+}
+
+#[cfg(test)]
+impl Sweep {
+    /// A session of one segment with one bend sensor.
+    pub fn of_sensor(rate_hz: f64, counts: Vec<Option<u16>>, theta: Vec<Option<f64>>, runs: Vec<u32>) -> Self {
+        let rows = theta.len();
+        Self {
+            rate_hz,
+            time_us: (0..rows).map(|row| (row as f64 * 1e6 / rate_hz) as u64).collect(),
+            ends_with_line: true,
+            runs,
+            sessions: vec![0; rows],
+            heading: vec![theta.clone()],
+            imu: vec![theta.clone()],
+            theta: vec![theta],
+            sensors: vec![SensorColumn { name: "bend1a".to_owned(), segment: 0, place: 0, counts }],
+            ends: vec![MeanSquare::default()],
+            tip: MeanSquare::default(),
+            segments: vec![SegmentConfig::uncalibrated(0.1, 0.0)],
+        }
+    }
 }

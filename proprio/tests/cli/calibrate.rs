@@ -1,6 +1,6 @@
 //! `calibrate` on good sweeps: the table, the report, and what the table's estimates are worth.
 
-use super::common::{Calibration, Csv, Folder, arm, figure, json, sweep, table};
+use super::common::{Calibration, Csv, Folder, anchored, arm, figure, json, sweep, table};
 
 const SENSORS: [&str; 12] = [
     "bend1a", "bend1b", "bend2a", "bend2b", "bend3a", "bend3b", "bend4a", "bend4b", "bend5a", "bend5b", "bend6a",
@@ -10,7 +10,7 @@ const SENSORS: [&str; 12] = [
 /// Name and RMSE of each line of the report.
 fn rmses(stdout: &str) -> Vec<(String, f64)> {
     let cells = stdout.lines().map(|line| line.split_whitespace().collect::<Vec<_>>());
-    let sensors = cells.filter(|cells| cells.first().is_some_and(|name| name.starts_with("bend")));
+    let sensors = cells.filter(|cells| cells.first().is_some_and(|name| SENSORS.contains(name)));
     sensors.map(|cells| (cells[0].to_owned(), cells[2].parse().expect("an RMSE"))).collect()
 }
 
@@ -115,6 +115,97 @@ fn true_headings_within_a_turn_give_the_same_maps() {
             }
         }
     }
+}
+
+#[test]
+fn every_sensor_gets_a_map_and_a_memory_by_held_back_error_and_every_segment_its_errors() {
+    let table = Calibration::of(&sweep()).table();
+    assert_eq!(table.drift.as_ref().map(|drift| drift.kind), Some(calibration_tables::DriftKind::Kalman));
+    for (i, segment) in (1..).zip(&table.segments) {
+        let sensors = segment.bend.as_ref().expect("it is a table");
+        assert!(sensors.iter().any(|sensor| sensor.curve.is_some()), "segment {i}");
+        let error = segment.bend_error.as_ref().expect("the sweep shows it");
+        assert_eq!(error.sensor_deg.len(), sensors.len());
+        let worst = error.sensor_deg.iter().copied().fold(0.0, f64::max);
+        assert!((0.3..=worst).contains(&error.mean_deg), "segment {i}: {error:?}");
+        // The twin's gyroscopes are within 3 %, as the BNO055's.
+        let scale = segment.imu_scale.expect("the sweep shows it");
+        assert!((scale - 1.0).abs() < 0.03, "segment {i}: {scale}");
+        assert!(segment.orient.is_none() && segment.hysteresis.is_empty());
+    }
+}
+
+#[test]
+fn the_expected_error_of_each_segment_is_printed() {
+    let stdout = Calibration::of(&sweep()).run.stdout;
+    let lines = stdout.lines().map(|line| line.split_whitespace().collect::<Vec<_>>());
+    let segments: Vec<_> = lines.filter(|cells| cells.len() > 3 && cells[0].len() == 1).collect();
+    assert_eq!(segments.iter().map(|cells| cells[0]).collect::<Vec<_>>(), ["1", "2", "3", "4", "5", "6"]);
+    for cells in segments {
+        let error_deg: f64 = cells[1].parse().expect("an error");
+        assert!((0.1..5.0).contains(&error_deg), "{cells:?}");
+    }
+}
+
+#[test]
+fn the_methods_are_compared_on_the_last_fifth() {
+    let stdout = Calibration::of(&sweep()).run.stdout;
+    let rmse_mm = |method: &str| -> f64 {
+        let line = stdout.lines().find(|line| line.split_whitespace().next() == Some(method)).expect("a line each");
+        line.split_whitespace().last().expect("two cells").parse().expect("an RMSE")
+    };
+    assert!(rmse_mm("fusion") < rmse_mm("bend") && rmse_mm("fusion") < rmse_mm("imu_o"), "{stdout}");
+}
+
+#[test]
+fn an_arm_with_the_anchor_gets_the_papers_table() {
+    let folder = Folder::with("sweep.csv", sweep().to_string());
+    folder.write("arm.toml", anchored());
+    folder.done(&["calibrate", "sweep.csv", "--arm", "arm.toml", "--map", "quadratic", "-o", "quadratic.toml"]);
+    folder.done(&["calibrate", "sweep.csv", "--arm", "arm.toml", "-o", "auto.toml"]);
+    let text = folder.read("quadratic.toml");
+    assert_eq!(text, folder.read("auto.toml"));
+    for key in ["curve", "memory", "bend_error", "imu_scale"] {
+        assert!(!text.contains(key), "{key}");
+    }
+    assert_eq!(text.matches("orient = ").count(), 6);
+}
+
+/// The bend sensors of the second day have another offset, half of it to either side of the pooled maps.
+#[test]
+fn what_changes_between_two_sweeps_widens_the_offset() {
+    let mut other = sweep();
+    for i in 1..=6 {
+        // Their maps run against each other.
+        for (place, counts) in [('a', 20), ('b', -20)] {
+            other.map(&format!("bend{i}{place}_adc"), |_, cell| {
+                (cell.parse::<i32>().expect("counts") + counts).clamp(0, 4095).to_string()
+            });
+        }
+    }
+    let offset_deg = |second: &Csv| {
+        let folder = Folder::with("one.csv", sweep().to_string());
+        folder.write("two.csv", second.to_string());
+        folder.done(&["calibrate", "one.csv", "two.csv", "--arm", arm(), "-o", "table.toml"]);
+        let table = calibration_tables::ArmFile::parse(&folder.read("table.toml")).expect("a table");
+        table.drift.expect("calibrate writes it").offset_deg
+    };
+    assert_eq!(offset_deg(&sweep()).to_bits(), 0.5_f64.to_bits());
+    assert!((0.7..10.0).contains(&offset_deg(&other)), "{}", offset_deg(&other));
+    assert_eq!(
+        Calibration::of(&sweep()).table().drift.expect("calibrate writes it").offset_deg.to_bits(),
+        1.0_f64.to_bits()
+    );
+}
+
+#[test]
+fn sweeps_of_different_rates_are_refused() {
+    let folder = Folder::with("one.csv", sweep().to_string());
+    let mut other = sweep();
+    other.map("time_s", |row, _| format!("{:.3}", row as f64 * 0.013));
+    folder.write("two.csv", other.to_string());
+    let error = folder.refused(&["calibrate", "one.csv", "two.csv", "--arm", arm(), "-o", "table.toml"]);
+    assert!(error.starts_with("two.csv: the sample rate is"), "{error}");
 }
 
 fn check_scenario(scenario: u64) {

@@ -216,6 +216,12 @@ pub fn arm() -> &'static str {
     text(ARM.get_or_init(|| tables().join("arms/planar-6.toml")))
 }
 
+/// The text of the same with the paper's anchor.
+pub fn anchored() -> String {
+    let text = fs::read_to_string(arm()).expect("the reference arm's description");
+    text.replacen("[[segment]]", "[drift]\nkind = \"anchor\"\n\n[[segment]]", 1)
+}
+
 /// The reference arm's committed table.
 pub fn table() -> &'static str {
     static TABLE: OnceLock<PathBuf> = OnceLock::new();

@@ -2,7 +2,7 @@
 
 use calibration_tables::{ArmFile, SegmentKeys};
 
-use super::common::{Calibration, Csv, Folder, arm, figure, json, simulate, sweep};
+use super::common::{Calibration, Csv, Folder, anchored, arm, figure, json, simulate, sweep};
 use super::recordings::Recording;
 
 /// The session as it would be if the board had restarted before each of these rows: a new tare, and IMUs that start at
@@ -31,6 +31,14 @@ fn calibrated(session: &Csv, file: &str, hysteresis: &str) -> Folder {
     folder
 }
 
+/// The table of a sweep with the paper's anchor.
+fn calibrated_with_anchor(session: &Csv) -> ArmFile {
+    let folder = Folder::with("sweep.csv", session.to_string());
+    folder.write("arm.toml", anchored());
+    folder.done(&["calibrate", "sweep.csv", "--arm", "arm.toml", "--hysteresis", "never", "-o", "table.toml"]);
+    table(&folder)
+}
+
 fn table(folder: &Folder) -> ArmFile {
     ArmFile::load(&folder.path("table.toml")).expect("a calibration makes a valid table")
 }
@@ -56,14 +64,14 @@ fn a_sweep_in_which_the_board_restarted_gives_the_same_maps() {
 #[test]
 fn sweeps_one_after_the_other_with_a_restart_between_have_the_errors_of_both() {
     let other = simulate("--scenario sweep --seconds 600 --seed 42");
-    let alone = [sweep(), other.clone()].map(|session| table(&calibrated(&session, "sweep.csv", "never")));
+    let alone = [sweep(), other.clone()].map(|session| calibrated_with_anchor(&session));
     let mut both = sweep();
     let time = both.column("time_s");
     both.rows.extend(other.rows.into_iter().map(|mut row| {
         row[time] = format!("{:.3}", row[time].parse::<f64>().expect("a time") + 600.0);
         row
     }));
-    let both = table(&calibrated(&restarted(both, &[6000]), "sweep.csv", "never"));
+    let both = calibrated_with_anchor(&restarted(both, &[6000]));
     for (i, found) in both.segments.iter().enumerate() {
         let variances = |segment: &SegmentKeys| {
             let (orient, coord) = (segment.orient.as_ref().expect("stated"), segment.coord.as_ref().expect("stated"));
@@ -77,7 +85,7 @@ fn sweeps_one_after_the_other_with_a_restart_between_have_the_errors_of_both() {
     }
 }
 
-/// Plays are at rest where a run starts, wherever the arm is.
+/// A sensor's memory starts where a run starts, wherever the arm is.
 #[test]
 fn the_hysteresis_of_a_sweep_in_which_the_board_restarted_is_corrected_as_well() {
     let bend = |session: &Csv| {
@@ -87,7 +95,9 @@ fn the_hysteresis_of_a_sweep_in_which_the_board_restarted_is_corrected_as_well()
         figure(&json(&run), "bend", "theta_rmse_deg")
     };
     let (found, expected) = (bend(&restarted(sweep(), &[2000, 3333, 3340])), bend(&sweep()));
-    assert!(found < 1.01 * expected, "{found}°, {expected}° without a restart");
+    // The arm of this sweep was not vented: until the lag of 40 s has forgotten the start, the memory is not that of the
+    // sensor, here in 120 of 600 s.
+    assert!(found < 1.05 * expected, "{found}°, {expected}° without a restart");
 }
 
 #[test]

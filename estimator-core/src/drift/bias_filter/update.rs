@@ -1,25 +1,28 @@
-//! Updates of the bias filter: by the bend sensors of one segment in its turn, and by a whole arm at rest.
+//! Updates of the bias filter: by bend sensors that have moved, one segment in its turn, and by an arm at rest.
 
-use super::BiasFilter;
-use super::bend_monitor::TrustedBend;
-use super::rest::RestWindow;
-use super::state::{BIAS, OFFSET};
 use crate::config::{ArmConfig, BendErrorConfig, BiasFilterConfig};
 use crate::drift::SensedArm;
+use crate::drift::bend_monitor::TrustedBend;
+use crate::drift::bias_filter::{BiasFilter, MAX_RATIO, SegmentTrack, bounded_ratio, since};
+use crate::drift::bias_state::{BIAS, OFFSET};
+use crate::drift::rest::RestWindow;
 use crate::numeric::scalar::{Constant, Scalar};
-use crate::numeric::variance::{degrees, is_beyond, larger, magnitude, scaled_square, variance_deg};
+use crate::numeric::variance::{degrees, is_beyond, larger, magnitude, scaled_square, smaller, variance_deg};
 
 /// Travel of the IMUs and of the bend sensors since the last update, below which there is no new information.
 const IMU_TRAVEL: Constant = degrees(1.0);
 const BEND_TRAVEL: Constant = degrees(0.5);
+/// Travel is counted up to this, rad.
+const LONGEST_TRAVEL: Constant = Constant::new(16.0);
 /// Factor on the measurement noise: errors that last longer than ℓ and τ.
 const LONG_ERRORS: i32 = 2;
-/// Largest factor on the measurement noise: the update is worth nothing beyond it.
-const MAX_RATIO: i32 = 15;
-/// Standard deviation of the bend sensors' scale error: 5 % of the bend angle.
-const SCALE_ERROR: Constant = Constant::new(0.05);
+/// Factor on the measurement noise of one sensor whose twin is missing, and the largest noise that it multiplies.
+const SINGLE: i32 = 5;
+const LARGEST_SINGLE: Constant = Constant::new(6.0);
 /// Innovation gate in predicted standard deviations.
 const GATE: Constant = Constant::new(6.0);
+/// A turn is repeated where a heading is missing that was read within this time.
+const RETRY_US: u64 = 500_000;
 /// After so long beyond the gate the bias and the offset become doubtful, by 3°.
 const GATE_TIMEOUT_US: u64 = 30_000_000;
 const GATED: Constant = variance_deg(3.0);
@@ -38,39 +41,38 @@ impl<F: Scalar, const N: usize> BiasFilter<F, N> {
         config: &ArmConfig<S>,
         filter: &BiasFilterConfig,
         sensed: &SensedArm<S, N>,
-        bend: &[Option<TrustedBend<F>>; N],
     ) {
         let i = self.turn;
-        self.turn = if i + 1 < config.segments.len().min(N) { i + 1 } else { 0 };
-        let Some(segment) = config.segments.get(i) else { return };
-        self.grow_offset(i, filter, &segment.bend_error, bend[i].as_ref());
+        let (Some(segment), Some(angles)) = (config.segments.get(i), sensed.bend.get(i)) else { return };
+        self.grow_offset(i, filter, &segment.bend_error);
+        let Some(track) = self.segments.get(i) else { return };
         if self.rest.is_resting() {
             self.state.predict_at_rest(i, filter, F::constant(REST_CREEP), sensed.time_us);
         } else {
-            self.state.predict(i, filter, self.segments[i].offset_prior, sensed.time_us);
+            self.state.predict(i, filter, track.offset_prior, sensed.time_us);
         }
-        let is_below_read = i.checked_sub(1).is_none_or(|below| self.segments[below].is_heading_read);
-        let is_trusted = self.segments[i].is_heading_read && is_below_read && !sensed.bend[i].is_extrapolated;
-        if let Some(bend) = bend[i].filter(|_| is_trusted) {
+        let below = i.checked_sub(1).and_then(|below| self.segments.get(below));
+        let are_headings_read = track.is_heading_read && below.is_none_or(|below| below.is_heading_read);
+        // A heading that is only now and then missing must not be missing at each of the segment's turns.
+        let is_recent = |track: &SegmentTrack<F>| sensed.time_us.saturating_sub(track.heading_read_at_us) < RETRY_US;
+        let retries = !are_headings_read && is_recent(track) && below.is_none_or(is_recent);
+        if !retries {
+            self.turn = if i + 1 < config.segments.len().min(N) { i + 1 } else { 0 };
+        }
+        if let Some(bend) = track.bend.filter(|_| are_headings_read && !angles.is_extrapolated) {
             self.update(i, &segment.bend_error, bend, sensed.time_us);
         }
     }
 
     /// Widens the prior of the offset where the two sensors disagree more than before, or one is lost.
-    fn grow_offset(
-        &mut self,
-        i: usize,
-        filter: &BiasFilterConfig,
-        error: &BendErrorConfig,
-        bend: Option<&TrustedBend<F>>,
-    ) {
-        let track = &mut self.segments[i];
-        let is_single = bend.is_some_and(|bend| bend.is_single);
+    fn grow_offset(&mut self, i: usize, filter: &BiasFilterConfig, error: &BendErrorConfig) {
+        let Some(track) = self.segments.get_mut(i) else { return };
+        let is_single = track.bend.is_some_and(|bend| bend.is_single);
         if is_single && !track.is_single {
             track.lost += F::constant(LOST_SENSOR) * scaled_square(F::from_q(error.slow_difference));
         }
         track.is_single = is_single;
-        let prior = F::from_q(filter.offset) + track.lost + self.monitors[i].offset_excess(error, false);
+        let prior = F::from_q(filter.offset) + track.lost + track.monitor.offset_excess(error, false);
         if prior > track.offset_prior {
             self.state.doubt(i, OFFSET, prior - track.offset_prior);
             track.offset_prior = prior;
@@ -79,82 +81,82 @@ impl<F: Scalar, const N: usize> BiasFilter<F, N> {
 
     /// Update of segment `i` by its bend sensors, if they have moved since the last one and pass the innovation gate.
     fn update(&mut self, i: usize, error: &BendErrorConfig, bend: TrustedBend<F>, time_us: u64) {
-        let track = self.segments[i];
+        let Some(track) = self.segments.get_mut(i) else { return };
         let single = if bend.is_single { F::from_q(error.difference) } else { F::zero() };
-        let sigma = F::from_q(error.mean) + single + scaled_square(F::constant(SCALE_ERROR) * track.theta);
-        let nu = track.theta - bend.theta + self.state.offset[i];
+        let sigma = F::from_q(error.mean) + single;
+        let nu = track.theta - bend.theta + self.state.angle_offset(i);
         let innovation = self.state.innovation(i);
         if is_beyond(nu, GATE, innovation.variance + sigma) {
-            self.reject(i, time_us);
+            if track.is_gate_timed_out(time_us) {
+                self.state.doubt(i, BIAS, F::constant(GATED));
+                self.state.doubt(i, OFFSET, F::constant(GATED));
+            }
             return;
         }
-        self.segments[i].gated_since_us = None;
-        let travel = magnitude(track.theta - track.updated_theta);
-        let bend_travel = magnitude(bend.theta - track.updated_bend);
-        if travel < F::constant(IMU_TRAVEL) || bend_travel < F::constant(BEND_TRAVEL) {
-            return;
-        }
-        let elapsed_us = time_us.saturating_sub(track.updated_at_us).min(u64::from(u32::MAX)) as u32;
-        let by_travel = bounded_ratio(F::from_q(error.travel), travel);
-        let by_time = bounded_ratio(F::from_q(error.correlation_time).half(), F::from_micros(elapsed_us));
-        let ratio = larger(larger(by_travel, by_time), F::one());
-        let ratio = if bend.is_single { F::from_int(MAX_RATIO) } else { ratio };
-        self.state.update(&innovation, nu, F::from_int(LONG_ERRORS) * ratio * sigma);
-        let track = &mut self.segments[i];
-        (track.updated_theta, track.updated_bend, track.updated_at_us) = (track.theta, bend.theta, time_us);
-    }
-
-    /// An innovation beyond the gate: when none passes for long, the bias and the offset are doubted.
-    fn reject(&mut self, i: usize, time_us: u64) {
-        let since_us = *self.segments[i].gated_since_us.get_or_insert(time_us);
-        if time_us.saturating_sub(since_us) >= GATE_TIMEOUT_US {
-            self.state.doubt(i, BIAS, F::constant(GATED));
-            self.state.doubt(i, OFFSET, F::constant(GATED));
-            self.segments[i].gated_since_us = None;
+        track.gated_since_us = None;
+        if let Some(ratio) = track.noise_ratio(error, bend.theta, time_us) {
+            let r = F::from_int(LONG_ERRORS) * ratio * sigma;
+            let r = if bend.is_single { F::from_int(SINGLE) * smaller(r, F::constant(LARGEST_SINGLE)) } else { r };
+            self.state.update(&innovation, nu, r);
+            (track.travelled, track.updated_at_us) = (F::zero(), time_us);
         }
     }
 
     /// Learns the rates from an arm at rest, and holds its shape.
-    pub(super) fn follow_rest<S: Scalar>(
-        &mut self,
-        config: &ArmConfig<S>,
-        sensed: &SensedArm<S, N>,
-        bend: &[Option<TrustedBend<F>>; N],
-        dt: F,
-    ) {
-        let mut headings = [None; N];
-        let mut angles = [None; N];
-        for (i, _) in config.segments.iter().enumerate().take(N) {
-            let track = &self.segments[i];
-            headings[i] = track.is_heading_read.then(|| track.heading + self.state.bias[i]);
-            angles[i] = bend[i].map(|bend| bend.theta.to_turns());
+    pub(super) fn follow_rest(&mut self, count: usize, dt: F, time_us: u64) {
+        let (mut headings, mut angles) = ([None; N], [None; N]);
+        let outputs = headings.iter_mut().zip(&mut angles);
+        for (track, (heading, angle)) in self.segments.iter().zip(outputs).take(count) {
+            *heading = track.is_heading_read.then(|| track.heading + track.bias);
+            *angle = track.bend.map(|bend| bend.theta.to_turns());
         }
-        let Some(window) = self.rest.take(&headings, &angles, dt, sensed.time_us) else { return };
-        for j in 0..config.segments.len().min(N) {
-            if let Some(change) = window.headings[j] {
-                self.learn_rate(j, change, &window);
+        let Some(window) = self.rest.take(&headings, &angles, dt, time_us) else { return };
+        for (j, (change, bend)) in window.headings.into_iter().zip(window.bend).enumerate().take(count) {
+            if let Some(change) = change {
+                self.learn_rate(j, change, bend, &window);
             }
         }
     }
 
-    /// The change of heading `j` over a window of rest, H = (v_j: dt).
-    fn learn_rate(&mut self, j: usize, change: F, window: &RestWindow<F, N>) {
-        let dt = F::from_micros(window.length_us.min(u64::from(u32::MAX)) as u32);
-        let drift = self.state.rate[j] * dt;
-        let nu = change - drift;
-        let r = F::constant(REST_READING) + scaled_square(window.bend[j]);
-        let innovation = self.state.innovation_at_rest(j, dt);
-        if is_beyond(nu, REST_GATE, innovation.variance + r) {
+    /// The change of heading `j` over a window of rest, per time: H = (v_j: 1).
+    fn learn_rate(&mut self, j: usize, change: F, bend: F, window: &RestWindow<F, N>) {
+        let dt = since(0, window.length_us);
+        let nu = change - self.state.rate_of(j) * dt;
+        let r = F::constant(REST_READING) + scaled_square(bend);
+        let innovation = self.state.innovation_at_rest(j);
+        if is_beyond(nu, REST_GATE, innovation.variance * dt * dt + r) {
             return;
         }
-        self.state.update(&innovation, nu, r);
+        self.state.update(&innovation, nu / dt, r / dt / dt);
         // The shape stays: what the heading has changed by was its bias.
-        self.state.bias[j] = self.state.bias[j] + nu.to_turns();
+        self.state.add_to_bias(j, nu.to_turns());
     }
 }
 
-/// `a / b`, at most [`MAX_RATIO`].
-fn bounded_ratio<F: Scalar>(a: F, b: F) -> F {
-    let largest = F::from_int(MAX_RATIO);
-    if b * largest > a { a / b } else { largest }
+impl<F: Scalar> SegmentTrack<F> {
+    /// Counts an innovation beyond the gate; `true` when none has passed for long.
+    fn is_gate_timed_out(&mut self, time_us: u64) -> bool {
+        let since_us = *self.gated_since_us.get_or_insert(time_us);
+        let is_timed_out = time_us.saturating_sub(since_us) >= GATE_TIMEOUT_US;
+        if is_timed_out {
+            self.gated_since_us = None;
+        }
+        is_timed_out
+    }
+
+    /// Factor on the measurement noise of an update after a short travel or time; `None` where so little has moved that an
+    /// update is worth nothing. It then waits: to cut the factor off instead would count the same error several times.
+    fn noise_ratio(&mut self, error: &BendErrorConfig, bend: F, time_us: u64) -> Option<F> {
+        let travel = magnitude(self.theta - self.counted_theta);
+        let bend_travel = magnitude(bend - self.counted_bend);
+        if travel < F::constant(IMU_TRAVEL) || bend_travel < F::constant(BEND_TRAVEL) {
+            return None;
+        }
+        (self.counted_theta, self.counted_bend) = (self.theta, bend);
+        self.travelled = smaller(self.travelled + travel, F::constant(LONGEST_TRAVEL));
+        let by_travel = bounded_ratio(F::from_q(error.travel), self.travelled);
+        let by_time = bounded_ratio(F::from_q(error.correlation_time).half(), since(self.updated_at_us, time_us));
+        let ratio = larger(larger(by_travel, by_time), F::one());
+        (ratio < F::from_int(MAX_RATIO)).then_some(ratio)
+    }
 }

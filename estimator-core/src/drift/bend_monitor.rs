@@ -27,8 +27,8 @@ const MOVING: Constant = degrees(12.0);
 /// suspicion, and after this time the sensor has a new zero.
 const STEP: Constant = degrees(6.0);
 const STEP_CONFIRMATION_US: u64 = 350_000;
-/// Longest time between two samples over which a step is judged.
-const STEP_GAP_US: u64 = 500_000;
+/// Longest time between two samples over which a step is judged, time units: half a second.
+const STEP_GAP: Constant = Constant::new(0.5 / TIME_UNIT_S);
 
 /// State of a segment's bend sensors.
 #[derive(Debug, Clone, Copy)]
@@ -84,20 +84,19 @@ impl<S: Scalar> BendMonitor<S> {
         [a.map(|a| a + step_a.zero), b.map(|b| b + step_b.zero)]
     }
 
-    /// θ_bend of the sensors that are read and trusted; `None` where there are none.
-    pub fn mean(&self, angles: [Option<S>; SENSORS_PER_SEGMENT], time_us: u64) -> Option<TrustedBend<S>> {
+    /// θ_bend of the sensors that are read and trusted; `None` where there are none. `has_twins`: the segment has two sensors.
+    pub fn mean(
+        &self,
+        angles: [Option<S>; SENSORS_PER_SEGMENT],
+        has_twins: bool,
+        time_us: u64,
+    ) -> Option<TrustedBend<S>> {
         match self.trusted(angles, time_us) {
             [Some(a), Some(b)] => Some(TrustedBend { theta: (a + b).half(), is_single: false }),
-            [Some(a), None] => Some(TrustedBend { theta: a - self.difference, is_single: true }),
-            [None, Some(b)] => Some(TrustedBend { theta: b + self.difference, is_single: true }),
+            [Some(a), None] => Some(TrustedBend { theta: a - self.difference, is_single: has_twins }),
+            [None, Some(b)] => Some(TrustedBend { theta: b + self.difference, is_single: has_twins }),
             [None, None] => None,
         }
-    }
-
-    /// Whether a sensor is left out now.
-    pub fn is_distrusted(&self, time_us: u64) -> bool {
-        self.distrusted_until_us.iter().any(|until_us| time_us < *until_us)
-            || self.steps.iter().any(|step| step.suspect_since_us.is_some())
     }
 
     /// Takes the difference of both sensors, `dt` after the last sample.
@@ -115,16 +114,22 @@ impl<S: Scalar> BendMonitor<S> {
         trusted
     }
 
-    /// Finds sensors that step while θ moves by `motion` in `elapsed_us`, or `None` where θ is unknown. Whether a sensor has
-    /// a new zero.
+    /// Whether a sensor is left out now.
+    pub fn is_distrusted(&self, time_us: u64) -> bool {
+        self.distrusted_until_us.iter().any(|until_us| time_us < *until_us)
+            || self.steps.iter().any(|step| step.suspect_since_us.is_some())
+    }
+
+    /// Finds sensors that step while θ moves by `motion` in `dt`, or `None` where θ is unknown. Whether a sensor has a new
+    /// zero.
     pub fn find_steps(
         &mut self,
         angles: [Option<S>; SENSORS_PER_SEGMENT],
         motion: Option<S>,
-        elapsed_us: u64,
+        dt: S,
         time_us: u64,
     ) -> bool {
-        let motion = motion.filter(|_| elapsed_us < STEP_GAP_US);
+        let motion = motion.filter(|_| dt < S::constant(STEP_GAP));
         self.steps.iter_mut().zip(angles).fold(false, |any, (step, angle)| any | step.take(angle, motion, time_us))
     }
 
@@ -165,7 +170,7 @@ impl<S: Scalar> BendMonitor<S> {
             let worse = usize::from(errors[1] > errors[0]);
             let departs = is_beyond(errors[worse], DEPARTURE, S::from_q(config.sensor[worse]));
             if is_apart && departs {
-                self.distrusted_until_us[worse] = time_us + DISTRUST_US;
+                self.distrusted_until_us[worse] = time_us.saturating_add(DISTRUST_US);
             }
         }
         self.check_stuck(angles, theta, time_us);
@@ -177,9 +182,13 @@ impl<S: Scalar> BendMonitor<S> {
         let moves = self.theta_range[1] - self.theta_range[0] > S::constant(MOVING);
         let sensors = self.sensor_ranges.iter_mut().zip(&mut self.distrusted_until_us).zip(angles);
         for ((range, until_us), angle) in sensors {
-            let Some(angle) = angle else { continue };
+            let Some(angle) = angle else {
+                // Nothing is known of a sensor that was missing: it is not stuck.
+                *range = [-S::constant(STUCK), S::constant(STUCK)];
+                continue;
+            };
             if is_complete && moves && range[1] - range[0] < S::constant(STUCK) {
-                *until_us = time_us + DISTRUST_US;
+                *until_us = time_us.saturating_add(DISTRUST_US);
             }
             extend(range, angle, is_complete);
         }
@@ -225,3 +234,6 @@ fn extend<S: Scalar>(range: &mut [S; 2], value: S, is_new: bool) {
         [if value < lowest { value } else { lowest }, if value > highest { value } else { highest }]
     };
 }
+
+#[cfg(test)]
+mod tests;

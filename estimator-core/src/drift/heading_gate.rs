@@ -27,7 +27,10 @@ pub struct HeadingGate<S> {
     raw: Turns,
     scaled: Turns,
     accepted_at_us: Option<u64>,
-    suspect_since_us: Option<u64>,
+    /// First and last reading that was far off, since the last accepted one.
+    suspect_us: Option<[u64; 2]>,
+    /// Whether the first reading has its zero already.
+    is_absolute: bool,
     freeze: Freeze<S>,
 }
 
@@ -37,7 +40,7 @@ struct Freeze<S> {
     reading: Turns,
     since_us: u64,
     theta: S,
-    bend: S,
+    bend: Option<S>,
     is_frozen: bool,
 }
 
@@ -56,6 +59,8 @@ pub struct Expected<S> {
     pub bend: Option<S>,
     /// Motion of the bend sensors during which an IMU must change, rad.
     pub frozen_motion: S,
+    /// Deviation of the next IMU's reading from the same prediction, where it was read.
+    pub above: Option<Turns>,
 }
 
 /// Verdict on one reading.
@@ -76,13 +81,25 @@ pub enum Verdict<S> {
 impl<S: Scalar> HeadingGate<S> {
     /// An IMU that was not read yet.
     pub const fn new(zero: S) -> Self {
-        let freeze = Freeze { reading: Turns::ZERO, since_us: 0, theta: zero, bend: zero, is_frozen: false };
-        Self { raw: Turns::ZERO, scaled: Turns::ZERO, accepted_at_us: None, suspect_since_us: None, freeze }
+        let freeze = Freeze { reading: Turns::ZERO, since_us: 0, theta: zero, bend: None, is_frozen: false };
+        Self {
+            raw: Turns::ZERO,
+            scaled: Turns::ZERO,
+            accepted_at_us: None,
+            suspect_us: None,
+            is_absolute: false,
+            freeze,
+        }
     }
 
     /// Sets the zero at the end of a tare: the newest reading, unwrapped, and the heading in {W} that it stands for.
     pub fn tare(&mut self, raw: Turns, heading: Turns, time_us: u64) {
         *self = Self { raw, scaled: heading, accepted_at_us: Some(time_us), ..Self::new(S::zero()) };
+    }
+
+    /// Waits for the first reading of an IMU whose headings are absolute.
+    pub fn expect_absolute(&mut self) {
+        *self = Self { is_absolute: true, ..Self::new(S::zero()) };
     }
 
     /// Takes a reading, unwrapped, or `None` where the IMU was not read. `scale_error` is that of the gyroscope's
@@ -96,22 +113,22 @@ impl<S: Scalar> HeadingGate<S> {
     ) -> Verdict<S> {
         let Some(reading) = reading else { return Verdict::Absent };
         let Some(accepted_at_us) = self.accepted_at_us else {
+            if self.is_absolute {
+                let deviation = Turns::from((reading - expected.bias - expected.heading).phase());
+                self.accept(reading, expected.heading + expected.bias + deviation, time_us);
+                return Verdict::Accepted(expected.heading + deviation);
+            }
             // First read after the tare: its zero is unknown.
             self.accept(reading, expected.heading + expected.bias, time_us);
             return Verdict::Restarted(Turns::ZERO, ABSENCE_US);
         };
-        if self.is_frozen(reading, expected, time_us) {
-            let bend = expected.bend.unwrap_or(self.freeze.bend);
-            return Verdict::Frozen(self.freeze.theta + bend - self.freeze.bend);
+        if let Some(theta) = self.frozen_theta(reading, expected, time_us) {
+            return Verdict::Frozen(theta);
         }
-        let delta = reading - self.raw;
-        let scaled = self.scaled + delta - delta.scaled_by(scale_error);
-        // Whole turns are those of the prediction.
-        let deviation = Turns::from((scaled - expected.bias - expected.heading).phase());
+        let deviation = self.deviation(reading, scale_error, expected.heading + expected.bias);
         let absence_us = time_us.saturating_sub(accepted_at_us);
         if self.is_far(deviation, expected, absence_us) {
-            let since_us = *self.suspect_since_us.get_or_insert(time_us);
-            if time_us.saturating_sub(since_us) < CONFIRMATION_US {
+            if time_us.saturating_sub(self.suspect_since(time_us)) < CONFIRMATION_US {
                 return Verdict::Absent;
             }
             self.accept(reading, expected.heading + expected.bias + deviation, time_us);
@@ -124,7 +141,15 @@ impl<S: Scalar> HeadingGate<S> {
 
     fn accept(&mut self, reading: Turns, scaled: Turns, time_us: u64) {
         (self.raw, self.scaled) = (reading, scaled);
-        (self.accepted_at_us, self.suspect_since_us) = (Some(time_us), None);
+        (self.accepted_at_us, self.suspect_us) = (Some(time_us), None);
+    }
+
+    /// Begin of the far readings that go up to this one; those before an absence do not count.
+    fn suspect_since(&mut self, time_us: u64) -> u64 {
+        let recent = self.suspect_us.filter(|[_, last_us]| time_us.saturating_sub(*last_us) <= ABSENCE_US);
+        let since_us = recent.map_or(time_us, |[since_us, _]| since_us);
+        self.suspect_us = Some([since_us, time_us]);
+        since_us
     }
 
     /// Whether a deviation is more than the arm can have moved.
@@ -137,20 +162,44 @@ impl<S: Scalar> HeadingGate<S> {
         } else {
             S::constant(JUMP) + moved
         };
-        let limit = if self.suspect_since_us.is_some() { limit.half() } else { limit };
-        magnitude(S::from_phase(deviation.phase())) > limit
+        let limit = if self.suspect_us.is_some() { limit.half() } else { limit };
+        // Where the next IMU deviates alike, the segment has moved and not the IMU: a push that the bend sensors miss.
+        let is_shared = expected.above.is_some_and(|above| is_within(above - deviation, limit.half()));
+        !is_within(deviation, limit) && !is_shared
     }
 
-    /// Whether the output has not changed by a bit while the bend sensors have moved.
-    fn is_frozen(&mut self, reading: Turns, expected: &Expected<S>, time_us: u64) -> bool {
+    /// Deviation of a reading from a predicted one (heading and bias), whole turns aside.
+    pub fn deviation(&self, reading: Turns, scale_error: i32, predicted: Turns) -> Turns {
+        let delta = reading - self.raw;
+        let scaled = self.scaled + delta - delta.scaled_by(scale_error);
+        Turns::from((scaled - predicted).phase())
+    }
+
+    /// Whether a reading was accepted before, so that a deviation is known.
+    pub fn is_known(&self) -> bool {
+        self.accepted_at_us.is_some()
+    }
+
+    /// θ by the bend sensors where the output has not changed by a bit while they have moved.
+    fn frozen_theta(&mut self, reading: Turns, expected: &Expected<S>, time_us: u64) -> Option<S> {
         let freeze = &mut self.freeze;
-        let Some(bend) = expected.bend.filter(|_| reading == freeze.reading) else {
-            let bend = expected.bend.unwrap_or(freeze.bend);
-            *freeze = Freeze { reading, since_us: time_us, theta: expected.theta, bend, is_frozen: false };
-            return false;
-        };
+        if reading != freeze.reading || freeze.bend.is_none() {
+            let theta = expected.theta + expected.motion;
+            *freeze = Freeze { reading, since_us: time_us, theta, bend: expected.bend, is_frozen: false };
+            return None;
+        }
+        // Without bend sensors it stays what it was.
+        let motion = expected.bend.zip(freeze.bend).map(|(bend, start)| bend - start);
         let is_old = time_us.saturating_sub(freeze.since_us) >= FROZEN_US;
-        freeze.is_frozen |= is_old && magnitude(bend - freeze.bend) > expected.frozen_motion;
-        freeze.is_frozen
+        freeze.is_frozen |= is_old && motion.is_some_and(|motion| magnitude(motion) > expected.frozen_motion);
+        freeze.is_frozen.then(|| motion.map_or(expected.theta, |motion| freeze.theta + motion))
     }
 }
+
+/// Whether an angle is within ±`limit`.
+fn is_within<S: Scalar>(angle: Turns, limit: S) -> bool {
+    magnitude(S::from_phase(angle.phase())) <= limit
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,6 +1,6 @@
 //! One filter block against the textbook's matrices.
 
-use estimator_core::{COVARIANCE_LIMIT, H_LIMIT, KalmanFilter, KalmanGains, KalmanParams, Q, Scalar};
+use estimator_core::{COVARIANCE_LIMIT, FusedOps, H_LIMIT, KalmanFilter, KalmanGains, KalmanParams, Q};
 use nalgebra::{Matrix2, Matrix4, Matrix4x2, SVector, Vector2, Vector4};
 use proptest::prelude::*;
 
@@ -12,13 +12,13 @@ fn point(x: f64, y: f64) -> SVector<f64, 2> {
 }
 
 /// Parameters for a Q, and h and r of the IMU and of the bend sensors.
-fn gains<S: Scalar>(q: f64, imu: (f64, f64), bend: (f64, f64)) -> KalmanGains<S> {
+fn gains<S: FusedOps>(q: f64, imu: (f64, f64), bend: (f64, f64)) -> KalmanGains<S> {
     let [q, h_imu, r_imu, h_bend, r_bend] = [q, imu.0, imu.1, bend.0, bend.1].map(S::from_f64);
     KalmanGains::new(&KalmanParams { q, r_imu, r_bend, h_imu, h_bend })
 }
 
 /// Parameters for a Q, and h and r of one sensor, whichever that is.
-fn alone<S: Scalar>(q: f64, h: f64, r: f64) -> KalmanGains<S> {
+fn alone<S: FusedOps>(q: f64, h: f64, r: f64) -> KalmanGains<S> {
     gains(q, (h, r), (h, r))
 }
 
@@ -133,7 +133,7 @@ proptest! {
     /// p, r ≥ 0.1, and innovations are up to 8.
     #[test]
     fn a_fixed_point_update_is_the_floats(p in 0.1..10.0, h in 0.5..1.5, r in 0.1..5.0, x in -2.0..2.0, z in -2.0..2.0) {
-        fn run<S: Scalar>(x: f64, p: f64, z: f64, h: f64, r: f64) -> [f64; 2] {
+        fn run<S: FusedOps>(x: f64, p: f64, z: f64, h: f64, r: f64) -> [f64; 2] {
             let mut block = KalmanFilter::<S, 1>::new();
             block.step(&alone(0.0, 1.0, p), Some(SVector::from([S::from_f64(x)])), None);
             block.step(&alone(0.0, h, r), Some(SVector::from([S::from_f64(z)])), None);

@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use estimator_core::{HeadingTracker, ImuReading, Phase, Q, Scalar, Turns};
+use estimator_core::{FusedOps, HeadingTracker, ImuReading, Phase, Q, Turns};
 use proptest::prelude::*;
 
 /// One unit of 2⁻³² turns, rad.
@@ -84,7 +84,7 @@ proptest! {
     /// However often and however far the phase wraps, the output moves by exactly what the sensor moved.
     #[test]
     fn wraps_never_step_the_unwrapped_heading(start: i32, steps in prop::collection::vec(-i32::MAX..i32::MAX, 1..200)) {
-        let mut imu = Heading::<Q>::new(0, Turns::ZERO);
+        let mut imu = HeadingTracker::<Q>::new(0, Turns::ZERO);
         let mut phase = start;
         let mut expected = imu.read(Some(Phase::from_bits(phase))).expect("it was read");
         prop_assert_eq!(expected.bits(), i64::from(start));
@@ -110,8 +110,8 @@ proptest! {
 }
 
 /// How far the tare of readings at these distances from a direction is from their circular mean, rad.
-fn tare_error<S: Scalar>(around: f64, off: &[f64]) -> f64 {
-    let mut imu = Heading::<S>::new(off.len() as u32, Turns::ZERO);
+fn tare_error<S: FusedOps>(around: f64, off: &[f64]) -> f64 {
+    let mut imu = HeadingTracker::<S>::new(off.len() as u32, Turns::ZERO);
     let readings: Vec<_> = off.iter().map(|off| around + off).collect();
     for reading in &readings {
         imu.read(Some(Phase::from_rad(*reading)));
@@ -152,7 +152,7 @@ fn an_x_axis_straight_up_has_no_heading() {
 #[test]
 fn drift_far_past_360_degrees_stays_exact() {
     const STEP: i64 = 1_288_490_189;
-    let mut imu = Heading::<Q>::new(0, Turns::ZERO);
+    let mut imu = HeadingTracker::<Q>::new(0, Turns::ZERO);
     for count in 0..1_000_000_i64 {
         let exact = count * STEP;
         let unwrapped = imu.read(Some(Phase::from_bits(exact as i32)));
@@ -162,7 +162,7 @@ fn drift_far_past_360_degrees_stays_exact() {
 
 #[test]
 fn a_missing_reading_leaves_the_turns_as_they_were() {
-    let mut imu = Heading::<Q>::new(0, Turns::ZERO);
+    let mut imu = HeadingTracker::<Q>::new(0, Turns::ZERO);
     read_degrees(&mut imu, 170.0);
     read_degrees(&mut imu, 190.0);
     assert_eq!(imu.read(None), None);
@@ -171,7 +171,7 @@ fn a_missing_reading_leaves_the_turns_as_they_were() {
 
 #[test]
 fn an_absolute_heading_is_wrapped_to_half_a_turn_at_the_start_alone() {
-    let mut imu = Heading::<Q>::new(0, Turns::ZERO);
+    let mut imu = HeadingTracker::<Q>::new(0, Turns::ZERO);
     assert!((read_degrees(&mut imu, 350.0) + 10.0).abs() < 1e-6);
     assert_eq!(imu.zero(), Some(Turns::ZERO));
     for degrees in [270.0, 190.0, 110.0, 30.0] {
@@ -182,7 +182,7 @@ fn an_absolute_heading_is_wrapped_to_half_a_turn_at_the_start_alone() {
 
 #[test]
 fn a_tare_across_the_seam_at_180_degrees_is_there_and_not_at_0() {
-    let mut imu = Heading::<Q>::new(4, Turns::ZERO);
+    let mut imu = HeadingTracker::<Q>::new(4, Turns::ZERO);
     let unwrapped = [179.0, -179.0, 178.0, -178.0].map(|degrees| read_degrees(&mut imu, degrees));
     let zero = imu.zero().expect("the tare is complete").rad().to_degrees();
     assert!((zero - 180.0).abs() < 1e-5);
@@ -193,7 +193,7 @@ fn a_tare_across_the_seam_at_180_degrees_is_there_and_not_at_0() {
 
 #[test]
 fn the_zero_is_unknown_until_the_last_sample_of_the_tare() {
-    let mut imu = Heading::<Q>::new(3, Turns::ZERO);
+    let mut imu = HeadingTracker::<Q>::new(3, Turns::ZERO);
     for _ in 0..2 {
         read_degrees(&mut imu, 10.0);
         assert_eq!(imu.zero(), None);
@@ -206,7 +206,7 @@ fn the_zero_is_unknown_until_the_last_sample_of_the_tare() {
 
 #[test]
 fn a_missing_reading_takes_its_place_in_the_tare() {
-    let mut imu = Heading::<Q>::new(3, Turns::ZERO);
+    let mut imu = HeadingTracker::<Q>::new(3, Turns::ZERO);
     imu.read(None);
     read_degrees(&mut imu, 10.0);
     assert_eq!(imu.zero(), None);
@@ -216,7 +216,7 @@ fn a_missing_reading_takes_its_place_in_the_tare() {
 
 #[test]
 fn an_imu_that_was_not_read_during_the_tare_has_no_zero() {
-    let mut imu = Heading::<Q>::new(2, Turns::ZERO);
+    let mut imu = HeadingTracker::<Q>::new(2, Turns::ZERO);
     imu.read(None);
     imu.read(None);
     read_degrees(&mut imu, 10.0);
@@ -225,7 +225,7 @@ fn an_imu_that_was_not_read_during_the_tare_has_no_zero() {
 
 #[test]
 fn the_tare_is_the_heading_of_the_reference_pose() {
-    let mut imu = Heading::<Q>::new(1, Turns::from_rad(0.5));
+    let mut imu = HeadingTracker::<Q>::new(1, Turns::from_rad(0.5));
     let heading = imu.read(Some(Phase::from_rad(2.0))).expect("it was read");
     let zero = imu.zero().expect("the tare is complete");
     assert!(((heading - zero).rad() - 0.5).abs() <= 4.0 / 67_108_864.0);

@@ -33,7 +33,7 @@ pub struct RestDetector<S, const N: usize> {
 #[derive(Debug, Clone, Copy)]
 struct Mean<S> {
     start: Option<Turns>,
-    mean: S,
+    filtered: S,
     lowest: S,
     highest: S,
 }
@@ -51,14 +51,14 @@ pub struct RestWindow<S, const N: usize> {
 
 impl<S: Scalar> Mean<S> {
     fn new() -> Self {
-        Self { start: None, mean: S::zero(), lowest: S::zero(), highest: S::zero() }
+        Self { start: None, filtered: S::zero(), lowest: S::zero(), highest: S::zero() }
     }
 
     /// Takes a value; `share` is that of the newest one in the mean.
     fn take(&mut self, value: Turns, share: S) {
         let start = *self.start.get_or_insert(value);
         let deviation = S::from_phase((value - start).phase());
-        self.mean += share * (deviation - self.mean);
+        self.filtered += share * (deviation - self.filtered);
         self.lowest = if deviation < self.lowest { deviation } else { self.lowest };
         self.highest = if deviation > self.highest { deviation } else { self.highest };
     }
@@ -66,7 +66,7 @@ impl<S: Scalar> Mean<S> {
     /// The change of the mean since the window began, and the range of the values; a new window begins at the mean.
     fn finish(&mut self) -> Option<(S, S)> {
         let start = self.start?;
-        let (change, range) = (self.mean, self.highest - self.lowest);
+        let (change, range) = (self.filtered, self.highest - self.lowest);
         *self = Self { start: Some(start + change.to_turns()), ..Self::new() };
         Some((change, range))
     }
@@ -129,3 +129,6 @@ impl<S: Scalar, const N: usize> RestDetector<S, N> {
         self.is_resting().then_some(RestWindow { headings, bend, length_us })
     }
 }
+
+#[cfg(test)]
+mod tests;

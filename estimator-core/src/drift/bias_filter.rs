@@ -1,0 +1,270 @@
+//! The bias filter: drift correction by a Kalman filter over all headings, with bend sensors that may be wrong.
+//!
+//! A line of stages: trusted bend angles, plausible headings, absent headings from their neighbours, then one segment's update
+//! of the [model](super::bias_state) in each sample, and the rules for rest. Every rule counts in time, not in samples.
+//!
+//! The bend sensors' error depends on the way that they came (map, hysteresis), and is not white in time: they inform the
+//! filter by travel, so that an arm at rest teaches nothing.
+
+mod headings;
+mod tare;
+mod update;
+
+use crate::config::{ArmConfig, BendErrorConfig, SENSORS_PER_SEGMENT, SegmentConfig};
+use crate::drift::bend_monitor::{BendMonitor, TrustedBend};
+use crate::drift::bias_filter::tare::TareStatistics;
+use crate::drift::bias_state::{BiasState, OFFSET};
+use crate::drift::heading_gate::HeadingGate;
+use crate::drift::rest::RestDetector;
+use crate::drift::{CorrectedArm, DriftCorrection, SensedArm};
+use crate::numeric::phase::Turns;
+use crate::numeric::scalar::{Constant, Scalar};
+use crate::numeric::variance::{degrees, magnitude, smaller, variance_deg};
+use crate::types::Condition;
+
+/// An absent heading's own error: 0.5° after a second, growing with the root of time.
+const ABSENT: Constant = variance_deg(0.5 * 8.0);
+/// Bend sensors do not move by more in one sample: a step of a sensor, not of the arm.
+const BEND_STEP: Constant = degrees(12.0);
+/// Doubt about the offset of a segment whose sensor has stepped.
+const STEPPED: Constant = variance_deg(1.0);
+/// A restart of an IMU and a step of a bend sensor are reported for so long.
+const RECENT_US: u64 = 60_000_000;
+/// Largest ratio of two errors: nothing is learned beyond it.
+const MAX_RATIO: i32 = 15;
+
+/// State of the bias filter for up to `N` segments, in its number `F`.
+///
+/// ```
+/// use estimator_core::{
+///     ArmConfig, BendMap, BendSensorConfig, BiasFilterConfig, Estimator, ImuReading, Phase, Q, QuadraticMap, Sample,
+///     SegmentConfig,
+/// };
+///
+/// // A sensor of 1 rad/V that reads 1.5 V when straight, and is missing now.
+/// let map = BendMap::Quadratic(QuadraticMap::from_volts(0.0, 1.0, -1.5, [0.5, 2.5]));
+/// let sensor = BendSensorConfig { map, memory: None };
+/// let segments = [SegmentConfig::<Q> { bend: [Some(sensor), None], ..SegmentConfig::uncalibrated(0.080, 0.017) }];
+/// let config = ArmConfig { bias_filter: Some(BiasFilterConfig::BNO055), ..ArmConfig::uncalibrated(&segments) };
+/// let mut estimator = Estimator::<Q, 1, 100>::new(&config)?;
+/// let mut sample = Sample::missing(0);
+/// sample.imu[0] = Some(ImuReading::Heading(Phase::from_degrees(30.0)));
+/// let theta = estimator.update(&sample)[0].theta.expect("the IMU was read");
+/// assert!((theta.rad().to_degrees() - 30.0).abs() < 0.1);
+/// # Ok::<(), estimator_core::ConfigError>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct BiasFilter<F, const N: usize> {
+    state: BiasState<F, N>,
+    tare: TareStatistics<F, N>,
+    segments: [SegmentTrack<F>; N],
+    rest: RestDetector<F, N>,
+    is_started: bool,
+    is_tare_bad: bool,
+    last_us: Option<u64>,
+    /// The segment whose turn it is.
+    turn: usize,
+}
+
+/// Per-segment state.
+#[derive(Debug, Clone, Copy)]
+struct SegmentTrack<F> {
+    gate: HeadingGate<F>,
+    monitor: BendMonitor<F>,
+    /// Whether the segment has two bend sensors.
+    has_twins: bool,
+    /// Heading of the segment's end in {W}.
+    heading: Turns,
+    /// Bias that it is corrected by.
+    bias: Turns,
+    /// θ of the last sample, rad.
+    theta: F,
+    /// θ_bend of this sample.
+    bend: Option<TrustedBend<F>>,
+    /// θ_bend of the last sample that had one, rad.
+    last_bend: Option<F>,
+    /// Motion of the bend sensors since then, rad.
+    motion: F,
+    is_heading_read: bool,
+    heading_read_at_us: u64,
+    /// θ and θ_bend up to which travel is counted, and the travel since the last update.
+    counted_theta: F,
+    counted_bend: F,
+    travelled: F,
+    updated_at_us: u64,
+    gated_since_us: Option<u64>,
+    restarted_at_us: Option<u64>,
+    stepped_at_us: Option<u64>,
+    /// Variance of the offset's prior, so², and the part of it that lost sensors have added.
+    offset_prior: F,
+    lost: F,
+    /// Whether one sensor of two is missing.
+    is_single: bool,
+}
+
+impl<F: Scalar> SegmentTrack<F> {
+    fn new() -> Self {
+        let zero = F::zero();
+        Self {
+            gate: HeadingGate::new(zero),
+            monitor: BendMonitor::new(zero),
+            has_twins: false,
+            heading: Turns::ZERO,
+            bias: Turns::ZERO,
+            theta: zero,
+            bend: None,
+            last_bend: None,
+            motion: zero,
+            is_heading_read: false,
+            heading_read_at_us: 0,
+            counted_theta: zero,
+            counted_bend: zero,
+            travelled: zero,
+            updated_at_us: 0,
+            gated_since_us: None,
+            restarted_at_us: None,
+            stepped_at_us: None,
+            offset_prior: zero,
+            lost: zero,
+            is_single: false,
+        }
+    }
+
+    /// Takes the angles of the bend sensors, `dt` after the last ones.
+    fn take_bend(&mut self, angles: [Option<F>; SENSORS_PER_SEGMENT], dt: F, time_us: u64) {
+        self.monitor.compare(angles, dt, time_us);
+        self.bend = self.monitor.mean(angles, self.has_twins, time_us);
+        let bend = self.bend;
+        let motion = bend.zip(self.last_bend).map_or(F::zero(), |(now, last)| now.theta - last);
+        let is_step = magnitude(motion) > F::constant(BEND_STEP) && dt < F::from_micros(1_000_000);
+        self.motion = if is_step { F::zero() } else { motion };
+    }
+}
+
+impl<F: Scalar, const N: usize> BiasFilter<F, N> {
+    /// At the start of a session.
+    pub fn new() -> Self {
+        Self {
+            state: BiasState::new(),
+            tare: TareStatistics::new(),
+            segments: [SegmentTrack::new(); N],
+            rest: RestDetector::new(),
+            is_started: false,
+            is_tare_bad: false,
+            last_us: None,
+            turn: 0,
+        }
+    }
+
+    /// Covariance of two headings, [`VARIANCE_SCALE`](crate::VARIANCE_SCALE) times rad².
+    pub fn heading_covariance(&self, i: usize, j: usize) -> F {
+        self.state.bias_covariance(i, j)
+    }
+
+    /// Variance of heading `i` beside the biases: of one that is absent, what its bend sensors may be off by.
+    pub fn absence_variance(&self, config: &BendErrorConfig, i: usize) -> F {
+        let Some(track) = self.segments.get(i).filter(|track| !track.is_heading_read) else { return F::zero() };
+        let absent = since(track.heading_read_at_us, self.last_us.unwrap_or(0));
+        let grown = smaller(absent, F::one()) * F::constant(ABSENT);
+        smaller(grown, track.offset_prior + F::from_q(config.mean))
+    }
+
+    /// Condition of segment `i`.
+    pub fn condition(&self, i: usize) -> Condition {
+        let Some(track) = self.segments.get(i).filter(|_| self.is_started) else { return Condition::default() };
+        let now_us = self.last_us.unwrap_or_default();
+        let is_recent = |at_us: Option<u64>| at_us.is_some_and(|at_us| now_us.saturating_sub(at_us) < RECENT_US);
+        Condition {
+            tare_bad: self.is_tare_bad,
+            imu_absent: !track.is_heading_read,
+            imu_restarted: is_recent(track.restarted_at_us),
+            bend_distrusted: track.monitor.is_distrusted(now_us) || track.is_single || is_recent(track.stepped_at_us),
+            gated: track.gated_since_us.is_some(),
+        }
+    }
+
+    /// Holds the bend sensors against the IMUs: steps, departures, sensors that are stuck.
+    fn check_bend<S>(
+        &mut self,
+        segments: &[SegmentConfig<S>],
+        corrected: &CorrectedArm<N>,
+        angles: &[[Option<F>; SENSORS_PER_SEGMENT]; N],
+        (last, dt): (&[F; N], F),
+        time_us: u64,
+    ) {
+        let sensors = segments.iter().zip(angles).zip(last.iter().zip(&corrected.imu));
+        for (i, (track, ((segment, angles), (last, imu)))) in self.segments.iter_mut().zip(sensors).enumerate() {
+            let motion = imu.map(|_| track.theta - *last);
+            if track.monitor.find_steps(*angles, motion, dt, time_us) {
+                self.state.doubt(i, OFFSET, F::constant(STEPPED));
+                track.stepped_at_us = Some(time_us);
+            }
+            if imu.is_some() {
+                let expected = track.theta + self.state.angle_offset(i);
+                track.monitor.check(&segment.bend_error, *angles, expected, time_us);
+            }
+            // Without a sensor that has just stepped.
+            track.bend = track.monitor.mean(*angles, track.has_twins, time_us);
+        }
+    }
+
+    /// θ of all segments, from their headings.
+    fn angles<S>(&mut self, segments: &[SegmentConfig<S>]) -> CorrectedArm<N> {
+        let mut corrected = CorrectedArm::UNKNOWN;
+        let (mut below, mut is_below_read) = (Turns::ZERO, true);
+        let angles = corrected.fused.iter_mut().zip(&mut corrected.imu);
+        for (track, (fused, imu)) in self.segments.iter_mut().zip(angles).take(segments.len()) {
+            let theta = Turns::from((track.heading - below).phase());
+            track.theta = F::from_phase(theta.phase());
+            *fused = Some(theta);
+            *imu = (track.is_heading_read && is_below_read).then_some(theta);
+            (below, is_below_read) = (track.heading, track.is_heading_read);
+        }
+        corrected
+    }
+}
+
+impl<S: Scalar, F: Scalar, const N: usize> DriftCorrection<S, N> for BiasFilter<F, N> {
+    fn correct(&mut self, config: &ArmConfig<S>, sensed: &SensedArm<S, N>) -> CorrectedArm<N> {
+        let Some(filter) = &config.bias_filter else { return CorrectedArm::UNKNOWN };
+        let dt = since(self.last_us.unwrap_or(sensed.time_us), sensed.time_us);
+        self.last_us = Some(sensed.time_us);
+        let angles = sensed.bend.map(|bend| bend.sensors.map(|theta| theta.map(converted)));
+        let mut angles = angles;
+        for ((track, segment), angles) in self.segments.iter_mut().zip(config.segments).zip(&mut angles) {
+            track.has_twins = segment.bend.iter().all(Option::is_some);
+            *angles = track.monitor.corrected(*angles);
+            track.take_bend(*angles, dt, sensed.time_us);
+        }
+        if !self.is_started && !self.tare(config, filter, sensed) {
+            return CorrectedArm::UNKNOWN;
+        }
+        self.track_headings(config, sensed);
+        self.fill_absent_headings(config.segments.len(), dt);
+        let last = self.segments.map(|track| track.theta);
+        let corrected = self.angles(config.segments);
+        self.check_bend(config.segments, &corrected, &angles, (&last, dt), sensed.time_us);
+        self.update_turn(config, filter, sensed);
+        self.follow_rest(config.segments.len(), dt, sensed.time_us);
+        for track in &mut self.segments {
+            track.last_bend = track.bend.map(|bend| bend.theta).or(track.last_bend);
+        }
+        corrected
+    }
+}
+
+/// An angle in another number.
+fn converted<S: Scalar, F: Scalar>(theta: S) -> F {
+    F::from_phase(theta.to_turns().phase())
+}
+
+/// Time from `from_us` to `to_us`, time units.
+fn since<F: Scalar>(from_us: u64, to_us: u64) -> F {
+    F::from_micros(to_us.saturating_sub(from_us).min(u64::from(u32::MAX)) as u32)
+}
+
+/// `a / b`, at most [`MAX_RATIO`].
+fn bounded_ratio<F: Scalar>(a: F, b: F) -> F {
+    let largest = F::from_int(MAX_RATIO);
+    if b > a / largest { a / b } else { largest }
+}

@@ -1,0 +1,220 @@
+use super::{Expected, HeadingGate, Verdict};
+use crate::numeric::phase::Turns;
+
+const SECOND: u64 = 1_000_000;
+const TICK: u64 = 10_000;
+
+fn degrees(degrees: f64) -> Turns {
+    Turns::from_rad(degrees.to_radians())
+}
+
+/// A straight segment whose bend sensors do not move.
+fn still() -> Expected<f64> {
+    Expected {
+        heading: Turns::ZERO,
+        motion: 0.0,
+        bias: Turns::ZERO,
+        theta: 0.0,
+        bend: Some(0.0),
+        frozen_motion: 8.0_f64.to_radians(),
+        above: None,
+    }
+}
+
+/// A gate that was tared at 0°, at 1 s.
+fn tared() -> HeadingGate<f64> {
+    let mut gate = HeadingGate::new(0.0);
+    gate.tare(Turns::ZERO, Turns::ZERO, SECOND);
+    gate
+}
+
+/// Takes readings at 100 Hz from a time on, those of a noisy IMU at rest at `heading`.
+fn take_for(gate: &mut HeadingGate<f64>, from_us: u64, length_us: u64, heading: f64) -> std::vec::Vec<Verdict<f64>> {
+    let at = |k: u64| {
+        let noise = if k.is_multiple_of(2) { 0.06 } else { 0.0 };
+        gate.take(Some(degrees(heading + noise)), 0, &still(), from_us + k * TICK)
+    };
+    (0..length_us / TICK).map(at).collect()
+}
+
+fn heading_deg(verdict: Verdict<f64>) -> f64 {
+    match verdict {
+        Verdict::Accepted(heading) | Verdict::Returned(heading, _) => heading.rad().to_degrees(),
+        other => panic!("{other:?} is no heading"),
+    }
+}
+
+extern crate std;
+
+#[test]
+fn a_jump_of_50_ms_is_not_used() {
+    let mut gate = tared();
+    assert!(take_for(&mut gate, SECOND, 50_000, 30.0).iter().all(|verdict| *verdict == Verdict::Absent));
+}
+
+#[test]
+fn a_jump_of_50_ms_leaves_nothing() {
+    let mut gate = tared();
+    take_for(&mut gate, SECOND, 50_000, 30.0);
+    let after = take_for(&mut gate, SECOND + 50_000, SECOND, 0.0);
+    assert!(after.iter().all(|verdict| matches!(verdict, Verdict::Accepted(_))), "{after:?}");
+    assert!(after.iter().all(|verdict| heading_deg(*verdict).abs() < 0.1));
+}
+
+#[test]
+fn a_jump_that_stays_becomes_a_new_zero_after_0_4_s() {
+    let mut gate = tared();
+    let verdicts = take_for(&mut gate, SECOND, SECOND, 30.0);
+    let restart = verdicts.iter().position(|verdict| matches!(verdict, Verdict::Restarted(..))).expect("it restarts");
+    assert!((35..=40).contains(&restart), "after {restart} samples");
+    let Verdict::Restarted(deviation, absence_us) = verdicts[restart] else { panic!("it restarts") };
+    assert!((deviation.rad().to_degrees() - 30.0).abs() < 0.1 && absence_us < SECOND / 2);
+}
+
+#[test]
+fn two_wild_readings_with_a_good_one_between_them_are_not_a_new_zero() {
+    let mut gate = tared();
+    for (time_us, heading) in [(0, 30.0), (SECOND / 5, 0.0), (SECOND, 30.0)] {
+        let verdict = gate.take(Some(degrees(heading)), 0, &still(), SECOND + time_us);
+        assert!(matches!(verdict, Verdict::Absent | Verdict::Accepted(_)), "{verdict:?}");
+    }
+}
+
+#[test]
+fn two_wild_readings_seconds_apart_are_not_a_new_zero() {
+    let mut gate = tared();
+    for time_us in [2 * SECOND, 7 * SECOND] {
+        assert_eq!(gate.take(Some(degrees(30.0)), 0, &still(), time_us), Verdict::Absent);
+        assert_eq!(gate.take(None, 0, &still(), time_us + TICK), Verdict::Absent);
+    }
+}
+
+#[test]
+fn a_jump_is_confirmed_although_every_third_reading_is_missing() {
+    let mut gate = tared();
+    let at = |k: u64| gate.take((!k.is_multiple_of(3)).then(|| degrees(30.0)), 0, &still(), SECOND + k * TICK);
+    assert!((0..50).map(at).any(|verdict| matches!(verdict, Verdict::Restarted(..))));
+}
+
+#[test]
+fn an_absolute_heading_that_is_read_late_keeps_its_zero() {
+    let mut gate = HeadingGate::new(0.0);
+    gate.expect_absolute();
+    let verdict = gate.take(Some(degrees(77.0)), 0, &still(), 5 * SECOND);
+    assert!((heading_deg(verdict) - 77.0).abs() < 1e-6);
+}
+
+#[test]
+fn an_imu_that_returns_after_a_gap_near_its_old_zero_is_used_at_once() {
+    let mut gate = tared();
+    let verdict = gate.take(Some(degrees(3.0)), 0, &still(), 11 * SECOND);
+    assert!(matches!(verdict, Verdict::Returned(_, absence_us) if absence_us == 10 * SECOND), "{verdict:?}");
+    assert!((heading_deg(verdict) - 3.0).abs() < 1e-6);
+}
+
+#[test]
+fn an_imu_that_returns_after_a_gap_with_another_zero_restarts() {
+    let mut gate = tared();
+    let verdicts = take_for(&mut gate, 11 * SECOND, SECOND, -120.0);
+    let restart = verdicts.iter().find(|verdict| matches!(verdict, Verdict::Restarted(..))).expect("it restarts");
+    let Verdict::Restarted(deviation, absence_us) = *restart else { panic!("it restarts") };
+    assert!((deviation.rad().to_degrees() + 120.0).abs() < 0.1 && absence_us > 10 * SECOND);
+}
+
+#[test]
+fn an_imu_that_was_not_read_in_the_tare_starts_where_the_bend_sensors_are() {
+    let mut gate = HeadingGate::new(0.0);
+    let expected = Expected { heading: degrees(20.0), ..still() };
+    let first = gate.take(Some(degrees(77.0)), 0, &expected, SECOND);
+    assert!(matches!(first, Verdict::Restarted(deviation, _) if deviation == Turns::ZERO), "{first:?}");
+    let next = gate.take(Some(degrees(78.0)), 0, &expected, SECOND + TICK);
+    assert!((heading_deg(next) - 21.0).abs() < 1e-6);
+}
+
+#[test]
+fn a_heading_that_passes_360_degrees_does_not_step() {
+    let mut gate = tared();
+    let mut before = 0.0;
+    // 100 °/s for 8 s, which the bend sensors follow: the prediction is the last heading.
+    for k in 1..800_u32 {
+        let turned = f64::from(k);
+        let expected = Expected { heading: degrees(before), motion: 1.0_f64.to_radians(), ..still() };
+        before = heading_deg(gate.take(Some(degrees(turned)), 0, &expected, SECOND + u64::from(k) * TICK));
+        assert!((before - turned).abs() < 1e-5, "{before} instead of {turned}");
+    }
+}
+
+#[test]
+fn fast_motion_that_the_bend_sensors_see_is_no_jump() {
+    let mut gate = tared();
+    let moved = Expected { heading: degrees(20.0), motion: 20.0_f64.to_radians(), ..still() };
+    assert!((heading_deg(gate.take(Some(degrees(45.0)), 0, &moved, SECOND + TICK)) - 45.0).abs() < 1e-6);
+}
+
+#[test]
+fn a_step_of_the_bend_sensors_is_no_jump_of_the_imu() {
+    let mut gate = tared();
+    let stepped = Expected { heading: degrees(30.0), motion: 30.0_f64.to_radians(), ..still() };
+    assert!(heading_deg(gate.take(Some(degrees(0.5)), 0, &stepped, SECOND + TICK)).abs() < 1.0);
+}
+
+#[test]
+fn the_gyroscope_s_sensitivity_is_corrected() {
+    let mut gate = tared();
+    let scale_error = (0.02 * 4_294_967_296.0) as i32;
+    let mut heading = 0.0;
+    for k in 1..=90_u32 {
+        let expected = Expected { heading: degrees(heading), ..still() };
+        let reading = Some(degrees(f64::from(k) * 1.02));
+        heading = heading_deg(gate.take(reading, scale_error, &expected, SECOND + u64::from(k) * TICK));
+    }
+    // 1.02 · (1 − 0.02) is 1 − 0.0004.
+    assert!((heading - 90.0 * 0.9996).abs() < 1e-4, "{heading}");
+}
+
+/// Bend sensors that turn by 20 °/s while the IMU's output is 5° to the bit.
+fn frozen(gate: &mut HeadingGate<f64>, from: u64, to: u64) -> std::vec::Vec<Verdict<f64>> {
+    let at = |k: u64| {
+        let bend = (k as f64 * 0.2).to_radians();
+        let expected = Expected { heading: Turns::from_rad(bend), theta: bend, bend: Some(bend), ..still() };
+        gate.take(Some(Turns::ZERO), 0, &expected, SECOND + k * TICK)
+    };
+    (from..to).map(at).collect()
+}
+
+#[test]
+fn output_that_is_frozen_while_the_bend_sensors_move_is_not_used() {
+    let verdicts = frozen(&mut tared(), 0, 300);
+    assert!(!verdicts[..95].iter().any(|verdict| matches!(verdict, Verdict::Frozen(_))));
+    let Verdict::Frozen(theta) = verdicts[250] else { panic!("{:?}", verdicts[250]) };
+    assert!((theta.to_degrees() - 50.0).abs() < 0.3, "{}", theta.to_degrees());
+}
+
+#[test]
+fn an_imu_stays_frozen_while_its_bend_sensors_are_missing() {
+    let mut gate = tared();
+    frozen(&mut gate, 0, 200);
+    let expected = Expected { heading: degrees(40.0), theta: 0.7, bend: None, ..still() };
+    assert_eq!(gate.take(Some(Turns::ZERO), 0, &expected, 3 * SECOND), Verdict::Frozen(0.7));
+}
+
+#[test]
+fn bend_sensors_that_return_elsewhere_do_not_freeze_an_imu_at_rest() {
+    let mut gate = tared();
+    let without = Expected { bend: None, ..still() };
+    gate.take(Some(degrees(1.0)), 0, &without, SECOND);
+    let elsewhere = Expected { bend: Some(0.5), ..still() };
+    for k in 0..300 {
+        let verdict = gate.take(Some(degrees(1.0)), 0, &elsewhere, SECOND + k * TICK);
+        assert!(matches!(verdict, Verdict::Accepted(_)), "{verdict:?} at sample {k}");
+    }
+}
+
+#[test]
+fn an_arm_at_rest_does_not_freeze_its_imu() {
+    let mut gate = tared();
+    for k in 0..500 {
+        let verdict = gate.take(Some(Turns::ZERO), 0, &still(), SECOND + k * TICK);
+        assert!(matches!(verdict, Verdict::Accepted(_)), "{verdict:?} at sample {k}");
+    }
+}
