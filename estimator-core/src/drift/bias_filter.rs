@@ -171,6 +171,11 @@ impl<F: Scalar, const N: usize> BiasFilter<F, N> {
         }
     }
 
+    /// Forgets everything, at the start of a session.
+    pub fn start(&mut self) {
+        *self = Self::new();
+    }
+
     /// Covariance of two headings, [`VARIANCE_SCALE`](crate::VARIANCE_SCALE) times rad².
     pub fn heading_covariance(&self, i: usize, j: usize) -> F {
         self.state.bias_covariance(i, j)
