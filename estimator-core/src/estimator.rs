@@ -116,10 +116,13 @@ impl<'t, S: FusedOps, const N: usize, const W: usize> Estimator<'t, S, N, W> {
             return Err(ConfigError::Segments { found, room: N });
         }
         self.has_bend_sensors = config.segments.iter().any(|segment| segment.bend.iter().any(Option::is_some));
-        self.drift = match config.bias_filter {
-            Some(_) => Drift::BiasFilter(BiasFilter::new()),
-            None => Drift::MovingAverage(MovingAverage::new()),
-        };
+        match (&mut self.drift, config.bias_filter) {
+            // In place: a temporary of several kilobytes would not fit a small stack.
+            (Drift::MovingAverage(anchors), None) => anchors.start(),
+            (Drift::BiasFilter(filter), Some(_)) => filter.start(),
+            (drift, Some(_)) => *drift = Drift::BiasFilter(BiasFilter::new()),
+            (drift, None) => *drift = Drift::MovingAverage(MovingAverage::new()),
+        }
         for segment in config.segments {
             // There is room: it was checked.
             let _ = self.segments.push(SegmentState::new(segment, config.tare_samples));

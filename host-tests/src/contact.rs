@@ -1,16 +1,16 @@
 //! Contact as the estimator tells it, against what touches the simulated arm.
 
+use std::error::Error;
 use std::ops::AddAssign;
 
-use calibration_tables::{ArmFile, FileError};
-use estimator_core::{Estimator, ImuReading, Q, Sample};
-use proprio::replay::HostEstimator;
-use rig_twin::{Program, Push, Rig, SEGMENTS, Scenario};
+use calibration_tables::ArmFile;
+use proprio::replay::Outcome;
+use rig_twin::{Push, SEGMENTS, Scenario, Setup};
 
-/// The rate of the estimator's samples,
+use crate::twin::TwinSession;
+
+/// The rate of the estimator's samples.
 const RATE_HZ: f64 = 10.0;
-/// and the twin's steps in each.
-const TICKS: u32 = 10;
 /// What bends a segment by more is to be found,
 const STRONG_RAD: f64 = 10.0 * std::f64::consts::PI / 180.0;
 /// within this time.
@@ -34,6 +34,12 @@ pub struct Found {
     pub all: usize,
 }
 
+/// Segments of the twin that are in contact by an outcome.
+#[must_use]
+pub fn in_contact<S>(outcome: &Outcome<S>) -> [bool; SEGMENTS] {
+    std::array::from_fn(|i| outcome.contacts.get(i).is_some_and(|contact| contact.in_contact))
+}
+
 impl AddAssign for Found {
     fn add_assign(&mut self, other: Self) {
         *self = Self { found: self.found + other.found, all: self.all + other.all };
@@ -41,37 +47,21 @@ impl AddAssign for Found {
 }
 
 impl Run {
-    /// Runs the twin and, in the board's fixed point, the estimator with this table.
+    /// Simulates a session of the reference arm and replays it with this table.
     ///
     /// # Errors
-    /// [`FileError`] where the file is no table.
-    ///
-    /// # Panics
-    /// If the table is larger than any estimator.
-    pub fn new(table: &ArmFile, scenario: Scenario, seed: u64, seconds: f64) -> Result<Self, FileError> {
-        let baked = table.bake::<Q>(RATE_HZ)?;
-        let table = baked.config();
-        let mut estimator: Box<HostEstimator<Q>> =
-            Box::new(Estimator::new(&table).expect("there is room for any table"));
-        let (mut rig, program) = (Rig::new(scenario, seed), Program::new(scenario, seed));
-        let (mut told, mut bends_rad) = (Vec::new(), Vec::new());
-        while rig.time_s() < seconds {
-            let mut sample = Sample::missing((rig.time_s() * 1e6) as u64);
-            for (i, counts) in rig.adc_counts().into_iter().enumerate() {
-                sample.bend[i / 2][i % 2] = Some(counts);
-            }
-            for (i, registers) in rig.imu_quaternions().into_iter().enumerate() {
-                sample.imu[i] = Some(ImuReading::from_bno055(registers));
-            }
-            estimator.update_full(&sample);
-            let contacts = estimator.contacts();
-            told.push(core::array::from_fn(|i| contacts[i].in_contact));
-            bends_rad.push(rig.contact_bends_rad());
-            for _ in 0..TICKS {
-                rig.step(1.0 / RATE_HZ / f64::from(TICKS), program.duties(rig.time_s()));
-            }
-        }
-        Ok(Self { told, bends_rad, pushes: rig.pushes().to_vec() })
+    /// [`Error`] where the file is no table, or the twin has no such session.
+    pub fn new(table: &ArmFile, scenario: Scenario, seed: u64, seconds: f64) -> Result<Self, Box<dyn Error>> {
+        let session = TwinSession::new(&Setup::new(scenario, seed), seconds, RATE_HZ)?;
+        let mut told = Vec::new();
+        session.replay(table, |_, outcome, _| told.push(in_contact(outcome)))?;
+        Ok(Self::of(session, told))
+    }
+
+    /// A session that was replayed, with what the estimator said of each of its samples.
+    #[must_use]
+    pub fn of(session: TwinSession, told: Vec<[bool; SEGMENTS]>) -> Self {
+        Self { told, bends_rad: session.contact_bends_rad, pushes: session.pushes }
     }
 
     /// How often contact is told of where there was none before: of a free arm, false alarms.

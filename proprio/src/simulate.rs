@@ -41,6 +41,8 @@ pub struct Simulation {
     rate_hz: f64,
     samples: u64,
     next: u64,
+    /// When the duties stop to change, and for how long, s.
+    pause: Option<(f64, f64)>,
     camera: Option<Camera>,
     frames: Vec<Frame>,
 }
@@ -66,13 +68,25 @@ impl Simulation {
         check_seconds(seconds)?;
         let samples = (seconds * rate_hz).round().max(1.0) as u64;
         let (rig, program) = (Rig::of(setup), Program::of(setup));
-        Ok(Self { rig, program, rate_hz, samples, next: 0, camera: None, frames: Vec::new() })
+        Ok(Self { rig, program, rate_hz, samples, next: 0, pause: None, camera: None, frames: Vec::new() })
     }
 
     /// The same run under a camera; what the arm and its sensors do stays the same to the bit.
     #[must_use]
     pub fn under(self, camera: Camera) -> Self {
         Self { camera: Some(camera), ..self }
+    }
+
+    /// The same run with a rest: from `at_s` on the duties hold for `for_s` seconds, then the motion continues.
+    #[must_use]
+    pub fn with_rest(self, at_s: f64, for_s: f64) -> Self {
+        Self { pause: Some((at_s, for_s)), ..self }
+    }
+
+    /// The rig at the newest sample.
+    #[must_use]
+    pub fn rig(&self) -> &Rig {
+        &self.rig
     }
 
     /// What the camera saw up to the last sample, since this was last asked.
@@ -95,7 +109,15 @@ impl Simulation {
         let ticks = ((to_s - from_s) / TICK_S - 1e-6).ceil().max(1.0);
         for k in 0..ticks as u32 {
             let dt_s = (to_s - from_s) / ticks;
-            self.step(dt_s, self.program.duties(from_s + f64::from(k) * dt_s));
+            self.step(dt_s, self.program.duties(self.program_s(from_s + f64::from(k) * dt_s)));
+        }
+    }
+
+    /// Time of the motion at a time of the session.
+    fn program_s(&self, time_s: f64) -> f64 {
+        match self.pause {
+            Some((at_s, for_s)) if time_s > at_s => at_s.max(time_s - for_s),
+            _ => time_s,
         }
     }
 

@@ -1,0 +1,108 @@
+//! Arms, and the tables that their own sweeps give.
+
+use std::error::Error;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use calibration_tables::{ArmFile, DriftKeys, DriftKind};
+use proprio::calibrate::{Calibration, CalibrationOptions, HysteresisMode, MapMode, calibrate};
+use proprio::output::OutputFile;
+use proprio::replay::NamedTable;
+use proprio::session::{ImuColumns, SessionWriter};
+use proprio::simulate::Simulation;
+use rig_twin::{Motion, Scenario, Setup};
+
+/// Why a figure cannot be measured.
+pub type Problem = Box<dyn Error + Send + Sync>;
+
+/// Samples a second: the paper's.
+pub const RATE_HZ: f64 = 10.0;
+/// Length of a sweep and of a session.
+pub const SESSION_S: f64 = 900.0;
+
+/// Tables of one arm, all of one sweep, nothing tuned.
+pub struct Tables {
+    /// As `calibrate` makes it.
+    pub own: ArmFile,
+    /// The same with the paper's quadratic maps and no memory.
+    pub quadratic: ArmFile,
+    /// The paper's method: quadratic maps, the anchor, KF_orient and KF_coord.
+    pub paper: ArmFile,
+    /// Mean RMSE of the quadratic maps on the sweep, degrees.
+    pub maps_rmse_deg: f64,
+}
+
+impl Tables {
+    /// Calibrates the arm of a sweep.
+    pub fn of_sweep(sweep: &Path, arm: &ArmFile) -> Result<Self, Problem> {
+        let quadratic = CalibrationOptions { maps: MapMode::Quadratic, hysteresis: HysteresisMode::Never };
+        let anchored =
+            ArmFile { drift: Some(DriftKeys { kind: DriftKind::Anchor, ..DriftKeys::kalman() }), ..arm.clone() };
+        let table = |file: &ArmFile, options| -> Result<Calibration, Problem> {
+            Ok(calibrate(
+                &[sweep.to_owned()],
+                &NamedTable { file: file.clone(), path: Path::new("planar-6.toml") },
+                options,
+            )?)
+        };
+        let Calibration { table: paper, sensors, .. } = table(&anchored, quadratic)?;
+        Ok(Self {
+            own: table(arm, CalibrationOptions::default())?.table,
+            quadratic: table(arm, quadratic)?.table,
+            paper,
+            maps_rmse_deg: sensors.iter().map(|sensor| sensor.rmse_deg).sum::<f64>() / sensors.len() as f64,
+        })
+    }
+
+    /// Calibrates an arm of the twin on its own sweep, which is written in `folder`.
+    pub fn of_twin(arm_seed: u64, arm: &ArmFile, folder: &Path) -> Result<Self, Problem> {
+        Self::of_sweep(&sweep(arm_seed, folder)?, arm)
+    }
+}
+
+/// Writes the sweep of an arm of the twin.
+pub fn sweep(arm_seed: u64, folder: &Path) -> Result<PathBuf, Problem> {
+    let path = folder.join(format!("sweep-{arm_seed}.csv"));
+    let mut writer = SessionWriter::new(OutputFile::create(&path, &[])?, ImuColumns::Quaternion)?;
+    for sample in Simulation::of(&setup(arm_seed, Scenario::Sweep, Motion::Swings), SESSION_S, RATE_HZ)? {
+        writer.write(&sample)?;
+    }
+    writer.into_inner().finish()?;
+    Ok(path)
+}
+
+/// The session of an arm in which it moves so.
+pub fn setup(arm_seed: u64, scenario: Scenario, motion: Motion) -> Setup {
+    Setup { arm_seed, scenario, motion, seed: session_seed(arm_seed, scenario, motion) }
+}
+
+/// Seed of a session: no two of an arm share one.
+pub fn session_seed(arm_seed: u64, scenario: Scenario, motion: Motion) -> u64 {
+    let scenario = match scenario {
+        Scenario::Sweep => 0,
+        Scenario::One => 1,
+        Scenario::Two => 2,
+        Scenario::Three => 3,
+    };
+    let motion = match motion {
+        Motion::Swings => 0,
+        Motion::Slow => 10,
+        Motion::Fast => 20,
+        Motion::OneModule => 30,
+        Motion::Rests => 40,
+        Motion::Lean => 50,
+        Motion::BentStart => 60,
+        Motion::MovingStart => 70,
+    };
+    100 * arm_seed + motion + scenario
+}
+
+/// The arm that all tables are made for.
+pub fn planar(root: &Path) -> Result<ArmFile, Problem> {
+    Ok(ArmFile::load(&root.join("calibration-tables/arms/planar-6.toml"))?)
+}
+
+/// A file's text, or what there is to say of it.
+pub fn read(path: &Path) -> Result<String, Problem> {
+    fs::read_to_string(path).map_err(|error| format!("{}: {error}", path.display()).into())
+}

@@ -1,0 +1,136 @@
+//! Sessions of the twin in memory, and their replay in the board's fixed point.
+
+use calibration_tables::{ArmFile, FileError, MAX_SEGMENTS};
+use estimator_core::{ArmConfig, Condition, Estimator, ImuReading, Method, Q, Sample};
+use proprio::error::Error;
+use proprio::replay::{HostEstimator, Outcome};
+use proprio::session::{Row, Truth};
+use proprio::simulate::{Recorded, Simulation};
+use rig_twin::{Push, SEGMENTS, Setup};
+
+/// A session of the twin.
+#[derive(Debug, Clone)]
+pub struct TwinSession {
+    /// Samples a second.
+    pub rate_hz: f64,
+    /// Readings and truth.
+    pub samples: Vec<Recorded>,
+    /// Bend angle that contact adds to each segment, rad; one value a sample.
+    pub contact_bends_rad: Vec<[f64; SEGMENTS]>,
+    /// Pushes of scenario II.
+    pub pushes: Vec<Push>,
+}
+
+impl TwinSession {
+    /// Simulates `seconds` of a session at `rate_hz`.
+    ///
+    /// # Errors
+    /// [`Error::Rate`] and [`Error::Seconds`].
+    pub fn new(setup: &Setup, seconds: f64, rate_hz: f64) -> Result<Self, Error> {
+        Ok(Self::of(Simulation::of(setup, seconds, rate_hz)?, rate_hz))
+    }
+
+    /// The session of a simulation that samples at `rate_hz`.
+    pub fn of(mut simulation: Simulation, rate_hz: f64) -> Self {
+        let (mut samples, mut contact_bends_rad) = (Vec::new(), Vec::new());
+        while let Some(sample) = simulation.next() {
+            samples.push(sample);
+            contact_bends_rad.push(simulation.rig().contact_bends_rad());
+        }
+        Self { rate_hz, samples, contact_bends_rad, pushes: simulation.rig().pushes().to_vec() }
+    }
+
+    /// Index of the first sample at or after `time_s`.
+    #[must_use]
+    pub fn index(&self, time_s: f64) -> usize {
+        self.samples.partition_point(|sample| (sample.time_us as f64) < time_s * 1e6)
+    }
+
+    /// The rows, as a session's file would have them.
+    pub fn rows(&self) -> impl Iterator<Item = Row> {
+        self.samples.iter().enumerate().map(|(k, sample)| row(sample, k == 0))
+    }
+
+    /// Replays the session; `visit` receives what [`replay`] gives it.
+    ///
+    /// # Errors
+    /// As [`replay`].
+    pub fn replay(&self, table: &ArmFile, visit: impl FnMut(&Row, &Outcome<Q>, bool)) -> Result<(), FileError> {
+        replay(table, self.rate_hz, self.rows(), visit)
+    }
+}
+
+/// The row of a sample of the twin, as a session's file would have it.
+#[must_use]
+pub fn row(recorded: &Recorded, starts: bool) -> Row {
+    let mut sample = Sample::missing(recorded.time_us);
+    let mut truth = [None; MAX_SEGMENTS];
+    for (i, counts) in recorded.counts.into_iter().enumerate() {
+        sample.bend[i / 2][i % 2] = counts;
+    }
+    for (imu, quaternion) in sample.imu.iter_mut().zip(recorded.quaternions) {
+        *imu = quaternion.map(ImuReading::from_bno055);
+    }
+    for (truth, end) in truth.iter_mut().zip(recorded.truth) {
+        *truth = Some(Truth { x_m: end.x_m, y_m: end.y_m, heading_rad: Some(end.heading_rad) });
+    }
+    Row { sample, truth, starts, board: None }
+}
+
+/// The estimator in the board's fixed point, row by row.
+pub struct Replayer<'t> {
+    estimator: Box<HostEstimator<'t, Q>>,
+}
+
+impl<'t> Replayer<'t> {
+    /// An estimator at the start of a session.
+    ///
+    /// # Panics
+    /// If the arm is larger than the estimator has room for; tables from files are not.
+    #[must_use]
+    pub fn new(config: &'t ArmConfig<'t, Q>) -> Self {
+        Self { estimator: Box::new(Estimator::new(config).expect("the file was checked")) }
+    }
+
+    /// Takes a row.
+    ///
+    /// # Panics
+    /// As [`Self::new`].
+    pub fn step(&mut self, row: &Row) -> Outcome<Q> {
+        let estimator = &mut self.estimator;
+        if row.starts {
+            estimator.start().expect("the file was checked");
+        }
+        let estimate = estimator.update_full(&row.sample);
+        let shapes = Method::ALL.map(|method| estimator.shape(&estimate, method));
+        let (uncertainties, contacts) = (estimator.uncertainties(), estimator.contacts());
+        Outcome { estimate, shapes, uncertainties, contacts, conditions: estimator.conditions() }
+    }
+
+    /// Whether the estimator reports a condition of any segment.
+    #[must_use]
+    pub fn is_degraded(&self) -> bool {
+        self.estimator.conditions().into_iter().any(Condition::is_degraded)
+    }
+}
+
+/// Replays rows sampled at `rate_hz`; `visit` receives every row with its outcome, and whether the estimator reports a
+/// condition of any segment.
+///
+/// # Errors
+/// [`FileError`] where the file is no table.
+pub fn replay(
+    table: &ArmFile,
+    rate_hz: f64,
+    rows: impl Iterator<Item = Row>,
+    mut visit: impl FnMut(&Row, &Outcome<Q>, bool),
+) -> Result<(), FileError> {
+    let baked = table.bake::<Q>(rate_hz)?;
+    let config = baked.config();
+    let mut replayer = Replayer::new(&config);
+    for row in rows {
+        let outcome = replayer.step(&row);
+        visit(&row, &outcome, replayer.is_degraded());
+    }
+    Ok(())
+}
