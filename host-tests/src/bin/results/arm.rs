@@ -41,7 +41,7 @@ impl Tables {
             ..arm.clone()
         };
         let table = |file: &ArmFile, options| -> Result<Calibration, Problem> {
-            Ok(calibrate(sweep, &NamedTable { file: file.clone(), path: Path::new("planar-6.toml") }, options)?)
+            Ok(calibrate(&[sweep.to_owned()], &NamedTable { file: file.clone(), path: Path::new("planar-6.toml") }, options)?)
         };
         let Calibration { table: paper, sensors, .. } = table(&anchored, quadratic)?;
         Ok(Self {
