@@ -1,7 +1,10 @@
 //! When the estimator starts, that it starts anew, and what is told beside the estimates.
 
 use board_core::{Arm, TARE_TICKS};
-use estimator_core::{ArmConfig, BendMap, ContactConfig, Q, SegmentConfig, Turns, UncertaintyConfig, VARIANCE_SCALE};
+use estimator_core::{
+    ArmConfig, BendMap, BendSensorConfig, ContactConfig, Q, QuadraticMap, SegmentConfig, Turns, UncertaintyConfig,
+    VARIANCE_SCALE,
+};
 use telemetry::{BEND_SENSORS, Event, SEGMENTS, Sample};
 
 /// Six segments without bend sensors, whose headings are absolute.
@@ -59,22 +62,23 @@ fn an_estimate_carries_the_tick_of_its_sample() {
     assert_eq!(arm.step(&sample(77)).tick, 77);
 }
 
-/// Six segments with bend sensors, straight at 1.5 V, and a table that tells of contact and of errors.
-fn feeling_table() -> &'static ArmConfig<'static, Q> {
-    let map = Some(BendMap::from_volts(0.0, 1.0, -1.5, [0.5, 2.5]));
-    let segment = SegmentConfig { bend: [map; 2], ..SegmentConfig::uncalibrated(0.08, 0.017) };
+/// Six segments with bend sensors, straight at 1.5 V, with contact detection and error sources.
+fn full_table() -> &'static ArmConfig<'static, Q> {
+    let map = BendMap::Quadratic(QuadraticMap::from_volts(0.0, 1.0, -1.5, [0.5, 2.5]));
+    let sensor = Some(BendSensorConfig { map, memory: None });
+    let segment = SegmentConfig { bend: [sensor; 2], ..SegmentConfig::uncalibrated(0.08, 0.017) };
     let segments: &'static [SegmentConfig<Q>] = Box::leak(Box::new([segment; SEGMENTS]));
     let turns = |degrees: f64| Turns::from_rad(degrees.to_radians());
     let of = |value: f64| Q::from_f64(value * VARIANCE_SCALE);
     let errors = UncertaintyConfig {
         theta: of(1e-4),
-        drift: of(0.0),
+        bias_share: Q::from_f64(0.5),
         bend: of(1e-3),
         contact: of(1e-3),
         heading: of(1e-4),
         end: of(1e-6),
     };
-    let contact = Some(ContactConfig { bend: turns(5.0), alike: turns(4.0) });
+    let contact = Some(ContactConfig { bend: turns(5.0), coupling: turns(4.0) });
     Box::leak(Box::new(ArmConfig { contact, uncertainty: Some(errors), ..ArmConfig::uncalibrated(segments) }))
 }
 
@@ -87,7 +91,7 @@ fn turned(tick: u32, degrees: f64) -> Sample {
 
 #[test]
 fn contact_is_told_once_when_it_begins_and_once_when_a_tare_ends_it() {
-    let mut arm = Arm::new(feeling_table());
+    let mut arm = Arm::new(full_table());
     arm.start();
     let tell = |arm: &mut Arm, tick, degrees| {
         arm.step(&turned(tick, degrees));
@@ -104,7 +108,7 @@ fn contact_is_told_once_when_it_begins_and_once_when_a_tare_ends_it() {
 
 #[test]
 fn an_uncertainty_is_of_the_newest_estimate() {
-    let mut arm = Arm::new(feeling_table());
+    let mut arm = Arm::new(full_table());
     arm.start();
     for tick in 0..20 {
         arm.step(&turned(tick, 0.0));
@@ -113,7 +117,7 @@ fn an_uncertainty_is_of_the_newest_estimate() {
     arm.step(&turned(20, 20.0));
     let touched = arm.uncertainty(20);
     assert_eq!((free.tick, touched.tick), (19, 20));
-    assert!(!free.segments[0].in_contact && touched.segments[0].in_contact);
+    assert!(!free.segments[0].is_touched && touched.segments[0].is_touched);
     assert!(touched.segments[0].theta > free.segments[0].theta && free.segments[0].theta.is_some());
     assert!(touched.segments[5].end.is_some());
 }

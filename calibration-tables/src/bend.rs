@@ -16,6 +16,9 @@ use crate::file::{BendKeys, FileError, SegmentKeys};
 pub const CURVE_POINTS: RangeInclusive<usize> = 2..=65;
 /// Largest standard deviation of a bend sensor that the bias filter's fixed point holds.
 const MAX_DEVIATION_DEG: f64 = 5.0;
+/// A sensor steps where it moves by more than so many standard deviations of its noise, and by so many degrees.
+const STEP_DEVIATIONS: f64 = 8.0;
+const LEAST_STEP_DEG: f64 = 6.0;
 /// Two lags and two plays.
 const MEMORIES: usize = 2;
 
@@ -51,6 +54,9 @@ pub struct BendErrorKeys {
     pub mean_deg: f64,
     /// Of each sensor.
     pub sensor_deg: Vec<f64>,
+    /// Of the change from one value to the next at 10 Hz, of the noisier sensor.
+    #[serde(default)]
+    pub noise_deg: f64,
     /// Of half the difference of a and b.
     pub difference_deg: f64,
     /// Of 60 s means of half the difference.
@@ -105,8 +111,11 @@ impl MemoryKeys {
     }
 
     fn bake<S: Scalar>(&self) -> MemoryConfig<S> {
-        let lag =
-            |k: usize| Lag { rate: S::from_f64(TIME_UNIT_S / self.lag_s[k]), weight: S::from_f64(self.lag_weight[k]) };
+        let lag = |k: usize| Lag {
+            time: S::from_f64(self.lag_s[k] / TIME_UNIT_S),
+            rate: S::from_f64(TIME_UNIT_S / self.lag_s[k]),
+            weight: S::from_f64(self.lag_weight[k]),
+        };
         let play = |k: usize| Play {
             radius: S::from_f64(self.play_deg[k].to_radians()),
             weight: S::from_f64(self.play_weight[k]),
@@ -123,6 +132,7 @@ impl BendErrorKeys {
         for deviation in &self.sensor_deg {
             within(&format!("{key}.sensor_deg"), *deviation, 0.05..=90.0)?;
         }
+        within(&format!("{key}.noise_deg"), self.noise_deg, 0.0..=90.0)?;
         within(&format!("{key}.difference_deg"), self.difference_deg, 0.0..=90.0)?;
         within(&format!("{key}.slow_difference_deg"), self.slow_difference_deg, 0.0..=90.0)?;
         within(&format!("{key}.slow_ratio"), self.slow_ratio, 0.0..=1.0)?;
@@ -136,6 +146,7 @@ impl BendErrorKeys {
         BendErrorConfig {
             mean: deviation(self.mean_deg),
             sensor: [sensor(0), sensor(1)],
+            step: Q::from_f64((STEP_DEVIATIONS * self.noise_deg).max(LEAST_STEP_DEG).to_radians()),
             difference: deviation(self.difference_deg),
             slow_difference: Q::from_f64(self.slow_difference_deg.to_radians()),
             slow_ratio: Q::from_f64(self.slow_ratio),
@@ -176,6 +187,7 @@ impl SegmentKeys {
         BendErrorKeys {
             mean_deg,
             sensor_deg,
+            noise_deg: 0.0,
             difference_deg: mean_deg,
             slow_difference_deg: mean_deg / 2.0,
             slow_ratio: 1.0,

@@ -136,7 +136,9 @@ pub struct MemoryConfig<S> {
 /// A first-order lag and its share in the correction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lag<S> {
-    /// [`TIME_UNIT_S`](crate::TIME_UNIT_S) over the time constant.
+    /// Time constant, units of [`TIME_UNIT_S`](crate::TIME_UNIT_S).
+    pub time: S,
+    /// One over it.
     pub rate: S,
     /// Weight of the difference of input and lag.
     pub weight: S,
@@ -161,6 +163,8 @@ pub struct BendErrorConfig {
     pub mean: Q,
     /// Variance of each sensor, σ₁².
     pub sensor: [Q; SENSORS_PER_SEGMENT],
+    /// Change of a sensor from one sample to the next that is a step, rad.
+    pub step: Q,
     /// Variance of half the difference of a and b, σ_d².
     pub difference: Q,
     /// Standard deviation of 60 s means of half that difference, rad.
@@ -266,6 +270,7 @@ impl BendErrorConfig {
     pub const PAPER: Self = Self {
         mean: variance_deg(3.34).q,
         sensor: [variance_deg(4.72).q; SENSORS_PER_SEGMENT],
+        step: degrees(6.0).q,
         difference: variance_deg(3.34).q,
         slow_difference: degrees(1.5).q,
         slow_ratio: Q::from_f64(1.0),

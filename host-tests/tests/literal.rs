@@ -5,7 +5,7 @@
 
 mod synthetic;
 
-use estimator_core::{ArmConfig, Estimator, FusedOps, Method, Q, Scalar};
+use estimator_core::{ArmConfig, Estimator, FusedOps, Method, Q};
 use host_tests::literal::{self, Answer, Shape};
 use synthetic::{Kind, NoiseRanges, Random};
 

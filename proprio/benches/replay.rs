@@ -7,7 +7,7 @@ use std::path::Path;
 
 use divan::Bencher;
 use divan::counter::ItemsCount;
-use estimator_core::{FusedOps, Q, Scalar};
+use estimator_core::{FusedOps, Q};
 use proprio::replay::replay;
 use proprio::score::{Figures, Score};
 

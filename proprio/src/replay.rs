@@ -8,6 +8,7 @@ use telemetry::{Hello, TICK_HZ};
 
 use crate::error::Error;
 use crate::progress::Progress;
+use crate::recording::{RecordedBy, is_version_0_1};
 use crate::session::{Kind, Needs, Row, SessionReader};
 
 /// The estimator with room for every arm.
@@ -94,16 +95,25 @@ pub struct Extent {
 pub struct Recording {
     /// Version and revision of the board's firmware; `None` where its `Hello` is not in the recording.
     pub firmware: Option<String>,
-    /// Whether the board's table was the one of the replay, likewise.
+    /// Whether the board's table was the one of the replay, likewise. `None` of firmware of version 0.1, too, where the same
+    /// table had another checksum.
     pub table_matches: Option<bool>,
+    /// The estimator of the board's firmware.
+    pub recorded_by: RecordedBy,
 }
 
 impl Recording {
     fn new(hello: Option<&Hello>, table: &NamedTable) -> Result<Self, Error> {
-        let Some(hello) = hello else { return Ok(Self { firmware: None, table_matches: None }) };
+        let Some(hello) = hello else {
+            return Ok(Self { firmware: None, table_matches: None, recorded_by: RecordedBy::default() });
+        };
         let checksum = table.bake::<Q>(TICK_HZ)?.checksum();
         let firmware = Some(format!("{} ({})", hello.firmware, hello.revision));
-        Ok(Self { firmware, table_matches: Some(hello.table == checksum) })
+        Ok(Self {
+            firmware,
+            table_matches: (!is_version_0_1(&hello.firmware)).then_some(hello.table == checksum),
+            recorded_by: RecordedBy::new(&hello.firmware, table.file.drift.as_ref().map(|drift| drift.kind)),
+        })
     }
 }
 

@@ -7,6 +7,7 @@ use telemetry::{Event, Health, Hello, Message, SEGMENTS, TICK_HZ, Uncertainty};
 
 use crate::honesty::Ellipse;
 use crate::link::{Link, LinkError, Mismatch, Subscription, What};
+use crate::recording::is_version_0_1;
 
 /// How long a board may be silent, s.
 const PATIENCE_S: u64 = 10;
@@ -118,6 +119,7 @@ impl Status {
             }
             let state = link.state();
             if let (Some(hello), Some(health), Some(rates)) = (state.hello, seen.health, seen.rates()) {
+                let is_comparable = !is_version_0_1(&hello.firmware);
                 let differs = |mismatch: &Mismatch| matches!(mismatch, Mismatch::Table { .. });
                 return Ok(Self {
                     port: state.port.unwrap_or_default(),
@@ -132,7 +134,7 @@ impl Status {
                         lost: state.counts.lost,
                     },
                     answers: state.greeted,
-                    table_matches: table_given.then(|| !state.mismatches.iter().any(differs)),
+                    table_matches: (table_given && is_comparable).then(|| !state.mismatches.iter().any(differs)),
                     mismatches: state.mismatches.iter().map(ToString::to_string).collect(),
                 });
             }

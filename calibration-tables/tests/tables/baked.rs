@@ -1,13 +1,15 @@
 //! From a table to the estimator's parameters.
 
 use calibration_tables::{ArmFile, FileError};
-use estimator_core::{BiasFilterConfig, Estimator, Method, OffsetAt, Q, SENSORS_PER_SEGMENT, Sample, SegmentConfig};
+use estimator_core::{
+    BiasFilterConfig, Estimator, Method, OffsetAt, Q, SENSORS_PER_SEGMENT, Sample, SegmentConfig, VARIANCE_SCALE,
+};
 
 use super::common::{DESCRIPTION, TABLE, edited, parse};
 
 /// The first segment, baked in floats.
 fn first(text: &str, rate_hz: f64) -> SegmentConfig<f64> {
-    parse(text).bake::<f64>(rate_hz).expect("it is a table").table().segments[0]
+    parse(text).bake::<f64>(rate_hz).expect("it is a table").config().segments[0]
 }
 
 fn near(found: f64, expected: f64) {
@@ -43,7 +45,7 @@ fn geometry_is_in_metres() {
     near(segment.length, 0.080);
     near(segment.offset, 0.017);
     assert_eq!(segment.offset_at, OffsetAt::End);
-    assert_eq!(parse(TABLE).bake::<f64>(10.0).expect("a table").table().segments[1].offset_at, OffsetAt::Start);
+    assert_eq!(parse(TABLE).bake::<f64>(10.0).expect("a table").config().segments[1].offset_at, OffsetAt::Start);
 }
 
 #[test]
@@ -63,10 +65,10 @@ fn the_reference_pose_is_straight_where_none_is_given() {
 /// θ = c2 V² + c1 V + c0, V = counts · 3.3 / 4095, within the sensor's voltages.
 #[test]
 fn the_baked_map_is_that_of_the_file() {
-    let map = first(TABLE, 10.0).bend[0].expect("the segment has a sensor");
+    let sensor = first(TABLE, 10.0).bend[0].expect("the segment has a sensor");
     for counts in [500_u16, 1000, 2000, 3000, 3200] {
         let volts = f64::from(counts) * 3.3 / 4095.0;
-        let (found, expected) = (map.angle(counts).expect("a reading"), 0.1 * volts * volts + 0.8 * volts - 1.5);
+        let (found, expected) = (sensor.map.angle(counts).expect("a reading"), 0.1 * volts * volts + 0.8 * volts - 1.5);
         assert!((found - expected).abs() < 1e-9, "{counts} counts: {found}, expected {expected}");
     }
 }
@@ -75,11 +77,11 @@ fn the_baked_map_is_that_of_the_file() {
 fn a_sensor_of_which_only_the_map_is_known_bakes_with_defaults() {
     let text = format!("{DESCRIPTION}bend = [{{ c0 = -1.5, c1 = 0.8, c2 = 0.1 }}]\n");
     let segment = first(&text, 10.0);
-    let map = segment.bend[0].expect("the segment has a sensor");
+    let sensor = segment.bend[0].expect("the segment has a sensor");
     for counts in [1_u16, 4095] {
         let volts = f64::from(counts) * 3.3 / 4095.0;
         let expected = 0.1 * volts * volts + 0.8 * volts - 1.5;
-        let found = map.angle(counts).expect("a reading");
+        let found = sensor.map.angle(counts).expect("a reading");
         assert!((found - expected).abs() < 1e-9, "the whole range of the converter: {counts} counts");
     }
     for noise in [segment.orient, segment.coord] {
@@ -91,7 +93,7 @@ fn a_sensor_of_which_only_the_map_is_known_bakes_with_defaults() {
 
 #[test]
 fn the_tare_takes_the_samples_of_its_seconds() {
-    let samples = |text: &str, rate_hz| parse(text).bake::<Q>(rate_hz).expect("a table").table().tare_samples;
+    let samples = |text: &str, rate_hz| parse(text).bake::<Q>(rate_hz).expect("a table").config().tare_samples;
     assert_eq!((samples(TABLE, 10.0), samples(TABLE, 100.0)), (10, 100));
     let long = edited("seconds = 1.0", "seconds = 2.5");
     assert_eq!((samples(&long, 10.0), samples(&long, 100.0)), (25, 250));
@@ -102,7 +104,7 @@ fn the_tare_takes_the_samples_of_its_seconds() {
 #[test]
 fn the_anchor_is_averaged_down_to_its_own_rate() {
     let rates = |rate_hz| {
-        let anchor = parse(TABLE).bake::<Q>(rate_hz).expect("a table").table().anchor;
+        let anchor = parse(TABLE).bake::<Q>(rate_hz).expect("a table").config().anchor;
         (anchor.rate_millihertz, anchor.sample_rate_millihertz)
     };
     assert_eq!((rates(10.0), rates(100.0)), ((10_000, 10_000), (10_000, 100_000)));
@@ -111,7 +113,7 @@ fn the_anchor_is_averaged_down_to_its_own_rate() {
 #[test]
 fn window_and_threshold_are_those_of_the_file_at_any_rate() {
     for rate_hz in [10.0, 100.0] {
-        let anchor = parse(TABLE).bake::<Q>(rate_hz).expect("a table").table().anchor;
+        let anchor = parse(TABLE).bake::<Q>(rate_hz).expect("a table").config().anchor;
         assert_eq!(anchor.window, 100);
         // Units of 2⁻³² turns.
         assert!((anchor.threshold.rad().to_degrees() - 0.5).abs() < 1e-7);
@@ -152,7 +154,7 @@ fn fixed_point_and_floats_bake_alike() {
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("planar-6.toml");
     let file = ArmFile::load(&path).expect("the reference table is committed");
     let (fixed, float) = (file.bake::<Q>(100.0).expect("a table"), file.bake::<f64>(100.0).expect("a table"));
-    for (fixed, float) in fixed.table().segments.iter().zip(float.table().segments) {
+    for (fixed, float) in fixed.config().segments.iter().zip(float.config().segments) {
         // One unit of fixed point is 2⁻²⁶ at the most.
         let same = |fixed: Q, float: f64| assert!((fixed.to_f64() - float).abs() < 2e-8, "{float}");
         same(fixed.length, float.length);
@@ -160,7 +162,7 @@ fn fixed_point_and_floats_bake_alike() {
         same(fixed.coord.r_bend, float.coord.r_bend);
         for (fixed, float) in fixed.bend.iter().flatten().zip(float.bend.iter().flatten()) {
             for counts in (1800..2700_u16).step_by(50) {
-                let (fixed, float) = fixed.angle(counts).zip(float.angle(counts)).expect("a reading");
+                let (fixed, float) = fixed.map.angle(counts).zip(float.map.angle(counts)).expect("a reading");
                 let error = fixed.to_f64() - float;
                 assert!(error.abs() < 1e-6, "{error} rad at {counts} counts");
             }
@@ -198,30 +200,38 @@ fn the_checksum_tells_the_smallest_change_of_a_parameter() {
     assert!(whole != other_rate && whole != longer && other_rate != longer);
 }
 
-/// The observer of the table with `[drift]` of these lines.
-fn observer(drift: &str, rate_hz: f64) -> Option<BiasFilterConfig> {
+/// The bias filter of the table with `[drift]` of these lines.
+fn bias_filter(drift: &str, rate_hz: f64) -> Option<BiasFilterConfig> {
     let text = edited("[[segment]]", &format!("[drift]\n{drift}\n[[segment]]"));
-    parse(&text).bake::<Q>(rate_hz).expect("a table").table().observer
+    parse(&text).bake::<Q>(rate_hz).expect("a table").config().bias_filter
 }
 
 #[test]
 fn drift_is_left_to_the_anchor_where_nothing_else_is_said() {
-    assert_eq!(parse(TABLE).bake::<Q>(10.0).expect("a table").table().observer, None);
-    assert_eq!(observer("kind = \"anchor\"", 10.0), None);
+    assert_eq!(parse(TABLE).bake::<Q>(10.0).expect("a table").config().bias_filter, None);
+    assert_eq!(bias_filter("kind = \"anchor\"", 10.0), None);
 }
 
 #[test]
-fn the_observer_s_variances_are_shares_of_its_measurement_s() {
-    let rule = observer("kind = \"observer\"\nnoise_deg2_s = 40.0\nstart_deg = 2.0\nslope = 0.1", 10.0);
-    let [bias, _, slope] =
-        rule.expect("the observer is wanted").prior.map(|prior| f64::from(prior) / f64::from(1 << 30));
-    // 10 values a second share the density: 400 degrees² each.
-    assert!((bias - 4.0 / 400.0).abs() < 1e-8 && (slope - 81.0 / 400.0).abs() < 1e-8, "{bias}, {slope}");
+fn the_bias_filter_s_variances_are_squares_of_the_file_s_deviations() {
+    let config = bias_filter("kind = \"kalman\"\nstart_deg = 2.0\noffset_deg = 3.0", 10.0).expect("it is wanted");
+    let deviation_deg = |variance: Q| (variance.to_f64() / VARIANCE_SCALE).sqrt().to_degrees();
+    assert!((deviation_deg(config.initial_bias) - 2.0).abs() < 1e-5, "{config:?}");
+    assert!((deviation_deg(config.offset) - 3.0).abs() < 1e-5, "{config:?}");
 }
 
 #[test]
-fn the_observer_keeps_the_anchor_s_rate_on_a_faster_board() {
-    let drift = "kind = \"observer\"";
-    assert_eq!(observer(drift, 100.0), observer(drift, 10.0));
-    assert_ne!(observer(drift, 5.0), observer(drift, 10.0));
+fn the_bias_filter_is_the_same_at_any_rate() {
+    let drift = "kind = \"kalman\"";
+    assert_eq!(bias_filter(drift, 100.0), bias_filter(drift, 10.0));
+}
+
+#[test]
+fn a_table_with_the_observer_of_version_0_1_runs_the_bias_filter_and_keeps_the_keys_that_both_have() {
+    let old = "kind = \"observer\"\nnoise_deg2_s = 40.0\nwalk_deg_per_s = 1e-3\nslope = 0.1\ngate_deg = 8.0\npatience_s = 30.0\n\
+               jump_deg = 12.0\nstill_deg = 1.0\ndoubt_deg = 2.5";
+    assert_eq!(
+        bias_filter(old, 10.0),
+        bias_filter("kind = \"kalman\"\nrate_random_walk_deg_per_s_sqrt_s = 1e-3", 10.0)
+    );
 }

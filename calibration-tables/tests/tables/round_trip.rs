@@ -1,11 +1,13 @@
 //! A file is written and read without loss: every number to its last bit, every name to its last character.
 
 use calibration_tables::{
-    AlikeKeys, AnchorKeys, ArmFile, BendKeys, ContactKeys, DriftKeys, DriftKind, NoiseKeys, ObserverTuningKeys,
-    PlayKeys, RmseKeys, SegmentKeys, Side, Stopped, TareKeys, TuningKeys, UncertaintyKeys,
+    AnchorKeys, ArmFile, BendErrorKeys, BendKeys, ContactKeys, CoupledKeys, CurveKeys, DriftKeys, DriftKind,
+    DriftTuningKeys, MemoryKeys, NoiseKeys, PlayKeys, RmseKeys, SegmentKeys, Side, Stopped, TareKeys, TuningKeys,
+    UncertaintyKeys,
 };
 use proptest::option;
 use proptest::prelude::*;
+use serde::de::IgnoredAny;
 
 /// Numbers of every magnitude between the two powers of ten.
 fn magnitude(powers: std::ops::Range<f64>) -> impl Strategy<Value = f64> {
@@ -21,7 +23,7 @@ fn monotonic_map() -> impl Strategy<Value = BendKeys> {
         let width = hi - lo;
         let c2 = curve * rise / (width * width);
         let c1 = rise / width - c2 * (lo + hi);
-        BendKeys { c0: at_lo - (c2 * lo + c1) * lo, c1, c2, rmse_deg, volts: Some([lo, hi]) }
+        BendKeys { c0: at_lo - (c2 * lo + c1) * lo, c1, c2, rmse_deg, volts: Some([lo, hi]), curve: None, memory: None }
     })
 }
 
@@ -46,7 +48,7 @@ fn segment() -> impl Strategy<Value = SegmentKeys> {
     let lengths = (0.1..500.0_f64, prop_oneof![Just(0.0), Just(-0.0), 0.0..500.0_f64]);
     let bend = option::of(prop::collection::vec(prop_oneof![monotonic_map(), bare_map()], 0..=2));
     let play = (0.0..180.0_f64, -1.0..1.0_f64);
-    let play = play.prop_map(|(half_width_deg, weight)| PlayKeys { half_width_deg, weight });
+    let play = play.prop_map(|(radius_deg, weight)| PlayKeys { radius_deg, weight });
     let hysteresis = prop::collection::vec(play, 0..=3);
     let side = prop_oneof![Just(Side::Start), Just(Side::End)];
     (lengths, side, bend, hysteresis, option::of(noise()), option::of(noise())).prop_map(
@@ -56,7 +58,9 @@ fn segment() -> impl Strategy<Value = SegmentKeys> {
             offset_at,
             bend,
             hysteresis,
-            alike: None,
+            bend_error: None,
+            imu_scale: None,
+            coupled_to: None,
             orient,
             coord,
         },
@@ -64,38 +68,33 @@ fn segment() -> impl Strategy<Value = SegmentKeys> {
 }
 
 fn drift() -> impl Strategy<Value = DriftKeys> {
-    let kind = prop_oneof![Just(DriftKind::Anchor), Just(DriftKind::Observer)];
-    let deviations = (magnitude(-2.0..6.0), 0.0..360.0_f64, 0.0..10.0_f64, 0.0..1.0_f64, 0.0..1.0_f64);
-    let limits = (0.1..180.0_f64, 0.0..1e4_f64, 0.1..180.0_f64, 0.0..180.0_f64, 0.0..180.0_f64);
-    (kind, deviations, limits).prop_map(
-        |(kind, (noise_deg2_s, start_deg, rate_deg_per_s, walk_deg_per_s, slope), limits)| {
-            let (gate_deg, patience_s, jump_deg, still_deg, doubt_deg) = limits;
-            DriftKeys {
-                kind,
-                noise_deg2_s,
-                start_deg,
-                rate_deg_per_s,
-                walk_deg_per_s,
-                slope,
-                gate_deg,
-                patience_s,
-                jump_deg,
-                still_deg,
-                doubt_deg,
-            }
-        },
-    )
+    let kind = prop_oneof![Just(DriftKind::Anchor), Just(DriftKind::Kalman), Just(DriftKind::Observer)];
+    let headings = (0.0..30.0_f64, 0.0..10.0_f64, 1e-4..0.2_f64, 1e-3..1.0_f64, 1e-5..0.01_f64);
+    (kind, headings, 0.0..20.0_f64, 64.0..1e6_f64).prop_map(|(kind, headings, offset_deg, offset_s)| {
+        let (start_deg, straightness_deg, rate_deg_per_s, angle_random_walk, rate_random_walk) = headings;
+        DriftKeys {
+            kind,
+            start_deg,
+            straightness_deg,
+            rate_deg_per_s,
+            angle_random_walk_deg_per_sqrt_s: angle_random_walk,
+            rate_random_walk_deg_per_s_sqrt_s: rate_random_walk,
+            offset_deg,
+            offset_s,
+        }
+    })
 }
 
 fn contact() -> impl Strategy<Value = ContactKeys> {
-    (0.1..90.0_f64, 0.1..90.0_f64).prop_map(|(bend_deg, alike_deg)| ContactKeys { bend_deg, alike_deg })
+    (0.1..90.0_f64, 0.1..90.0_f64).prop_map(|(bend_deg, coupling_deg)| ContactKeys { bend_deg, coupling_deg })
 }
 
 fn uncertainty() -> impl Strategy<Value = UncertaintyKeys> {
     (0.0..9.0_f64, 0.0..10.0_f64, 0.0..9.0_f64, 0.0..9.0_f64, 0.0..9.0_f64, 0.0..100.0_f64).prop_map(
-        |(theta_deg, drift_share, bend_deg, contact_deg, heading_deg, end_mm)| UncertaintyKeys {
+        |(theta_deg, bias_share, bend_deg, contact_deg, heading_deg, end_mm)| UncertaintyKeys {
             theta_deg,
-            drift_share,
+            bias_share,
+            retired: IgnoredAny,
             bend_deg,
             contact_deg,
             heading_deg,
@@ -106,8 +105,8 @@ fn uncertainty() -> impl Strategy<Value = UncertaintyKeys> {
 
 /// Segments of which each may bend like the first.
 fn segments() -> impl Strategy<Value = Vec<SegmentKeys>> {
-    let alike = option::of((-7.9..7.9_f64).prop_map(|ratio| AlikeKeys { segment: 1, ratio }));
-    let later = (segment(), alike).prop_map(|(segment, alike)| SegmentKeys { alike, ..segment });
+    let coupled = option::of((-7.9..7.9_f64).prop_map(|ratio| CoupledKeys { segment: 1, ratio }));
+    let later = (segment(), coupled).prop_map(|(segment, coupled_to)| SegmentKeys { coupled_to, ..segment });
     (segment(), prop::collection::vec(later, 0..16))
         .prop_map(|(first, later)| std::iter::once(first).chain(later).collect())
 }
@@ -122,14 +121,15 @@ fn rmse() -> impl Strategy<Value = RmseKeys> {
     )
 }
 
-fn observer_tuning() -> impl Strategy<Value = ObserverTuningKeys> {
-    let share = [0.0..1.0_f64, 0.0..1.0_f64];
-    (any::<u32>(), [magnitude(-2.0..6.0), magnitude(-2.0..6.0)], share.clone(), share).prop_map(
-        |(runs, noise_deg2_s, walk_deg_per_s, slope)| ObserverTuningKeys {
+fn drift_tuning() -> impl Strategy<Value = DriftTuningKeys> {
+    let pair = || [magnitude(-5.0..1.0), magnitude(-5.0..1.0)];
+    (any::<u32>(), pair(), pair(), pair(), pair()).prop_map(
+        |(runs, rate_deg_per_s, rate_random_walk, angle_random_walk, offset_deg)| DriftTuningKeys {
             runs: runs.into(),
-            noise_deg2_s,
-            walk_deg_per_s,
-            slope,
+            rate_deg_per_s,
+            rate_random_walk_deg_per_s_sqrt_s: rate_random_walk,
+            angle_random_walk_deg_per_sqrt_s: angle_random_walk,
+            offset_deg,
         },
     )
 }
@@ -138,16 +138,17 @@ fn tuning() -> impl Strategy<Value = TuningKeys> {
     let sessions = prop::collection::vec(any::<String>(), 1..4);
     let stopped = prop_oneof![Just(Stopped::Converged), Just(Stopped::Interrupted)];
     let iterations = (0..=300_u64, 0..=300_u64);
-    let beyond = (option::of(1.0..1e9_f64), option::of(observer_tuning()));
-    (sessions, iterations, stopped, beyond, [rmse(), rmse(), rmse(), rmse()]).prop_map(
-        |(sessions, (iterations, kept), stopped, beyond, [before, after, held_back_before, held_back_after])| {
+    let extended = (option::of(1.0..1e9_f64), option::of(drift_tuning()));
+    (sessions, iterations, stopped, extended, [rmse(), rmse(), rmse(), rmse()]).prop_map(
+        |(sessions, (iterations, kept), stopped, extended, [before, after, held_back_before, held_back_after])| {
             TuningKeys {
                 sessions,
                 iterations: iterations.max(kept),
                 kept,
                 stopped,
-                variances: beyond.0,
-                observer: beyond.1,
+                variances: extended.0,
+                drift: extended.1,
+                observer: IgnoredAny,
                 before,
                 after,
                 held_back_before,

@@ -1,6 +1,6 @@
 //! `[tuning]`, the record of a tuning: read and checked as strictly as all else, and no part of the parameters.
 
-use calibration_tables::{ArmFile, FileError, ObserverTuningKeys, Stopped};
+use calibration_tables::{ArmFile, DriftTuningKeys, FileError, Stopped};
 use estimator_core::Q;
 
 use super::common::{TABLE, parse};
@@ -12,7 +12,7 @@ iterations = 12
 kept = 9
 stopped = "interrupted"
 variances = 1.5
-observer = { runs = 31, noise_deg2_s = [50.0, 80.0], walk_deg_per_s = [2e-4, 1e-4], slope = [0.15, 0.25] }
+drift = { runs = 31, rate_deg_per_s = [0.05, 0.08], rate_random_walk_deg_per_s_sqrt_s = [2e-4, 1e-4], angle_random_walk_deg_per_sqrt_s = [0.01, 0.02], offset_deg = [1.0, 1.5] }
 before = { position_rmse_mm = 4.0, tip_rmse_mm = 8.0, heading_rmse_deg = 1.5 }
 after = { position_rmse_mm = 3.0, tip_rmse_mm = 6.0, heading_rmse_deg = 1.25 }
 held_back_before = { position_rmse_mm = 5.0, tip_rmse_mm = 9.0, heading_rmse_deg = 2.0 }
@@ -37,9 +37,14 @@ fn every_key_is_read() {
     );
     assert_eq!(tuning.stopped, Stopped::Interrupted);
     assert_eq!(tuning.variances, Some(1.5));
-    let observer =
-        ObserverTuningKeys { runs: 31, noise_deg2_s: [50.0, 80.0], walk_deg_per_s: [2e-4, 1e-4], slope: [0.15, 0.25] };
-    assert_eq!(tuning.observer, Some(observer));
+    let drift = DriftTuningKeys {
+        runs: 31,
+        rate_deg_per_s: [0.05, 0.08],
+        rate_random_walk_deg_per_s_sqrt_s: [2e-4, 1e-4],
+        angle_random_walk_deg_per_sqrt_s: [0.01, 0.02],
+        offset_deg: [1.0, 1.5],
+    };
+    assert_eq!(tuning.drift, Some(drift));
     let figures = [tuning.before, tuning.after, tuning.held_back_before, tuning.held_back_after]
         .map(|of| [of.position_rmse_mm, of.tip_rmse_mm, of.heading_rmse_deg].map(f64::to_bits));
     let expected = [[4.0, 8.0, 1.5], [3.0, 6.0, 1.25], [5.0, 9.0, 2.0], [4.5, 7.0, 1.75]];
@@ -47,12 +52,20 @@ fn every_key_is_read() {
 }
 
 #[test]
-fn the_observer_and_the_variances_may_be_left_out() {
+fn the_bias_filter_and_the_variances_may_be_left_out() {
     let text = tuned();
-    let filters = text.lines().filter(|line| !line.starts_with("variances") && !line.starts_with("observer"));
+    let filters = text.lines().filter(|line| !line.starts_with("variances") && !line.starts_with("drift"));
     let lines: Vec<&str> = filters.collect();
     let tuning = parse(&lines.join("\n")).tuning.expect("it is in the file");
-    assert_eq!((tuning.variances, tuning.observer), (None, None));
+    assert_eq!((tuning.variances, tuning.drift), (None, None));
+}
+
+#[test]
+fn a_record_of_the_observer_of_version_0_1_is_accepted() {
+    let observer =
+        "observer = { runs = 31, noise_deg2_s = [50.0, 80.0], walk_deg_per_s = [2e-4, 1e-4], slope = [0.15, 0.25] }";
+    let text = tuned().replace("variances = 1.5", &format!("variances = 1.5\n{observer}"));
+    assert_eq!(parse(&text), parse(&tuned()));
 }
 
 #[test]
@@ -97,7 +110,6 @@ fn values_that_no_tuning_has_are_refused_with_their_key_and_line() {
         ("position_rmse_mm = 3.0", "position_rmse_mm = nan", "tuning.after.position_rmse_mm"),
         ("heading_rmse_deg = 2.0", "heading_rmse_deg = inf", "tuning.held_back_before.heading_rmse_deg"),
         ("variances = 1.5", "variances = 0.5", "tuning.variances"),
-        ("slope = [0.15, 0.25]", "slope = [0.15, 1.25]", "tuning.observer.slope"),
         ("tip_rmse_mm = 7.0", "tip_rmse_mm = 1e10", "tuning.held_back_after.tip_rmse_mm"),
     ] {
         let text = tuned().replacen(from, to, 1);

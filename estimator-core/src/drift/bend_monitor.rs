@@ -15,17 +15,16 @@ const IGNORED_DIFFERENCE: Constant = degrees(0.2);
 /// A sensor is left out for so long after it last departed.
 const DISTRUST_US: u64 = 20_000_000;
 /// Departure from the IMUs, and from the twin, in predicted standard deviations, beside 1°.
-const DEPARTURE: Constant = Constant::new(4.0);
-const DIFFERENCE_DEPARTURE: Constant = Constant::new(5.0);
+const DEPARTURE: Constant = Constant::new(1.0 / 4.0);
+const DIFFERENCE_DEPARTURE: Constant = Constant::new(1.0 / 5.0);
 const DIFFERENCE_MARGIN: Constant = degrees(1.0);
 /// A sensor that moves by less than this in 10 s, while the IMUs move by more than the other, is stuck.
 const STUCK_US: u64 = 10_000_000;
 const STUCK: Constant = degrees(1.0);
 const MOVING: Constant = degrees(12.0);
 
-/// A sensor steps where it moves by more than this, and by more than the IMUs, between two samples; half of it keeps up the
-/// suspicion, and after this time the sensor has a new zero.
-const STEP: Constant = degrees(6.0);
+/// A sensor steps where it moves by more than its errors allow, and by more than the IMUs, between two samples; half of it
+/// keeps up the suspicion, and after this time the sensor has a new zero.
 const STEP_CONFIRMATION_US: u64 = 350_000;
 /// Longest time between two samples over which a step is judged, time units: half a second.
 const STEP_GAP: Constant = Constant::new(0.5 / TIME_UNIT_S);
@@ -124,13 +123,18 @@ impl<S: Scalar> BendMonitor<S> {
     /// zero.
     pub fn find_steps(
         &mut self,
+        config: &BendErrorConfig,
         angles: [Option<S>; SENSORS_PER_SEGMENT],
         motion: Option<S>,
         dt: S,
         time_us: u64,
     ) -> bool {
         let motion = motion.filter(|_| dt < S::constant(STEP_GAP));
-        self.steps.iter_mut().zip(angles).fold(false, |any, (step, angle)| any | step.take(angle, motion, time_us))
+        let limit = S::from_q(config.step);
+        self.steps
+            .iter_mut()
+            .zip(angles)
+            .fold(false, |any, (step, angle)| any | step.take(angle, motion, limit, time_us))
     }
 
     /// Running mean over the time that is there, a minute at most.
@@ -201,13 +205,13 @@ impl<S: Scalar> BendMonitor<S> {
 
 impl<S: Scalar> StepDetector<S> {
     /// Takes one sample; whether the sensor has a new zero.
-    fn take(&mut self, angle: Option<S>, motion: Option<S>, time_us: u64) -> bool {
+    fn take(&mut self, angle: Option<S>, motion: Option<S>, least: S, time_us: u64) -> bool {
         let (Some(angle), Some(motion), Some(last)) = (angle, motion, self.expected) else {
             (self.expected, self.suspect_since_us) = (angle.filter(|_| motion.is_some()), None);
             return false;
         };
         let expected = last + motion;
-        let limit = S::constant(STEP) + magnitude(motion);
+        let limit = least + magnitude(motion);
         let limit = if self.suspect_since_us.is_some() { limit.half() } else { limit };
         let deviation = angle - expected;
         if magnitude(deviation) <= limit {

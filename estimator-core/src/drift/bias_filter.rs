@@ -13,7 +13,7 @@ mod update;
 use crate::config::{ArmConfig, BendErrorConfig, SENSORS_PER_SEGMENT, SegmentConfig};
 use crate::drift::bend_monitor::{BendMonitor, TrustedBend};
 use crate::drift::bias_filter::tare::TareStatistics;
-use crate::drift::bias_state::{BiasState, OFFSET};
+use crate::drift::bias_state::BiasState;
 use crate::drift::heading_gate::HeadingGate;
 use crate::drift::rest::RestDetector;
 use crate::drift::{CorrectedArm, DriftCorrection, SensedArm};
@@ -26,8 +26,6 @@ use crate::types::Condition;
 const ABSENT: Constant = variance_deg(0.5 * 8.0);
 /// Bend sensors do not move by more in one sample: a step of a sensor, not of the arm.
 const BEND_STEP: Constant = degrees(12.0);
-/// Doubt about the offset of a segment whose sensor has stepped.
-const STEPPED: Constant = variance_deg(1.0);
 /// A restart of an IMU and a step of a bend sensor are reported for so long.
 const RECENT_US: u64 = 60_000_000;
 /// Largest ratio of two errors: nothing is learned beyond it.
@@ -66,6 +64,14 @@ pub struct BiasFilter<F, const N: usize> {
     turn: usize,
 }
 
+/// Changes of one heading and bend angle over a window of rest.
+#[derive(Debug, Clone, Copy)]
+struct RestChange<F> {
+    heading: F,
+    bend: F,
+    length_us: u64,
+}
+
 /// Per-segment state.
 #[derive(Debug, Clone, Copy)]
 struct SegmentTrack<F> {
@@ -77,8 +83,14 @@ struct SegmentTrack<F> {
     heading: Turns,
     /// Bias that it is corrected by.
     bias: Turns,
-    /// θ of the last sample, rad.
+    /// θ of the last sample, and of the last turn, rad.
     theta: F,
+    turn_theta: F,
+    turned_at_us: Option<u64>,
+    /// θ_bend less its reference in the tare, until the first turn, rad.
+    tare_bend: Option<F>,
+    /// Change over a window of rest, until the next turn.
+    rest: Option<RestChange<F>>,
     /// θ_bend of this sample.
     bend: Option<TrustedBend<F>>,
     /// θ_bend of the last sample that had one, rad.
@@ -112,6 +124,10 @@ impl<F: Scalar> SegmentTrack<F> {
             heading: Turns::ZERO,
             bias: Turns::ZERO,
             theta: zero,
+            turn_theta: zero,
+            turned_at_us: None,
+            tare_bend: None,
+            rest: None,
             bend: None,
             last_bend: None,
             motion: zero,
@@ -132,7 +148,6 @@ impl<F: Scalar> SegmentTrack<F> {
 
     /// Takes the angles of the bend sensors, `dt` after the last ones.
     fn take_bend(&mut self, angles: [Option<F>; SENSORS_PER_SEGMENT], dt: F, time_us: u64) {
-        self.monitor.compare(angles, dt, time_us);
         self.bend = self.monitor.mean(angles, self.has_twins, time_us);
         let bend = self.bend;
         let motion = bend.zip(self.last_bend).map_or(F::zero(), |(now, last)| now.theta - last);
@@ -183,31 +198,6 @@ impl<F: Scalar, const N: usize> BiasFilter<F, N> {
         }
     }
 
-    /// Holds the bend sensors against the IMUs: steps, departures, sensors that are stuck.
-    fn check_bend<S>(
-        &mut self,
-        segments: &[SegmentConfig<S>],
-        corrected: &CorrectedArm<N>,
-        angles: &[[Option<F>; SENSORS_PER_SEGMENT]; N],
-        (last, dt): (&[F; N], F),
-        time_us: u64,
-    ) {
-        let sensors = segments.iter().zip(angles).zip(last.iter().zip(&corrected.imu));
-        for (i, (track, ((segment, angles), (last, imu)))) in self.segments.iter_mut().zip(sensors).enumerate() {
-            let motion = imu.map(|_| track.theta - *last);
-            if track.monitor.find_steps(*angles, motion, dt, time_us) {
-                self.state.doubt(i, OFFSET, F::constant(STEPPED));
-                track.stepped_at_us = Some(time_us);
-            }
-            if imu.is_some() {
-                let expected = track.theta + self.state.angle_offset(i);
-                track.monitor.check(&segment.bend_error, *angles, expected, time_us);
-            }
-            // Without a sensor that has just stepped.
-            track.bend = track.monitor.mean(*angles, track.has_twins, time_us);
-        }
-    }
-
     /// θ of all segments, from their headings.
     fn angles<S>(&mut self, segments: &[SegmentConfig<S>]) -> CorrectedArm<N> {
         let mut corrected = CorrectedArm::UNKNOWN;
@@ -229,10 +219,8 @@ impl<S: Scalar, F: Scalar, const N: usize> DriftCorrection<S, N> for BiasFilter<
         let Some(filter) = &config.bias_filter else { return CorrectedArm::UNKNOWN };
         let dt = since(self.last_us.unwrap_or(sensed.time_us), sensed.time_us);
         self.last_us = Some(sensed.time_us);
-        let angles = sensed.bend.map(|bend| bend.sensors.map(|theta| theta.map(converted)));
-        let mut angles = angles;
-        for ((track, segment), angles) in self.segments.iter_mut().zip(config.segments).zip(&mut angles) {
-            track.has_twins = segment.bend.iter().all(Option::is_some);
+        let mut angles = sensed.bend.map(|bend| bend.sensors.map(|theta| theta.map(converted)));
+        for (track, angles) in self.segments.iter_mut().zip(&mut angles) {
             *angles = track.monitor.corrected(*angles);
             track.take_bend(*angles, dt, sensed.time_us);
         }
@@ -241,11 +229,13 @@ impl<S: Scalar, F: Scalar, const N: usize> DriftCorrection<S, N> for BiasFilter<
         }
         self.track_headings(config, sensed);
         self.fill_absent_headings(config.segments.len(), dt);
-        let last = self.segments.map(|track| track.theta);
         let corrected = self.angles(config.segments);
-        self.check_bend(config.segments, &corrected, &angles, (&last, dt), sensed.time_us);
-        self.update_turn(config, filter, sensed);
-        self.follow_rest(config.segments.len(), dt, sensed.time_us);
+        for _ in 0..turns(config) {
+            if !self.take_turn(config.segments, filter, sensed, &angles) {
+                break;
+            }
+        }
+        self.follow_rest(sensed.time_us);
         for track in &mut self.segments {
             track.last_bend = track.bend.map(|bend| bend.theta).or(track.last_bend);
         }
@@ -253,9 +243,15 @@ impl<S: Scalar, F: Scalar, const N: usize> DriftCorrection<S, N> for BiasFilter<
     }
 }
 
+/// Turns in a sample: each segment has ten a second at least.
+fn turns<S>(config: &ArmConfig<S>) -> u32 {
+    let (count, rate_millihertz) = (config.segments.len() as u32, config.anchor.sample_rate_millihertz.max(1));
+    (10_000 * count).div_ceil(rate_millihertz).min(count)
+}
+
 /// An angle in another number.
 fn converted<S: Scalar, F: Scalar>(theta: S) -> F {
-    F::from_phase(theta.to_turns().phase())
+    F::from_q(theta.to_q())
 }
 
 /// Time from `from_us` to `to_us`, time units.

@@ -59,8 +59,6 @@ pub struct Expected<S> {
     pub bend: Option<S>,
     /// Motion of the bend sensors during which an IMU must change, rad.
     pub frozen_motion: S,
-    /// Deviation of the next IMU's reading from the same prediction, where it was read.
-    pub above: Option<Turns>,
 }
 
 /// Verdict on one reading.
@@ -103,12 +101,14 @@ impl<S: Scalar> HeadingGate<S> {
     }
 
     /// Takes a reading, unwrapped, or `None` where the IMU was not read. `scale_error` is that of the gyroscope's
-    /// sensitivity, in units of 2⁻³².
+    /// sensitivity, in units of 2⁻³². `above` gives the deviation of the next IMU's reading from the same prediction, where it
+    /// was read.
     pub fn take(
         &mut self,
         reading: Option<Turns>,
         scale_error: i32,
         expected: &Expected<S>,
+        above: impl Fn() -> Option<Turns>,
         time_us: u64,
     ) -> Verdict<S> {
         let Some(reading) = reading else { return Verdict::Absent };
@@ -127,7 +127,7 @@ impl<S: Scalar> HeadingGate<S> {
         }
         let deviation = self.deviation(reading, scale_error, expected.heading + expected.bias);
         let absence_us = time_us.saturating_sub(accepted_at_us);
-        if self.is_far(deviation, expected, absence_us) {
+        if self.is_far(deviation, expected, above, absence_us) {
             if time_us.saturating_sub(self.suspect_since(time_us)) < CONFIRMATION_US {
                 return Verdict::Absent;
             }
@@ -153,7 +153,13 @@ impl<S: Scalar> HeadingGate<S> {
     }
 
     /// Whether a deviation is more than the arm can have moved.
-    fn is_far(&self, deviation: Turns, expected: &Expected<S>, absence_us: u64) -> bool {
+    fn is_far(
+        &self,
+        deviation: Turns,
+        expected: &Expected<S>,
+        above: impl Fn() -> Option<Turns>,
+        absence_us: u64,
+    ) -> bool {
         let moved = magnitude(expected.motion);
         let limit = if expected.bend.is_none() {
             S::constant(JUMP_UNSEEN)
@@ -164,8 +170,7 @@ impl<S: Scalar> HeadingGate<S> {
         };
         let limit = if self.suspect_us.is_some() { limit.half() } else { limit };
         // Where the next IMU deviates alike, the segment has moved and not the IMU: a push that the bend sensors miss.
-        let is_shared = expected.above.is_some_and(|above| is_within(above - deviation, limit.half()));
-        !is_within(deviation, limit) && !is_shared
+        !is_within(deviation, limit) && !above().is_some_and(|above| is_within(above - deviation, limit.half()))
     }
 
     /// Deviation of a reading from a predicted one (heading and bias), whole turns aside.

@@ -12,7 +12,7 @@ use crate::numeric::variance::{degrees, magnitude};
 const WINDOW_US: u64 = 5_000_000;
 /// Rest after which the rates are learned and the shape is held: creep has settled.
 const HOLD_US: u64 = 19_500_000;
-/// Time constant of the means, time units: half a second.
+/// Time constant of the means, time units: half a second, a 128th.
 const MEAN_TIME: Constant = Constant::new(0.5 / TIME_UNIT_S);
 /// Largest change of a heading in a window, and range of its readings: 0.15 °/s, and 0.5° of noise beside it.
 const HEADING_CHANGE: Constant = degrees(0.75);
@@ -36,6 +36,8 @@ struct Mean<S> {
     filtered: S,
     lowest: S,
     highest: S,
+    /// Whether there was a value in this window.
+    is_read: bool,
 }
 
 /// Changes over a window of rest.
@@ -51,11 +53,12 @@ pub struct RestWindow<S, const N: usize> {
 
 impl<S: Scalar> Mean<S> {
     fn new() -> Self {
-        Self { start: None, filtered: S::zero(), lowest: S::zero(), highest: S::zero() }
+        Self { start: None, filtered: S::zero(), lowest: S::zero(), highest: S::zero(), is_read: false }
     }
 
     /// Takes a value; `share` is that of the newest one in the mean.
     fn take(&mut self, value: Turns, share: S) {
+        self.is_read = true;
         let start = *self.start.get_or_insert(value);
         let deviation = S::from_phase((value - start).phase());
         self.filtered += share * (deviation - self.filtered);
@@ -65,7 +68,7 @@ impl<S: Scalar> Mean<S> {
 
     /// The change of the mean since the window began, and the range of the values; a new window begins at the mean.
     fn finish(&mut self) -> Option<(S, S)> {
-        let start = self.start?;
+        let start = self.start.filter(|_| self.is_read)?;
         let (change, range) = (self.filtered, self.highest - self.lowest);
         *self = Self { start: Some(start + change.to_turns()), ..Self::new() };
         Some((change, range))
@@ -83,39 +86,37 @@ impl<S: Scalar, const N: usize> RestDetector<S, N> {
         self.quiet_us >= HOLD_US
     }
 
-    /// Takes one sample's readings: headings as the IMUs read them, and bend angles. At the end of a window of rest it gives
-    /// what has changed.
-    pub fn take(
-        &mut self,
-        headings: &[Option<Turns>; N],
-        bend: &[Option<Turns>; N],
-        dt: S,
-        time_us: u64,
-    ) -> Option<RestWindow<S, N>> {
-        let share = if dt < S::constant(MEAN_TIME) { dt / S::constant(MEAN_TIME) } else { S::one() };
-        let signals = self.headings.iter_mut().zip(headings).chain(self.bend.iter_mut().zip(bend));
-        for (mean, value) in signals {
-            if let Some(value) = value {
-                mean.take(*value, share);
+    /// Takes the readings of IMU and segment `i`, `dt` after the last ones: the heading as the IMU reads it, and the bend
+    /// angle.
+    pub fn take(&mut self, i: usize, heading: Option<Turns>, bend: Option<Turns>, dt: S) {
+        // In two steps, as 128 does not fit.
+        let share = if dt < S::constant(MEAN_TIME) { dt * S::from_int(16) * S::from_int(8) } else { S::one() };
+        for (means, value) in [(&mut self.headings, heading), (&mut self.bend, bend)] {
+            if let (Some(mean), Some(value)) = (means.get_mut(i), value) {
+                mean.take(value, share);
             }
         }
+    }
+
+    /// What has changed over a window of rest, at its end.
+    pub fn window(&mut self, time_us: u64) -> Option<RestWindow<S, N>> {
         let from_us = *self.window_from_us.get_or_insert(time_us);
         let length_us = time_us.saturating_sub(from_us);
         if length_us < WINDOW_US {
             return None;
         }
         self.window_from_us = Some(time_us);
-        self.finish(headings, length_us)
+        self.finish(length_us)
     }
 
-    fn finish(&mut self, read: &[Option<Turns>; N], length_us: u64) -> Option<RestWindow<S, N>> {
+    fn finish(&mut self, length_us: u64) -> Option<RestWindow<S, N>> {
         // A gap hides what happened in it.
         let mut is_quiet = length_us < WINDOW_US + WINDOW_US / 8;
         let mut headings = [None; N];
-        for ((change, mean), read) in headings.iter_mut().zip(&mut self.headings).zip(read) {
+        for (change, mean) in headings.iter_mut().zip(&mut self.headings) {
             if let Some((moved, range)) = mean.finish() {
                 is_quiet &= magnitude(moved) < S::constant(HEADING_CHANGE) && range < S::constant(HEADING_RANGE);
-                *change = read.is_some().then_some(moved);
+                *change = Some(moved);
             }
         }
         let mut bend = [S::zero(); N];

@@ -7,6 +7,7 @@
 use nalgebra::Vector2;
 
 use crate::config::{OffsetAt, SegmentConfig};
+use crate::numeric::fused::FusedOps;
 use crate::numeric::q::Q;
 use crate::numeric::scalar::Scalar;
 use crate::types::Covariance;
@@ -64,25 +65,28 @@ impl<const N: usize> CovariancePropagation<N> {
         let rest = Q::from_f64(1.0) - lever;
         // Derivative of the chord by its angle, clockwise positive: (x, y) to (y, −x).
         let turn = Vector2::new(chord.y, -chord.x);
-        // Covariance of the chord's levered angle with each heading, and with the point.
+        // Covariance of the chord's levered angle with each heading.
         let angle = |k: usize| {
-            let own = own.get(k).copied().unwrap_or(zero);
-            lever * own + rest * before.and_then(|row| row.get(k)).copied().unwrap_or(zero)
+            let before = before.and_then(|row| row.get(k)).copied().unwrap_or(zero);
+            lever.mul_unchecked_range(own.get(k).copied().unwrap_or(zero)) + rest.mul_unchecked_range(before)
         };
-        let at = |cross: &[Vector2<Q>; N], k: Option<usize>| {
-            k.and_then(|k| cross.get(k)).copied().unwrap_or_else(|| Vector2::new(zero, zero))
-        };
-        let (of_own, of_before) = (at(cross, Some(*segment)), at(cross, segment.checked_sub(1)));
-        let with_point = Vector2::new(lever * of_own.x + rest * of_before.x, lever * of_own.y + rest * of_before.y);
-        let variance = lever * angle(*segment) + segment.checked_sub(1).map_or(zero, |before| rest * angle(before));
+        let at = |k: Option<usize>| k.and_then(|k| cross.get(k)).copied().unwrap_or_else(|| Vector2::new(zero, zero));
+        let (k, k_before) = (*segment, segment.checked_sub(1));
+        let (of_own, of_before) = (at(Some(k)), at(k_before));
+        let variance = lever * angle(k) + k_before.map_or(zero, |before| rest * angle(before));
         let half = variance.half();
-        let side = Vector2::new(with_point.x + half * turn.x, with_point.y + half * turn.y);
-        point.xx += turn.x * side.x + turn.x * side.x + *end;
-        point.xy += turn.x * side.y + turn.y * side.x;
-        point.yy += turn.y * side.y + turn.y * side.y + *end;
-        for (k, cross) in cross.iter_mut().enumerate() {
+        // Covariance of the angle with the point, and half of its variance along the turn.
+        let side = Vector2::new(
+            Q::dot([lever, rest, half], [of_own.x, of_before.x, turn.x]),
+            Q::dot([lever, rest, half], [of_own.y, of_before.y, turn.y]),
+        );
+        point.xx += Q::dot([turn.x; 2], [side.x; 2]) + *end;
+        point.xy += Q::dot([turn.x, turn.y], [side.y, side.x]);
+        point.yy += Q::dot([turn.y; 2], [side.y; 2]) + *end;
+        // Later segments need no heading before this one.
+        for (k, cross) in cross.iter_mut().enumerate().skip(k) {
             let angle = angle(k);
-            *cross = Vector2::new(cross.x + turn.x * angle, cross.y + turn.y * angle);
+            *cross += Vector2::new(turn.x.mul_unchecked_range(angle), turn.y.mul_unchecked_range(angle));
         }
         *segment += 1;
     }

@@ -8,8 +8,8 @@ const DEGREE: f64 = core::f64::consts::PI / 180.0;
 
 /// The square root of the scale.
 const ROOT_SCALE: i32 = 8;
-/// A square from here on is as good as infinite, and fits: that of 40°.
-const LARGEST_ROOT: Constant = Constant::new(5.6);
+/// The square of an angle from here on, 40°, is as good as infinite, and does not fit.
+const LARGEST_ANGLE: Constant = Constant::new(0.7);
 const LARGEST: Constant = Constant::new(31.0);
 
 /// An angle in degrees, held in rad.
@@ -40,14 +40,14 @@ pub fn larger<S: Scalar>(a: S, b: S) -> S {
 /// The square of an angle (rad) as variances are held; from 40° on as large as they get.
 pub fn scaled_square<S: Scalar>(x: S) -> S {
     let root = magnitude(x);
-    if root >= S::constant(LARGEST_ROOT) / S::from_int(ROOT_SCALE) {
+    if root >= S::constant(LARGEST_ANGLE) {
         return S::constant(LARGEST);
     }
     let root = root * S::from_int(ROOT_SCALE);
     root * root
 }
 
-/// Whether an angle is beyond so many standard deviations.
-pub fn is_beyond<S: Scalar>(x: S, deviations: Constant, variance: S) -> bool {
-    scaled_square(x / S::constant(deviations)) > variance
+/// Whether an angle is beyond so many standard deviations, given as one over their number.
+pub fn is_beyond<S: Scalar>(x: S, inverse_deviations: Constant, variance: S) -> bool {
+    scaled_square(x * S::constant(inverse_deviations)) > variance
 }

@@ -27,8 +27,7 @@ impl<S: Scalar> Play<S> {
 impl<S: Scalar> Lag<S> {
     /// Moves the lag's output `y` towards the input `x` over a time `dt`; gives the weighted difference.
     fn update(&self, y: &mut S, x: S, dt: S) -> S {
-        let limit = S::one() / self.rate;
-        let share = if dt < limit { self.rate * dt } else { S::one() };
+        let share = if dt < self.time { self.rate * dt } else { S::one() };
         *y += share * (x - *y);
         self.weight * (x - *y)
     }
@@ -125,7 +124,7 @@ mod tests {
 
     /// One lag of 4 s with weight −1: it replaces the angle by its lag.
     const LAG: MemoryConfig<f64> = MemoryConfig {
-        lags: [Lag { rate: 16.0, weight: -1.0 }, Lag { rate: 16.0, weight: 0.0 }],
+        lags: [Lag { time: 1.0 / 16.0, rate: 16.0, weight: -1.0 }, Lag { time: 1.0 / 16.0, rate: 16.0, weight: 0.0 }],
         plays: [Play { radius: 0.1, weight: 0.0 }; 2],
     };
 
@@ -140,7 +139,7 @@ mod tests {
 
     /// A play of ±0.1 rad and weight 0.5 beside lags without weight.
     const PLAY: MemoryConfig<f64> = MemoryConfig {
-        lags: [Lag { rate: 16.0, weight: 0.0 }; 2],
+        lags: [Lag { time: 1.0 / 16.0, rate: 16.0, weight: 0.0 }; 2],
         plays: [Play { radius: 0.1, weight: 0.5 }, Play { radius: 0.1, weight: 0.0 }],
     };
 
@@ -167,10 +166,14 @@ mod tests {
     #[test]
     fn in_fixed_point_a_memory_is_that_of_floats() {
         let config = MemoryConfig {
-            lags: [Lag { rate: 16.0, weight: 0.3 }, Lag { rate: 2.0, weight: -0.2 }],
+            lags: [Lag { time: 1.0 / 16.0, rate: 16.0, weight: 0.3 }, Lag { time: 0.5, rate: 2.0, weight: -0.2 }],
             plays: [Play { radius: 0.1, weight: 0.5 }, Play { radius: 0.3, weight: 0.2 }],
         };
-        let lag = |lag: Lag<f64>| Lag { rate: Q::from_f64(lag.rate), weight: Q::from_f64(lag.weight) };
+        let lag = |lag: Lag<f64>| Lag {
+            time: Q::from_f64(lag.time),
+            rate: Q::from_f64(lag.rate),
+            weight: Q::from_f64(lag.weight),
+        };
         let play = |play: Play<f64>| Play { radius: Q::from_f64(play.radius), weight: Q::from_f64(play.weight) };
         let fixed = MemoryConfig { lags: config.lags.map(lag), plays: config.plays.map(play) };
         let (mut float_memory, mut fixed_memory) = (Memory::new(), Memory::new());

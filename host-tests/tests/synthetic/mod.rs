@@ -2,7 +2,10 @@
 
 use std::f64::consts::{PI, TAU};
 
-use estimator_core::{AnchorConfig, BendMap, FusedOps, Noise, OffsetAt, Phase, Sample, Scalar, SegmentConfig, Turns};
+use estimator_core::{
+    AnchorConfig, BendMap, BendSensorConfig, FusedOps, KalmanParams, OffsetAt, Phase, QuadraticMap, Sample,
+    SegmentConfig, Turns,
+};
 use host_tests::literal;
 
 /// Volts between which all sensors are calibrated.
@@ -74,7 +77,7 @@ pub fn arm(kind: &Kind, random: &mut Random) -> literal::Arm {
         let fewest = if i == 0 { fewest.max(most.min(1)) } else { fewest }; // or the arm could be without any
         let sensors = fewest + random.bits() % (most - fewest + 1);
         heading += random.or_zero(-0.3, 0.3);
-        literal::SegmentConfig {
+        literal::Segment {
             length: random.within(0.03, 0.12),
             offset: random.or_zero(0.005, 0.03),
             offset_at_end: random.chance(0.5),
@@ -219,7 +222,7 @@ fn board_reading(kind: &Kind, heading: f64, random: &mut Random) -> estimator_co
 pub fn segments<S: FusedOps>(arm: &literal::Arm) -> Vec<SegmentConfig<S>> {
     let noise = |noise: &literal::Noise| {
         let unit = noise.r_imu.max(noise.r_bend);
-        Noise {
+        KalmanParams {
             q: S::from_f64(noise.q / arm.rate / unit),
             r_imu: S::from_f64(noise.r_imu / unit),
             r_bend: S::from_f64(noise.r_bend / unit),
@@ -228,17 +231,17 @@ pub fn segments<S: FusedOps>(arm: &literal::Arm) -> Vec<SegmentConfig<S>> {
         }
     };
     let segment = |segment: &literal::Segment| {
-        let map = |k: usize| segment.bend.get(k).map(|s| BendMap::from_volts(s.c2, s.c1, s.c0, VOLTS));
+        let sensor = |k: usize| {
+            let map = |s: &literal::Sensor| BendMap::Quadratic(QuadraticMap::from_volts(s.c2, s.c1, s.c0, VOLTS));
+            segment.bend.get(k).map(|s| BendSensorConfig { map: map(s), memory: None })
+        };
         SegmentConfig {
-            length: S::from_f64(segment.length),
-            offset: S::from_f64(segment.offset),
             offset_at: if segment.offset_at_end { OffsetAt::End } else { OffsetAt::Start },
-            bend: [map(0), map(1)],
-            hysteresis: None,
-            alike: None,
+            bend: [sensor(0), sensor(1)],
             reference: Turns::from_rad(segment.reference),
             orient: noise(&segment.orient),
             coord: noise(&segment.coord),
+            ..SegmentConfig::uncalibrated(segment.length, segment.offset)
         }
     };
     arm.segments.iter().map(segment).collect()

@@ -19,6 +19,8 @@ const SLOW_S: f64 = 60.0;
 /// Longest lag of the autocorrelation, s, and the value at which it has decayed.
 const LONGEST_LAG_S: f64 = 30.0;
 const DECAYED: f64 = 0.05;
+/// Largest travel of the table's format.
+const MAX_TRAVEL_DEG: f64 = 1000.0;
 
 /// Values at an even rate, in runs of the estimator.
 struct Series {
@@ -43,13 +45,15 @@ pub(super) fn of(sweep: &Sweep, segment: usize, sensors: &[&FittedMap]) -> Optio
     let slow_difference = difference.slow_deviation().unwrap_or(difference.deviation() / 2.0);
     let slow_mean = mean.slow_deviation().unwrap_or(0.0);
     let correlation_s = mean.correlation_s();
+    let speed = Series::new(&sweep.theta[segment], sweep).speed();
     Some(BendErrorKeys {
         mean_deg: rounded(deviation_deg(&mean)),
         sensor_deg: errors.iter().map(|series| rounded(deviation_deg(series))).collect(),
+        noise_deg: rounded(errors.iter().map(Series::noise).fold(0.0, f64::max).to_degrees()),
         difference_deg: rounded(difference.deviation().to_degrees()),
         slow_difference_deg: rounded(slow_difference.to_degrees()),
         slow_ratio: if slow_difference > 0.0 { rounded((slow_mean / slow_difference).powi(2).min(1.0)) } else { 0.0 },
-        travel_deg: rounded(correlation_s * Series::new(&sweep.theta[segment], sweep).speed().to_degrees()),
+        travel_deg: rounded((correlation_s * speed.to_degrees()).min(MAX_TRAVEL_DEG)),
         correlation_s: rounded(correlation_s),
     })
 }
@@ -128,6 +132,13 @@ impl Series {
 
     fn deviation(&self) -> f64 {
         deviation(&self.values.iter().flatten().copied().collect::<Vec<f64>>())
+    }
+
+    /// Standard deviation of the change from one value to the next.
+    fn noise(&self) -> f64 {
+        let pairs = self.values.windows(2).zip(self.runs.windows(2)).filter(|(_, runs)| runs[0] == runs[1]);
+        let changes: Vec<f64> = pairs.filter_map(|(pair, _)| Some(pair[1]? - pair[0]?)).collect();
+        deviation(&changes)
     }
 
     /// Standard deviation of the means of every stretch of [`SLOW_S`]; `None` where there is none.

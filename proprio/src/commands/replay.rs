@@ -79,6 +79,7 @@ fn replay_all<S: FusedOps>(
         }
         let recorded = recording.filter(|_| compare.is_some()).map(|recording| {
             comparison.table_matches = recording.table_matches;
+            let comparison = comparison.of(recording.recorded_by);
             tell(path, &comparison, recording.firmware.as_deref());
             comparison
         });

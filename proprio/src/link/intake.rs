@@ -4,6 +4,7 @@ use telemetry::{Counts, DecodeError, Decoder, Hello, Message, SCHEMA};
 
 use super::event::Mismatch;
 use super::runs::{Place, Runs};
+use crate::recording::is_version_0_1;
 
 /// What came of one byte.
 #[derive(Debug, Clone, PartialEq)]
@@ -123,7 +124,9 @@ impl Intake {
         } else if firmware != env!("CARGO_PKG_VERSION") {
             self.mismatch(Mismatch::Firmware(firmware), tell);
         }
-        if let Some(given) = self.table.filter(|given| *given != hello.table) {
+        // Firmware of version 0.1 has another checksum of the same table.
+        let is_comparable = !is_version_0_1(&hello.firmware);
+        if let Some(given) = self.table.filter(|given| is_comparable && *given != hello.table) {
             let arm = hello.arm.as_str().to_owned();
             self.mismatch(Mismatch::Table { arm, board: hello.table, given }, tell);
         }

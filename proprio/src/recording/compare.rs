@@ -2,12 +2,47 @@
 
 use std::fmt;
 
+use calibration_tables::DriftKind;
 use estimator_core::{Method, Q};
 use serde::Serialize;
 use telemetry::{Estimate, SegmentEstimate, Uncertainty, touched};
 
 use crate::replay::Outcome;
 use crate::session::{OnBoard, Row};
+
+/// First numbers of the firmware's version whose estimates and uncertainties are others in part.
+const VERSION_0_1: &str = "0.1.";
+
+/// Whether firmware of this version is of version 0.1. The same table has another checksum there.
+#[must_use]
+pub fn is_version_0_1(firmware: &str) -> bool {
+    firmware.starts_with(VERSION_0_1)
+}
+
+/// The estimator that a recording's estimates were made by.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum RecordedBy {
+    /// This version's.
+    #[default]
+    ThisVersion,
+    /// Version 0.1's with the moving-average anchor: the same estimates, other uncertainties.
+    Anchor01,
+    /// Version 0.1's with the drift observer, which the bias filter replaced.
+    Observer01,
+}
+
+impl RecordedBy {
+    /// Of a board's firmware that ran a table with this drift correction.
+    #[must_use]
+    pub fn new(firmware: &str, drift: Option<DriftKind>) -> Self {
+        match drift {
+            _ if !is_version_0_1(firmware) => Self::ThisVersion,
+            None | Some(DriftKind::Anchor) => Self::Anchor01,
+            Some(DriftKind::Observer | DriftKind::Kalman) => Self::Observer01,
+        }
+    }
+}
 
 /// How many of the board's estimates a replay gives again, bit for bit.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
@@ -24,8 +59,10 @@ pub struct Comparison {
     pub uncertainties: Told,
     /// Where contact began or ended, as the board has said.
     pub contacts: Told,
-    /// Whether the board's table was that of the replay, where its `Hello` is in the recording.
+    /// Whether the board's table was that of the replay, where its `Hello` is in the recording; not known of version 0.1.
     pub table_matches: Option<bool>,
+    /// The estimator that they were made by.
+    pub recorded_by: RecordedBy,
 }
 
 /// What the board has said beside its estimates, of one kind.
@@ -121,6 +158,22 @@ impl Comparison {
         }
     }
 
+    /// Takes back what is not to be compared: estimates of version 0.1's observer, and all uncertainties of version 0.1.
+    #[must_use]
+    pub fn of(self, recorded_by: RecordedBy) -> Self {
+        match recorded_by {
+            RecordedBy::ThisVersion => self,
+            RecordedBy::Anchor01 => Self { uncertainties: Told::default(), recorded_by, ..self },
+            RecordedBy::Observer01 => Self {
+                estimates: self.estimates,
+                not_compared: self.estimates,
+                table_matches: self.table_matches,
+                recorded_by,
+                ..Self::default()
+            },
+        }
+    }
+
     /// Whether all that could be compared is the same.
     #[must_use]
     pub fn is_exact(&self) -> bool {
@@ -133,6 +186,14 @@ impl fmt::Display for Comparison {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if self.estimates == 0 {
             return write!(f, "the board's own estimates are not in the recording");
+        }
+        if self.recorded_by == RecordedBy::Observer01 {
+            return write!(
+                f,
+                "the {} recorded estimates were made by the drift observer of version 0.1, which this version replaced: they \
+                 are not compared",
+                self.estimates
+            );
         }
         let compared = self.estimates - self.not_compared;
         if let Some(difference) = &self.first_difference {
@@ -147,11 +208,19 @@ impl fmt::Display for Comparison {
             )?;
         } else {
             let [uncertainties, contacts] = [self.uncertainties, self.contacts].map(|told| told.equal);
-            write!(
-                f,
-                "the {compared} recorded estimates, {uncertainties} uncertainties and {contacts} changes of contact are, bit \
-                 for bit, those of this replay"
-            )?;
+            if self.recorded_by == RecordedBy::Anchor01 {
+                write!(
+                    f,
+                    "the {compared} recorded estimates and {contacts} changes of contact are, bit for bit, those of this \
+                     replay; uncertainties of version 0.1 are not compared"
+                )?;
+            } else {
+                write!(
+                    f,
+                    "the {compared} recorded estimates, {uncertainties} uncertainties and {contacts} changes of contact are, \
+                     bit for bit, those of this replay"
+                )?;
+            }
         }
         if self.not_compared > 0 {
             let more = self.not_compared;

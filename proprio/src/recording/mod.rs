@@ -22,7 +22,7 @@ mod rows;
 mod schema;
 mod writer;
 
-pub use compare::{Comparison, Difference, Told, Values};
+pub use compare::{Comparison, Difference, RecordedBy, Told, Values, is_version_0_1};
 pub use messages::chip_number;
 pub use reader::{Item, RawReader, ReadError, Reader, is_recording};
 pub use recover::{RecoverError, Recovery, recover};

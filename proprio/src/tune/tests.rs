@@ -4,7 +4,8 @@ use std::path::{Path, PathBuf};
 
 use calibration_tables::{ArmFile, DriftKeys, NoiseKeys, Stopped};
 use estimator_core::{
-    ArmConfig, BendMap, Estimator, ImuReading, KalmanParams, Method, Phase, Q, Sample, Scalar, Segment as CoreSegment,
+    ArmConfig, BendMap, BendSensorConfig, Estimator, FusedOps, ImuReading, KalmanParams, Method, Phase, Q,
+    QuadraticMap, Sample, SegmentConfig,
 };
 use rig_twin::Scenario;
 
@@ -57,7 +58,7 @@ fn table() -> NamedTable<'static> {
 
 fn objective(table: &NamedTable, sessions: &[PathBuf]) -> Objective {
     let sessions = sessions.iter().map(|path| Training::read(path, table).expect("a good session")).collect();
-    Objective::new(sessions, table.bake::<f64>(10.0).expect("a table").table().segments)
+    Objective::new(sessions, table.bake::<f64>(10.0).expect("a table").config().segments)
 }
 
 fn assert_gradient_is_exact(table: &NamedTable, sessions: &[PathBuf]) {
@@ -238,8 +239,18 @@ fn the_observers_search_ends_when_it_is_told_to_and_has_the_best_so_far() {
 #[test]
 fn an_observer_at_any_place_is_one_that_the_format_takes() {
     for start in [
-        DriftKeys { noise_deg2_s: 0.01, walk_deg_per_s: 0.0, slope: 0.0, ..DriftKeys::observer() },
-        DriftKeys { noise_deg2_s: 1e6, walk_deg_per_s: 1.0, slope: 1.0, ..DriftKeys::observer() },
+        DriftKeys {
+            rate_deg_per_s: 1e-4,
+            rate_random_walk_deg_per_s_sqrt_s: 1e-5,
+            offset_deg: 0.0,
+            ..DriftKeys::kalman()
+        },
+        DriftKeys {
+            rate_deg_per_s: 0.2,
+            rate_random_walk_deg_per_s_sqrt_s: 0.01,
+            offset_deg: 20.0,
+            ..DriftKeys::kalman()
+        },
     ] {
         for place in [[-8, -8, 0], [8, 8, 8]] {
             let file = ArmFile { drift: Some(observer_at(&start, &place)), ..table().file };
@@ -252,8 +263,9 @@ fn an_observer_at_any_place_is_one_that_the_format_takes() {
 fn tip<S: FusedOps>(r_imu: S) -> [S; 2] {
     let one = S::one();
     let noise = KalmanParams { q: S::from_f64(0.2), r_imu, r_bend: one, h_imu: one, h_bend: one };
-    let map = BendMap::from_volts(0.1, 1.2, -2.0, [0.5, 2.5]);
-    let segment = CoreSegment { bend: [Some(map); 2], orient: noise, coord: noise, ..CoreSegment::bare(0.080, 0.017) };
+    let map = BendMap::Quadratic(QuadraticMap::from_volts(0.1, 1.2, -2.0, [0.5, 2.5]));
+    let bend = [Some(BendSensorConfig { map, memory: None }); 2];
+    let segment = SegmentConfig { bend, orient: noise, coord: noise, ..SegmentConfig::uncalibrated(0.080, 0.017) };
     let segments = [segment; 3];
     let table = ArmConfig::uncalibrated(&segments);
     let mut estimator = Estimator::<S, 3, 100>::new(&table).expect("a valid table");

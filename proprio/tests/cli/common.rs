@@ -202,7 +202,7 @@ impl fmt::Display for Csv {
     }
 }
 
-fn text(path: &Path) -> &str {
+pub fn text(path: &Path) -> &str {
     path.to_str().expect("the repository's path is UTF-8")
 }
 

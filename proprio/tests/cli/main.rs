@@ -33,6 +33,7 @@ mod restarts;
 mod simulate;
 mod streams;
 mod tune;
+mod tune_bias_filter;
 mod tune_interrupted;
-mod tune_observer;
 mod tune_refused;
+mod version_0_1;

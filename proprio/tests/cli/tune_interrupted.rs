@@ -9,7 +9,7 @@ use calibration_tables::{ArmFile, DriftKeys, Stopped};
 
 use super::common::{Folder, Run, simulate};
 use super::tune::{TUNE, spoiled};
-use super::tune_observer::observing;
+use super::tune_bias_filter::with_bias_filter;
 
 /// A tuning that is interrupted after `pause`.
 fn interrupted(folder: &Folder, pause: Duration) -> Run {
@@ -56,12 +56,12 @@ fn an_interrupted_tuning_leaves_the_best_table_so_far_and_says_so() {
 
 /// The search comes before the descent, and takes longer than both have taken so far.
 #[test]
-fn an_interrupted_search_for_an_observer_ends_the_tuning_with_a_table() {
+fn an_interrupted_search_for_the_bias_filter_ends_the_tuning_with_a_table() {
     let folder = Folder::with("session.csv", simulate("--scenario 1 --seconds 600 --seed 54").to_string());
-    folder.write("table.toml", observing(DriftKeys::observer(), None));
+    folder.write("table.toml", with_bias_filter(DriftKeys::kalman(), None));
     let run = run_until_heeded(&folder);
     assert_eq!(run.code, Some(0), "{}", run.stderr);
     let record = ArmFile::load(&folder.path("tuned.toml")).expect("a valid table").tuning.expect("a record");
     assert_eq!((record.stopped, record.iterations, record.kept), (Stopped::Interrupted, 0, 0));
-    assert!(record.observer.is_some_and(|observer| observer.runs > 0), "it was in the search");
+    assert!(record.drift.is_some_and(|drift| drift.runs > 0), "it was in the search");
 }

@@ -52,7 +52,7 @@ fn an_uncertainty_has_the_bits_of_the_covariances_and_the_segments_that_are_touc
     let found = Uncertainty::of(7, &errors, &contacts);
     assert_eq!(found.tick, 7);
     // 0.5 in units of 2⁻²⁶, and so on; 300 is more than a byte holds.
-    let of = |theta, end, contact_percent, in_contact| SegmentUncertainty { theta, end, contact_percent, in_contact };
+    let of = |theta, end, contact_percent, is_touched| SegmentUncertainty { theta, end, contact_percent, is_touched };
     assert_eq!(found.segments[0], of(Some(1 << 25), Some([3 << 25, -(1 << 24), 1 << 27]), 255, true));
     assert_eq!((found.segments[0].theta_rad2(), found.segments[1].end_m2()), (Some(0.5 / 64.0), None));
     assert_eq!(found.segments[0].end_m2(), Some([1.5 / 64.0, -0.25 / 64.0, 2.0 / 64.0]));

@@ -26,7 +26,7 @@ fn swing(
         let angles = monitor.corrected(angles);
         monitor.compare(angles, DT, k * TICK);
         let motion = Some(theta.to_radians() - 30.0_f64.to_radians() * ((k as f64 - 1.0) / 12.0).sin());
-        monitor.find_steps(angles, motion, DT, k * TICK);
+        monitor.find_steps(&ERRORS, angles, motion, DT, k * TICK);
         monitor.check(&ERRORS, angles, theta.to_radians(), k * TICK);
         let bend = monitor.mean(angles, true, k * TICK);
         bend.map(|bend| (bend.theta.to_degrees() - theta, bend.is_single))

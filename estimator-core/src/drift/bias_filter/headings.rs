@@ -4,7 +4,7 @@ use crate::config::{ArmConfig, BendErrorConfig};
 use crate::drift::SensedArm;
 use crate::drift::bias_filter::{BiasFilter, SegmentTrack};
 use crate::drift::bias_state::{BIAS, BiasState, RATE};
-use crate::drift::heading_gate::{Expected, HeadingGate, Verdict};
+use crate::drift::heading_gate::{Expected, Verdict};
 use crate::numeric::phase::Turns;
 use crate::numeric::scalar::{Constant, Scalar, TIME_UNIT_S};
 use crate::numeric::variance::{degrees, is_beyond, smaller, variance_deg};
@@ -22,41 +22,31 @@ const RETURNED: Constant = variance_deg(1.0);
 const ABSENT_TIME: Constant = Constant::new(20.0 / TIME_UNIT_S);
 /// An IMU whose bend sensors move by this much, and by four of their standard deviations, must change.
 const FROZEN_MOTION: Constant = degrees(8.0);
-const FROZEN_DEVIATIONS: Constant = Constant::new(4.0);
+const FROZEN_DEVIATIONS: Constant = Constant::new(1.0 / 4.0);
 
 impl<F: Scalar, const N: usize> BiasFilter<F, N> {
     /// Headings that are read and plausible, from the base to the tip.
     pub(super) fn track_headings<S: Scalar>(&mut self, config: &ArmConfig<S>, sensed: &SensedArm<S, N>) {
         let (mut below, mut excess) = (Turns::ZERO, F::zero());
-        let next = self.next_readings(config, sensed);
-        let readings = config.segments.iter().zip(&sensed.headings);
-        for (i, (track, (segment, heading))) in self.segments.iter_mut().zip(readings).enumerate() {
+        let mut readings = config.segments.iter().zip(&sensed.headings).enumerate();
+        let mut tracks = self.segments.as_mut_slice();
+        while let (Some((i, (segment, heading))), Some((track, next))) = (readings.next(), tracks.split_first_mut()) {
             track.theta -= excess;
-            let predicted = below + (track.theta + track.motion).to_turns();
-            let above = next.get(i + 1).and_then(|next| next.deviation(predicted));
             let bias = self.state.bias_at(i, sensed.time_us);
-            let expected = Expected { above, ..track.expected(below, bias, &segment.bend_error) };
+            let expected = track.expected(below, bias, &segment.bend_error);
             let reading = heading.is_read().then(|| heading.unwrapped());
-            let verdict = track.gate.take(reading, segment.imu_scale_error, &expected, sensed.time_us);
+            // Only asked for where a reading deviates.
+            let above = || {
+                let (next, (segment, heading)) = (next.first()?, readings.clone().next()?.1);
+                let bias = self.state.bias_at(i + 1, sensed.time_us);
+                next.deviation_from(expected.heading, bias, heading, segment.imu_scale_error)
+            };
+            let verdict = track.gate.take(reading, segment.imu_scale_error, &expected, above, sensed.time_us);
             doubt(&mut self.state, i, verdict, &expected, &segment.bend_error);
             excess = track.apply(verdict, &expected, sensed.time_us);
             below = track.heading;
+            tracks = next;
         }
-    }
-
-    /// Readings of all IMUs, to be held against predictions.
-    fn next_readings<S: Scalar>(&self, config: &ArmConfig<S>, sensed: &SensedArm<S, N>) -> [NextReading<F>; N] {
-        core::array::from_fn(|i| {
-            let track = self.segments.get(i).copied().unwrap_or_else(SegmentTrack::new);
-            let heading = sensed.headings.get(i).filter(|heading| heading.is_read() && track.gate.is_known());
-            NextReading {
-                gate: track.gate,
-                reading: heading.map(SegmentHeading::unwrapped),
-                scale_error: config.segments.get(i).map_or(0, |segment| segment.imu_scale_error),
-                // Of the heading below, the reading adds the segment's own angle and bias.
-                own: (track.theta + track.motion).to_turns() + self.state.bias_at(i, sensed.time_us),
-            }
-        })
     }
 
     /// Headings that were not read: from below by the segment's own bend sensors, and from above by those of the next.
@@ -84,22 +74,14 @@ impl<F: Scalar, const N: usize> BiasFilter<F, N> {
     }
 }
 
-/// The reading of the IMU above another one.
-struct NextReading<F> {
-    gate: HeadingGate<F>,
-    reading: Option<Turns>,
-    scale_error: i32,
-    own: Turns,
-}
-
-impl<F: Scalar> NextReading<F> {
-    /// Deviation from the prediction that the heading below is at `below`; `None` where it was not read.
-    fn deviation(&self, below: Turns) -> Option<Turns> {
-        self.reading.map(|reading| self.gate.deviation(reading, self.scale_error, below + self.own))
-    }
-}
-
 impl<F: Scalar> SegmentTrack<F> {
+    /// Deviation of the reading from the prediction that the heading below is at `below`; `None` where it was not read.
+    fn deviation_from(&self, below: Turns, bias: Turns, heading: &SegmentHeading, scale_error: i32) -> Option<Turns> {
+        let predicted = below + (self.theta + self.motion).to_turns() + bias;
+        (heading.is_read() && self.gate.is_known())
+            .then(|| self.gate.deviation(heading.unwrapped(), scale_error, predicted))
+    }
+
     /// Prediction of the heading by the bend sensors and the heading `below`.
     fn expected(&self, below: Turns, bias: Turns, error: &BendErrorConfig) -> Expected<F> {
         let motion = F::constant(FROZEN_MOTION);
@@ -111,7 +93,6 @@ impl<F: Scalar> SegmentTrack<F> {
             theta: self.theta,
             bend: self.bend.map(|bend| bend.theta),
             frozen_motion: if is_beyond_errors { motion } else { motion + motion },
-            above: None,
         }
     }
 

@@ -12,8 +12,6 @@ use crate::numeric::variance::{degrees, larger, scaled_square, smaller, variance
 const STILL: Constant = degrees(1.5);
 const BENT: Constant = variance_deg(10.0);
 const BAD_TARE: Constant = variance_deg(12.0);
-/// Factor on the bend sensors' variance in the tare: one pose, with hysteresis in it.
-const TARE_NOISE: Constant = Constant::new(4.0);
 
 /// Sums of the tare.
 #[derive(Debug, Clone, Copy)]
@@ -123,7 +121,7 @@ impl<F: Scalar, const N: usize> BiasFilter<F, N> {
         let offsets = self.segments.map(|track| track.offset_prior);
         self.state.initialise(filter, straightness, &offsets, sensed.time_us);
         if is_tared {
-            self.use_bend_of_tare(config.segments);
+            self.keep_bend_of_tare(config.segments);
         }
         self.correct_tracks(sensed.time_us);
         self.is_started = true;
@@ -150,6 +148,7 @@ impl<F: Scalar, const N: usize> BiasFilter<F, N> {
         for (track, (heading, segment)) in self.segments.iter_mut().zip(headings) {
             let excess = track.monitor.offset_excess(&segment.bend_error, true);
             track.offset_prior = F::from_q(filter.offset) + excess;
+            track.has_twins = segment.bend.iter().all(Option::is_some);
             track.last_bend = track.bend.map(|bend| bend.theta);
             track.motion = F::zero();
             let is_tared = config.tare_samples > 0;
@@ -166,16 +165,13 @@ impl<F: Scalar, const N: usize> BiasFilter<F, N> {
         }
     }
 
-    /// One update by the bend sensors' mean over the tare: the reference pose is known to its straightness alone.
-    fn use_bend_of_tare<S: Scalar>(&mut self, segments: &[SegmentConfig<S>]) {
+    /// What the bend sensors read in the tare, which the filter uses in the first turn of each segment.
+    fn keep_bend_of_tare<S: Scalar>(&mut self, segments: &[SegmentConfig<S>]) {
         let mut below = Turns::ZERO;
-        for (i, (segment, tare)) in segments.iter().zip(&self.tare.segments).enumerate() {
+        for ((track, segment), tare) in self.segments.iter_mut().zip(segments).zip(&self.tare.segments) {
             let reference: F = F::from_phase((segment.reference - below).phase());
             below = segment.reference;
-            let Some(bend) = tare.bend_mean() else { continue };
-            let nu = reference - bend - self.state.angle_bias(i) + self.state.angle_offset(i);
-            let innovation = self.state.innovation(i);
-            self.state.update(&innovation, nu, F::constant(TARE_NOISE) * F::from_q(segment.bend_error.mean));
+            track.tare_bend = tare.bend_mean().map(|bend| bend - reference);
         }
     }
 
@@ -186,7 +182,7 @@ impl<F: Scalar, const N: usize> BiasFilter<F, N> {
             track.heading = track.heading - bias;
             track.theta = F::from_phase((track.heading - below).phase());
             below = track.heading;
-            track.counted_theta = track.theta;
+            (track.counted_theta, track.turn_theta) = (track.theta, track.theta);
             track.counted_bend = track.last_bend.unwrap_or_else(F::zero);
             track.updated_at_us = time_us;
         }

@@ -1,9 +1,9 @@
 //! Updates of the bias filter: by bend sensors that have moved, one segment in its turn, and by an arm at rest.
 
-use crate::config::{ArmConfig, BendErrorConfig, BiasFilterConfig};
+use crate::config::{BendErrorConfig, BiasFilterConfig, SENSORS_PER_SEGMENT, SegmentConfig};
 use crate::drift::SensedArm;
 use crate::drift::bend_monitor::TrustedBend;
-use crate::drift::bias_filter::{BiasFilter, MAX_RATIO, SegmentTrack, bounded_ratio, since};
+use crate::drift::bias_filter::{BiasFilter, MAX_RATIO, RestChange, SegmentTrack, bounded_ratio, since};
 use crate::drift::bias_state::{BIAS, OFFSET};
 use crate::drift::rest::RestWindow;
 use crate::numeric::scalar::{Constant, Scalar};
@@ -20,48 +20,104 @@ const LONG_ERRORS: i32 = 2;
 const SINGLE: i32 = 5;
 const LARGEST_SINGLE: Constant = Constant::new(6.0);
 /// Innovation gate in predicted standard deviations.
-const GATE: Constant = Constant::new(6.0);
+const GATE: Constant = Constant::new(1.0 / 6.0);
 /// A turn is repeated where a heading is missing that was read within this time.
 const RETRY_US: u64 = 500_000;
 /// After so long beyond the gate the bias and the offset become doubtful, by 3°.
 const GATE_TIMEOUT_US: u64 = 30_000_000;
 const GATED: Constant = variance_deg(3.0);
+/// Doubt about the offset of a segment whose sensor has stepped.
+const STEPPED: Constant = variance_deg(1.0);
+/// Factor on the bend sensors' variance in the tare: one pose, with hysteresis in it.
+const TARE_NOISE: Constant = Constant::new(4.0);
 /// Growth of the offset's variance where one sensor of two is lost, in slow variances of their difference.
 const LOST_SENSOR: Constant = Constant::new(1.5);
 /// Doubt about the heading of a resting arm, 0.02 °/√s, and about the rate learned at rest.
 const REST_CREEP: Constant = variance_deg(0.02 * 8.0);
 const REST_READING: Constant = variance_deg(0.064);
 /// Gate of a rest's heading change, in predicted standard deviations.
-const REST_GATE: Constant = Constant::new(3.0);
+const REST_GATE: Constant = Constant::new(1.0 / 3.0);
 
 impl<F: Scalar, const N: usize> BiasFilter<F, N> {
-    /// Predicts the IMU and the segment whose turn it is, and updates the filter by its bend sensors.
-    pub(super) fn update_turn<S: Scalar>(
+    /// The turn of one segment: its bend sensors are held against the IMUs, its states predicted and updated. `false` where the
+    /// turn must be repeated in the next sample.
+    pub(super) fn take_turn<S: Scalar>(
         &mut self,
-        config: &ArmConfig<S>,
+        segments: &[SegmentConfig<S>],
         filter: &BiasFilterConfig,
         sensed: &SensedArm<S, N>,
-    ) {
-        let i = self.turn;
-        let (Some(segment), Some(angles)) = (config.segments.get(i), sensed.bend.get(i)) else { return };
+        angles: &[[Option<F>; SENSORS_PER_SEGMENT]; N],
+    ) -> bool {
+        let (i, time_us) = (self.turn, sensed.time_us);
+        let (Some(segment), Some(bend), Some(angles)) = (segments.get(i), sensed.bend.get(i), angles.get(i)) else {
+            return false;
+        };
+        let below = i.checked_sub(1).and_then(|below| self.segments.get(below)).copied();
+        let Some(track) = self.segments.get(i) else { return false };
+        let is_read = |track: &SegmentTrack<F>| track.is_heading_read;
+        let are_headings_read = is_read(track) && below.as_ref().is_none_or(is_read);
+        // A heading that is only now and then missing must not be missing at each of the segment's turns.
+        let is_recent = |track: &SegmentTrack<F>| time_us.saturating_sub(track.heading_read_at_us) < RETRY_US;
+        if !are_headings_read && is_recent(track) && below.as_ref().is_none_or(is_recent) {
+            return false;
+        }
+        self.turn = if i + 1 < segments.len().min(N) { i + 1 } else { 0 };
+        self.check_bend(i, &segment.bend_error, *angles, are_headings_read, time_us);
         self.grow_offset(i, filter, &segment.bend_error);
+        self.predict(i, filter, time_us);
+        self.use_tare(i, &segment.bend_error);
+        self.learn_rate(i);
+        let bend = self.segments.get(i).and_then(|track| track.bend).filter(|_| !bend.is_extrapolated);
+        if let Some(bend) = bend.filter(|_| are_headings_read) {
+            self.update(i, &segment.bend_error, bend, time_us);
+        }
+        true
+    }
+
+    /// Holds the bend sensors of segment `i` against the IMUs: steps, departures, sensors that are stuck. Its signals go to the
+    /// detector of rest.
+    fn check_bend(
+        &mut self,
+        i: usize,
+        error: &BendErrorConfig,
+        angles: [Option<F>; SENSORS_PER_SEGMENT],
+        are_headings_read: bool,
+        time_us: u64,
+    ) {
+        let Some(track) = self.segments.get_mut(i) else { return };
+        let dt = since(track.turned_at_us.replace(time_us).unwrap_or(time_us), time_us);
+        track.monitor.compare(angles, dt, time_us);
+        let motion = are_headings_read.then(|| track.theta - track.turn_theta);
+        if track.monitor.find_steps(error, angles, motion, dt, time_us) {
+            self.state.doubt(i, OFFSET, F::constant(STEPPED));
+            track.stepped_at_us = Some(time_us);
+        }
+        if are_headings_read {
+            let expected = track.theta + self.state.angle_offset(i);
+            track.monitor.check(error, angles, expected, time_us);
+        }
+        track.turn_theta = track.theta;
+        // Without a sensor that has just stepped.
+        track.bend = track.monitor.mean(angles, track.has_twins, time_us);
+        let heading = track.is_heading_read.then(|| track.heading + track.bias);
+        self.rest.take(i, heading, track.bend.map(|bend| bend.theta.to_turns()), dt);
+    }
+
+    fn predict(&mut self, i: usize, filter: &BiasFilterConfig, time_us: u64) {
         let Some(track) = self.segments.get(i) else { return };
         if self.rest.is_resting() {
-            self.state.predict_at_rest(i, filter, F::constant(REST_CREEP), sensed.time_us);
+            self.state.predict_at_rest(i, filter, F::constant(REST_CREEP), time_us);
         } else {
-            self.state.predict(i, filter, track.offset_prior, sensed.time_us);
+            self.state.predict(i, filter, track.offset_prior, time_us);
         }
-        let below = i.checked_sub(1).and_then(|below| self.segments.get(below));
-        let are_headings_read = track.is_heading_read && below.is_none_or(|below| below.is_heading_read);
-        // A heading that is only now and then missing must not be missing at each of the segment's turns.
-        let is_recent = |track: &SegmentTrack<F>| sensed.time_us.saturating_sub(track.heading_read_at_us) < RETRY_US;
-        let retries = !are_headings_read && is_recent(track) && below.is_none_or(is_recent);
-        if !retries {
-            self.turn = if i + 1 < config.segments.len().min(N) { i + 1 } else { 0 };
-        }
-        if let Some(bend) = track.bend.filter(|_| are_headings_read && !angles.is_extrapolated) {
-            self.update(i, &segment.bend_error, bend, sensed.time_us);
-        }
+    }
+
+    /// The update by the bend sensors' mean over the tare: the reference pose is known to its straightness alone.
+    fn use_tare(&mut self, i: usize, error: &BendErrorConfig) {
+        let Some(bend) = self.segments.get_mut(i).and_then(|track| track.tare_bend.take()) else { return };
+        let nu = self.state.angle_offset(i) - bend - self.state.angle_bias(i);
+        let innovation = self.state.innovation(i);
+        self.state.update(&innovation, nu, F::constant(TARE_NOISE) * F::from_q(error.mean));
     }
 
     /// Widens the prior of the offset where the two sensors disagree more than before, or one is lost.
@@ -102,33 +158,26 @@ impl<F: Scalar, const N: usize> BiasFilter<F, N> {
         }
     }
 
-    /// Learns the rates from an arm at rest, and holds its shape.
-    pub(super) fn follow_rest(&mut self, count: usize, dt: F, time_us: u64) {
-        let (mut headings, mut angles) = ([None; N], [None; N]);
-        let outputs = headings.iter_mut().zip(&mut angles);
-        for (track, (heading, angle)) in self.segments.iter().zip(outputs).take(count) {
-            *heading = track.is_heading_read.then(|| track.heading + track.bias);
-            *angle = track.bend.map(|bend| bend.theta.to_turns());
-        }
-        let Some(window) = self.rest.take(&headings, &angles, dt, time_us) else { return };
-        for (j, (change, bend)) in window.headings.into_iter().zip(window.bend).enumerate().take(count) {
-            if let Some(change) = change {
-                self.learn_rate(j, change, bend, &window);
-            }
+    /// Keeps what a window of rest shows for the turns of the segments.
+    pub(super) fn follow_rest(&mut self, time_us: u64) {
+        let Some(RestWindow { headings, bend, length_us }) = self.rest.window(time_us) else { return };
+        for (track, (heading, bend)) in self.segments.iter_mut().zip(headings.into_iter().zip(bend)) {
+            track.rest = heading.map(|heading| RestChange { heading, bend, length_us });
         }
     }
 
-    /// The change of heading `j` over a window of rest, per time: H = (v_j: 1).
-    fn learn_rate(&mut self, j: usize, change: F, bend: F, window: &RestWindow<F, N>) {
-        let dt = since(0, window.length_us);
-        let nu = change - self.state.rate_of(j) * dt;
-        let r = F::constant(REST_READING) + scaled_square(bend);
+    /// The change of heading `j` over a window of rest, per time: H = (v_j: 1). The shape stays: what the heading has changed
+    /// by was its bias.
+    fn learn_rate(&mut self, j: usize) {
+        let Some(change) = self.segments.get_mut(j).and_then(|track| track.rest.take()) else { return };
+        let dt = since(0, change.length_us);
+        let nu = change.heading - self.state.rate_of(j) * dt;
+        let r = F::constant(REST_READING) + scaled_square(change.bend);
         let innovation = self.state.innovation_at_rest(j);
         if is_beyond(nu, REST_GATE, innovation.variance * dt * dt + r) {
             return;
         }
         self.state.update(&innovation, nu / dt, r / dt / dt);
-        // The shape stays: what the heading has changed by was its bias.
         self.state.add_to_bias(j, nu.to_turns());
     }
 }

@@ -17,7 +17,6 @@ fn still() -> Expected<f64> {
         theta: 0.0,
         bend: Some(0.0),
         frozen_motion: 8.0_f64.to_radians(),
-        above: None,
     }
 }
 
@@ -32,7 +31,7 @@ fn tared() -> HeadingGate<f64> {
 fn take_for(gate: &mut HeadingGate<f64>, from_us: u64, length_us: u64, heading: f64) -> std::vec::Vec<Verdict<f64>> {
     let at = |k: u64| {
         let noise = if k.is_multiple_of(2) { 0.06 } else { 0.0 };
-        gate.take(Some(degrees(heading + noise)), 0, &still(), from_us + k * TICK)
+        gate.take(Some(degrees(heading + noise)), 0, &still(), || None, from_us + k * TICK)
     };
     (0..length_us / TICK).map(at).collect()
 }
@@ -75,7 +74,7 @@ fn a_jump_that_stays_becomes_a_new_zero_after_0_4_s() {
 fn two_wild_readings_with_a_good_one_between_them_are_not_a_new_zero() {
     let mut gate = tared();
     for (time_us, heading) in [(0, 30.0), (SECOND / 5, 0.0), (SECOND, 30.0)] {
-        let verdict = gate.take(Some(degrees(heading)), 0, &still(), SECOND + time_us);
+        let verdict = gate.take(Some(degrees(heading)), 0, &still(), || None, SECOND + time_us);
         assert!(matches!(verdict, Verdict::Absent | Verdict::Accepted(_)), "{verdict:?}");
     }
 }
@@ -84,15 +83,15 @@ fn two_wild_readings_with_a_good_one_between_them_are_not_a_new_zero() {
 fn two_wild_readings_seconds_apart_are_not_a_new_zero() {
     let mut gate = tared();
     for time_us in [2 * SECOND, 7 * SECOND] {
-        assert_eq!(gate.take(Some(degrees(30.0)), 0, &still(), time_us), Verdict::Absent);
-        assert_eq!(gate.take(None, 0, &still(), time_us + TICK), Verdict::Absent);
+        assert_eq!(gate.take(Some(degrees(30.0)), 0, &still(), || None, time_us), Verdict::Absent);
+        assert_eq!(gate.take(None, 0, &still(), || None, time_us + TICK), Verdict::Absent);
     }
 }
 
 #[test]
 fn a_jump_is_confirmed_although_every_third_reading_is_missing() {
     let mut gate = tared();
-    let at = |k: u64| gate.take((!k.is_multiple_of(3)).then(|| degrees(30.0)), 0, &still(), SECOND + k * TICK);
+    let at = |k: u64| gate.take((!k.is_multiple_of(3)).then(|| degrees(30.0)), 0, &still(), || None, SECOND + k * TICK);
     assert!((0..50).map(at).any(|verdict| matches!(verdict, Verdict::Restarted(..))));
 }
 
@@ -100,14 +99,14 @@ fn a_jump_is_confirmed_although_every_third_reading_is_missing() {
 fn an_absolute_heading_that_is_read_late_keeps_its_zero() {
     let mut gate = HeadingGate::new(0.0);
     gate.expect_absolute();
-    let verdict = gate.take(Some(degrees(77.0)), 0, &still(), 5 * SECOND);
+    let verdict = gate.take(Some(degrees(77.0)), 0, &still(), || None, 5 * SECOND);
     assert!((heading_deg(verdict) - 77.0).abs() < 1e-6);
 }
 
 #[test]
 fn an_imu_that_returns_after_a_gap_near_its_old_zero_is_used_at_once() {
     let mut gate = tared();
-    let verdict = gate.take(Some(degrees(3.0)), 0, &still(), 11 * SECOND);
+    let verdict = gate.take(Some(degrees(3.0)), 0, &still(), || None, 11 * SECOND);
     assert!(matches!(verdict, Verdict::Returned(_, absence_us) if absence_us == 10 * SECOND), "{verdict:?}");
     assert!((heading_deg(verdict) - 3.0).abs() < 1e-6);
 }
@@ -125,9 +124,9 @@ fn an_imu_that_returns_after_a_gap_with_another_zero_restarts() {
 fn an_imu_that_was_not_read_in_the_tare_starts_where_the_bend_sensors_are() {
     let mut gate = HeadingGate::new(0.0);
     let expected = Expected { heading: degrees(20.0), ..still() };
-    let first = gate.take(Some(degrees(77.0)), 0, &expected, SECOND);
+    let first = gate.take(Some(degrees(77.0)), 0, &expected, || None, SECOND);
     assert!(matches!(first, Verdict::Restarted(deviation, _) if deviation == Turns::ZERO), "{first:?}");
-    let next = gate.take(Some(degrees(78.0)), 0, &expected, SECOND + TICK);
+    let next = gate.take(Some(degrees(78.0)), 0, &expected, || None, SECOND + TICK);
     assert!((heading_deg(next) - 21.0).abs() < 1e-6);
 }
 
@@ -139,7 +138,7 @@ fn a_heading_that_passes_360_degrees_does_not_step() {
     for k in 1..800_u32 {
         let turned = f64::from(k);
         let expected = Expected { heading: degrees(before), motion: 1.0_f64.to_radians(), ..still() };
-        before = heading_deg(gate.take(Some(degrees(turned)), 0, &expected, SECOND + u64::from(k) * TICK));
+        before = heading_deg(gate.take(Some(degrees(turned)), 0, &expected, || None, SECOND + u64::from(k) * TICK));
         assert!((before - turned).abs() < 1e-5, "{before} instead of {turned}");
     }
 }
@@ -148,14 +147,14 @@ fn a_heading_that_passes_360_degrees_does_not_step() {
 fn fast_motion_that_the_bend_sensors_see_is_no_jump() {
     let mut gate = tared();
     let moved = Expected { heading: degrees(20.0), motion: 20.0_f64.to_radians(), ..still() };
-    assert!((heading_deg(gate.take(Some(degrees(45.0)), 0, &moved, SECOND + TICK)) - 45.0).abs() < 1e-6);
+    assert!((heading_deg(gate.take(Some(degrees(45.0)), 0, &moved, || None, SECOND + TICK)) - 45.0).abs() < 1e-6);
 }
 
 #[test]
 fn a_step_of_the_bend_sensors_is_no_jump_of_the_imu() {
     let mut gate = tared();
     let stepped = Expected { heading: degrees(30.0), motion: 30.0_f64.to_radians(), ..still() };
-    assert!(heading_deg(gate.take(Some(degrees(0.5)), 0, &stepped, SECOND + TICK)).abs() < 1.0);
+    assert!(heading_deg(gate.take(Some(degrees(0.5)), 0, &stepped, || None, SECOND + TICK)).abs() < 1.0);
 }
 
 #[test]
@@ -166,7 +165,7 @@ fn the_gyroscope_s_sensitivity_is_corrected() {
     for k in 1..=90_u32 {
         let expected = Expected { heading: degrees(heading), ..still() };
         let reading = Some(degrees(f64::from(k) * 1.02));
-        heading = heading_deg(gate.take(reading, scale_error, &expected, SECOND + u64::from(k) * TICK));
+        heading = heading_deg(gate.take(reading, scale_error, &expected, || None, SECOND + u64::from(k) * TICK));
     }
     // 1.02 · (1 − 0.02) is 1 − 0.0004.
     assert!((heading - 90.0 * 0.9996).abs() < 1e-4, "{heading}");
@@ -177,7 +176,7 @@ fn frozen(gate: &mut HeadingGate<f64>, from: u64, to: u64) -> std::vec::Vec<Verd
     let at = |k: u64| {
         let bend = (k as f64 * 0.2).to_radians();
         let expected = Expected { heading: Turns::from_rad(bend), theta: bend, bend: Some(bend), ..still() };
-        gate.take(Some(Turns::ZERO), 0, &expected, SECOND + k * TICK)
+        gate.take(Some(Turns::ZERO), 0, &expected, || None, SECOND + k * TICK)
     };
     (from..to).map(at).collect()
 }
@@ -195,17 +194,17 @@ fn an_imu_stays_frozen_while_its_bend_sensors_are_missing() {
     let mut gate = tared();
     frozen(&mut gate, 0, 200);
     let expected = Expected { heading: degrees(40.0), theta: 0.7, bend: None, ..still() };
-    assert_eq!(gate.take(Some(Turns::ZERO), 0, &expected, 3 * SECOND), Verdict::Frozen(0.7));
+    assert_eq!(gate.take(Some(Turns::ZERO), 0, &expected, || None, 3 * SECOND), Verdict::Frozen(0.7));
 }
 
 #[test]
 fn bend_sensors_that_return_elsewhere_do_not_freeze_an_imu_at_rest() {
     let mut gate = tared();
     let without = Expected { bend: None, ..still() };
-    gate.take(Some(degrees(1.0)), 0, &without, SECOND);
+    gate.take(Some(degrees(1.0)), 0, &without, || None, SECOND);
     let elsewhere = Expected { bend: Some(0.5), ..still() };
     for k in 0..300 {
-        let verdict = gate.take(Some(degrees(1.0)), 0, &elsewhere, SECOND + k * TICK);
+        let verdict = gate.take(Some(degrees(1.0)), 0, &elsewhere, || None, SECOND + k * TICK);
         assert!(matches!(verdict, Verdict::Accepted(_)), "{verdict:?} at sample {k}");
     }
 }
@@ -214,7 +213,7 @@ fn bend_sensors_that_return_elsewhere_do_not_freeze_an_imu_at_rest() {
 fn an_arm_at_rest_does_not_freeze_its_imu() {
     let mut gate = tared();
     for k in 0..500 {
-        let verdict = gate.take(Some(Turns::ZERO), 0, &still(), SECOND + k * TICK);
+        let verdict = gate.take(Some(Turns::ZERO), 0, &still(), || None, SECOND + k * TICK);
         assert!(matches!(verdict, Verdict::Accepted(_)), "{verdict:?} at sample {k}");
     }
 }

@@ -1,6 +1,6 @@
 //! The estimator's arithmetic and soft float on random inputs, hashed.
 
-use estimator_core::{Angle, Arc, ImuReading, Phase, Q, Scalar, Turns};
+use estimator_core::{Angle, FusedOps, ImuReading, Phase, Q, Scalar, Turns, UnitArc};
 
 use crate::random::Random;
 
@@ -87,7 +87,7 @@ fn angles(random: &mut Random, hash: &mut Hash) {
 fn arcs(random: &mut Random, hash: &mut Hash) {
     // Whole turns are rare.
     let turns = if random.below(8) == 0 { random.number() } else { 0 };
-    let arc = Arc::new(Angle { rest: q(random), turns });
+    let arc = UnitArc::new(Angle { rest: q(random), turns });
     for value in [arc.lateral, arc.axial, arc.cos, arc.sin] {
         hash.q(value);
     }
@@ -96,7 +96,7 @@ fn arcs(random: &mut Random, hash: &mut Hash) {
 fn headings(random: &mut Random, hash: &mut Hash) {
     let [yaw, roll, tilt] = core::array::from_fn(|_| {
         let rest = Q::from_phase(Phase::from_bits(random.bits() as i32));
-        Arc::new(Angle { rest, turns: 0 })
+        UnitArc::new(Angle { rest, turns: 0 })
     });
     let quaternion = [tilt.cos * yaw.cos, tilt.sin * roll.cos, tilt.sin * roll.sin, tilt.cos * yaw.sin];
     // Of 26 fractional bits a BNO055 gives 14.

@@ -4,14 +4,17 @@ use crate::random::Random;
 use atsam3x8e_hal::pac::Peripherals;
 use atsam3x8e_hal::watchdog;
 use estimator_core::{
-    AnchorConfig, Angle, Arc, ArmConfig, BendMap, BiasFilterConfig, ContactConfig, CoupledSegment, Estimator,
-    ImuReading, Noise, OffsetAt, Phase, Play, Q, SENSORS_PER_SEGMENT, Sample, Scalar, SegmentConfig, Turns,
-    UncertaintyConfig,
+    AnchorConfig, Angle, ArmConfig, BendErrorConfig, BendMap, BendSensorConfig, BiasFilterConfig, ContactConfig,
+    CoupledSegment, CurveMap, Estimator, ImuReading, KNOTS, KalmanParams, Lag, MemoryConfig, OffsetAt, Phase, Play, Q,
+    QuadraticMap, SENSORS_PER_SEGMENT, Sample, Scalar, SegmentConfig, TIME_UNIT_S, Turns, UncertaintyConfig, UnitArc,
 };
 
-/// Samples of each arm, those of the tare included.
+/// Samples of each arm that moves, those of the tare included.
 const STEPS: u32 = 1_000;
+/// Samples of the arm that comes to rest: after 20 s of rest the bias filter learns from it.
+const STEPS_WITH_REST: u32 = STEPS + 3_000;
 const TARE: u32 = 100;
+const SAMPLE_US: u64 = 10_000;
 const WINDOW: usize = 100;
 
 const CENTER: u16 = 2_048;
@@ -19,14 +22,17 @@ const CENTER: u16 = 2_048;
 const RANGE: u8 = 10;
 const RAD_PER_RANGE: f64 = 2.2;
 
-const MAP: BendMap<Q> = BendMap {
-    center: CENTER,
-    shift: RANGE,
-    coefficients: [Q::from_f64(0.01), Q::from_f64(RAD_PER_RANGE), Q::from_f64(0.03)],
-    readable: [0, 4095],
+const SENSOR: BendSensorConfig<Q> = BendSensorConfig {
+    map: BendMap::Quadratic(QuadraticMap {
+        center: CENTER,
+        shift: RANGE,
+        coefficients: [Q::from_f64(0.01), Q::from_f64(RAD_PER_RANGE), Q::from_f64(0.03)],
+        readable: [0, 4095],
+    }),
+    memory: None,
 };
 
-const NOISE: Noise<Q> = Noise {
+const FILTER: KalmanParams<Q> = KalmanParams {
     q: Q::from_f64(0.01),
     r_imu: Q::from_f64(1.0),
     r_bend: Q::from_f64(0.4),
@@ -38,12 +44,14 @@ const SEGMENT: SegmentConfig<Q> = SegmentConfig {
     length: Q::from_f64(0.080),
     offset: Q::from_f64(0.017),
     offset_at: OffsetAt::End,
-    bend: [Some(MAP); SENSORS_PER_SEGMENT],
+    bend: [Some(SENSOR); SENSORS_PER_SEGMENT],
     hysteresis: None,
-    alike: None,
+    bend_error: BendErrorConfig::PAPER,
+    imu_scale_error: 0,
+    coupled_to: None,
     reference: Turns::ZERO,
-    orient: NOISE,
-    coord: NOISE,
+    orient: FILTER,
+    coord: FILTER,
 };
 
 static SEGMENTS: [SegmentConfig<Q>; 16] = [SEGMENT; 16];
@@ -59,14 +67,38 @@ const fn table(segments: usize) -> ArmConfig<'static, Q> {
 }
 
 /// Half a degree a play, and a tenth of it in the correction.
-const PLAY: Play<Q> = Play { half_width: Q::from_f64(0.01), weight: Q::from_f64(0.1) };
+const PLAY: Play<Q> = Play { radius: Q::from_f64(0.01), weight: Q::from_f64(0.1) };
 
-/// Segments of which all is asked that a table can ask beyond the paper's method.
-static SEGMENTS_BEYOND: [SegmentConfig<Q>; 6] = {
-    let first = SegmentConfig { hysteresis: Some([PLAY; 3]), ..SEGMENT };
-    let second = SegmentConfig { alike: Some(CoupledSegment { segment: 0, ratio: 1 << 28 }), ..first };
-    let fourth = SegmentConfig { alike: Some(CoupledSegment { segment: 2, ratio: 1 << 28 }), ..first };
-    let sixth = SegmentConfig { alike: Some(CoupledSegment { segment: 4, ratio: 1 << 28 }), ..first };
+/// A lag of a minute.
+const LAG: Lag<Q> = Lag { rate: Q::from_f64(TIME_UNIT_S / 60.0), weight: Q::from_f64(0.05) };
+
+/// The quadratic's slope as a curve, with creep and hysteresis of the sensor.
+const CURVE_SENSOR: BendSensorConfig<Q> = {
+    // Knots every 2⁵ counts: 64 spans over 2 ranges.
+    let mut knots = [Q::from_f64(0.0); KNOTS];
+    let mut k = 0;
+    while k < KNOTS {
+        knots[k] = Q::from_f64((k as f64 / 32.0 - 1.0) * RAD_PER_RANGE);
+        k += 1;
+    }
+    let (first, last) = (CENTER - (1 << RANGE), CENTER + (1 << RANGE) - 1);
+    let range = [first, last];
+    let curve = CurveMap { first, shift: RANGE - 5, knots, readable: range, calibrated: range };
+    BendSensorConfig { map: BendMap::Curve(curve), memory: Some(MemoryConfig { lags: [LAG; 2], plays: [PLAY; 2] }) }
+};
+
+/// Segments with all that a table can have beside the paper's method.
+static BIAS_FILTER_SEGMENTS: [SegmentConfig<Q>; 6] = {
+    let first = SegmentConfig {
+        bend: [Some(CURVE_SENSOR); SENSORS_PER_SEGMENT],
+        hysteresis: Some([PLAY; 3]),
+        // 1 %.
+        imu_scale_error: 42_949_673,
+        ..SEGMENT
+    };
+    let second = SegmentConfig { coupled_to: Some(CoupledSegment { segment: 0, ratio: 1 << 28 }), ..first };
+    let fourth = SegmentConfig { coupled_to: Some(CoupledSegment { segment: 2, ratio: 1 << 28 }), ..first };
+    let sixth = SegmentConfig { coupled_to: Some(CoupledSegment { segment: 4, ratio: 1 << 28 }), ..first };
     [first, second, first, fourth, first, sixth]
 };
 
@@ -74,23 +106,14 @@ const fn degrees(degrees: i64) -> Turns {
     Turns::from_bits((degrees << 32) / 360)
 }
 
-/// The table of six segments with the observer, contact and uncertainty.
-pub static TABLE_BEYOND: ArmConfig<'static, Q> = ArmConfig {
-    segments: &SEGMENTS_BEYOND,
-    observer: Some(BiasFilterConfig {
-        step: 6_710_886,
-        prior: [193_273, 21_990_233, 391_378_894],
-        growth: [0, 35, 1],
-        gate: degrees(8),
-        patience: 300,
-        jump: degrees(12),
-        still: degrees(1),
-        doubt: 13_421_773,
-    }),
-    contact: Some(ContactConfig { bend: degrees(5), alike: degrees(4) }),
+/// The table of six segments with the bias filter, contact and uncertainty.
+pub static BIAS_FILTER_TABLE: ArmConfig<'static, Q> = ArmConfig {
+    segments: &BIAS_FILTER_SEGMENTS,
+    bias_filter: Some(BiasFilterConfig::BNO055),
+    contact: Some(ContactConfig { bend: degrees(5), coupling: degrees(4) }),
     uncertainty: Some(UncertaintyConfig {
         theta: Q::from_f64(0.001),
-        drift: Q::from_f64(0.6),
+        bias_share: Q::from_f64(0.5),
         bend: Q::from_f64(0.2),
         contact: Q::from_f64(0.1),
         heading: Q::from_f64(0.007),
@@ -105,15 +128,15 @@ pub static TABLES: [ArmConfig<'static, Q>; 5] = [table(1), table(2), table(6), t
 /// All steps of one arm.
 #[inline(never)]
 pub fn steps<const N: usize>(table: &'static ArmConfig<'static, Q>) {
-    run::<N>(table, |estimator, sample| {
+    run::<N>(table, STEPS, |estimator, sample| {
         core::hint::black_box(estimator.update(sample));
     });
 }
 
-/// All steps of one arm, each with the covariances of its shape.
+/// All steps of one arm, at rest at last, each with the covariances of its shape.
 #[inline(never)]
 pub fn steps_with_uncertainty<const N: usize>(table: &'static ArmConfig<'static, Q>) {
-    run::<N>(table, |estimator, sample| {
+    run::<N>(table, STEPS_WITH_REST, |estimator, sample| {
         estimator.update(sample);
         core::hint::black_box(&estimator.uncertainties());
     });
@@ -133,6 +156,7 @@ pub fn alone(run: impl FnOnce()) -> ! {
 #[inline]
 fn run<const N: usize>(
     table: &'static ArmConfig<'static, Q>,
+    steps: u32,
     step: impl Fn(&mut Estimator<'static, Q, N, WINDOW>, &Sample<N>),
 ) {
     // Made where it stays: the stack has no room for a copy.
@@ -141,8 +165,8 @@ fn run<const N: usize>(
         return;
     }
     let mut arm = Arm::<N>::new();
-    for _ in 0..STEPS {
-        let sample = arm.sample();
+    for k in 0..steps {
+        let sample = arm.sample(u64::from(k) * SAMPLE_US, k < STEPS);
         step_begins((&raw const sample).cast());
         step(&mut estimator, &sample);
         step_ends();
@@ -174,13 +198,15 @@ impl<const N: usize> Arm<N> {
         Self { random: Random::new(0x1234_5678), angles: [Phase::from_bits(0); N] }
     }
 
-    /// The next sample, in which every reading is present.
-    fn sample(&mut self) -> Sample<N> {
-        let mut sample = Sample::missing(0);
+    /// The sample at `time_us`, in which every reading is present.
+    fn sample(&mut self, time_us: u64, is_moving: bool) -> Sample<N> {
+        let mut sample = Sample::missing(time_us);
         let mut heading = 0_i32;
         let readings = sample.bend.iter_mut().zip(&mut sample.imu);
         for (angle, (bend, imu)) in self.angles.iter_mut().zip(readings) {
-            *angle = walk(*angle, &mut self.random);
+            if is_moving {
+                *angle = walk(*angle, &mut self.random);
+            }
             for counts in bend {
                 *counts = Some(counts_at(*angle).wrapping_add_signed(self.random.below(17) as i16 - 8));
             }
@@ -208,7 +234,7 @@ fn counts_at(angle: Phase) -> u16 {
 
 /// What a BNO055 reads at a heading, clockwise, in units of 2⁻³² turns.
 fn quaternion(heading: i32) -> ImuReading {
-    let half = Arc::new(Angle { rest: Q::from_phase(Phase::from_bits(heading >> 1)), turns: 0 });
+    let half = UnitArc::new(Angle::from(Q::from_phase(Phase::from_bits(heading >> 1))));
     // Of 26 fractional bits it gives 14.
     ImuReading::from_bno055([(half.cos.to_bits() >> 12) as i16, 0, 0, (-half.sin.to_bits() >> 12) as i16])
 }

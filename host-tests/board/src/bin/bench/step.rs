@@ -10,6 +10,8 @@ use crate::Figure;
 /// The arms that the firmware steps, in its order, and the samples of each.
 const SEGMENTS: [u32; 5] = [1, 2, 6, 12, 16];
 const STEPS: usize = 1_000;
+/// Samples at rest that follow where the bias filter runs.
+const REST: usize = 3_000;
 /// Of the samples, those of the tare.
 const TARE: usize = 100;
 
@@ -38,7 +40,9 @@ impl Range {
 pub fn figures() -> [Figure; 7] {
     let growth = arms("growth", &SEGMENTS);
     let [(_, tare, after)] = &arms("step", &[6])[..] else { panic!("the firmware steps one arm") };
-    let [(_, _, beyond)] = &arms("beyond", &[6])[..] else { panic!("the firmware steps one arm") };
+    let [(_, _, bias_filter)] = &arms_of("bias_filter", &[6], STEPS + REST)[..] else {
+        panic!("the firmware steps one arm")
+    };
     let for_each =
         |arm: usize| growth.get(arm).map_or(f64::NAN, |(segments, _, after)| after.most as f64 / f64::from(*segments));
     [
@@ -47,18 +51,23 @@ pub fn figures() -> [Figure; 7] {
         Figure { name: "step_spread", value: (after.most - after.least) as f64 / after.least as f64 * 100.0 },
         Figure { name: "step_growth", value: for_each(4) / for_each(2) },
         Figure { name: "step_routines", value: unwanted(&elf("board-probe", "step")) as f64 },
-        Figure { name: "beyond_instructions", value: beyond.most as f64 },
-        Figure { name: "beyond_routines", value: unwanted(&elf("board-probe", "beyond")) as f64 },
+        Figure { name: "bias_filter_instructions", value: bias_filter.most as f64 },
+        Figure { name: "bias_filter_routines", value: unwanted(&elf("board-probe", "bias_filter")) as f64 },
     ]
 }
 
 /// Segments, steps in the tare and steps after it, of each arm that a firmware steps.
 fn arms(binary: &str, segments: &[u32]) -> Vec<(u32, Range, Range)> {
+    arms_of(binary, segments, STEPS)
+}
+
+/// The same for so many samples of each arm.
+fn arms_of(binary: &str, segments: &[u32], steps: usize) -> Vec<(u32, Range, Range)> {
     let mut machine =
         Machine::new(&elf("board-probe", binary), Rig::new(Scenario::One, 1)).expect("a firmware for the Due");
     println!("instructions of a step   in the tare          after it");
     let arm = |segments: &u32| {
-        let counts = counts(&mut machine);
+        let counts = counts(&mut machine, steps);
         let (tare, after) = counts.split_at(TARE);
         let (tare, after) = (Range::of(tare), Range::of(after));
         println!(
@@ -73,14 +82,14 @@ fn arms(binary: &str, segments: &[u32]) -> Vec<(u32, Range, Range)> {
 }
 
 /// Instructions of the next arm's steps, each with the two calls around it.
-fn counts(machine: &mut Machine<Rig>) -> Vec<u64> {
+fn counts(machine: &mut Machine<Rig>, steps: usize) -> Vec<u64> {
     let [begins, ends] = ["step_begins", "step_ends"].map(|name| machine.symbol(name).expect("the firmware has it"));
     let mut run_to = |address| {
         let limit = machine.now() + CYCLES_PER_SECOND;
         assert!(machine.run_to(address, limit), "the firmware steps on");
         machine.instructions()
     };
-    (0..STEPS)
+    (0..steps)
         .map(|_| {
             let before = run_to(begins);
             run_to(ends) - before
