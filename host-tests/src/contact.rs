@@ -54,7 +54,7 @@ impl Run {
     pub fn new(table: &ArmFile, scenario: Scenario, seed: u64, seconds: f64) -> Result<Self, Box<dyn Error>> {
         let session = TwinSession::new(&Setup::new(scenario, seed), seconds, RATE_HZ)?;
         let mut told = Vec::new();
-        session.replay(table, |_, outcome, _| told.push(in_contact(outcome)))?;
+        session.replay(table, |_, outcome| told.push(in_contact(outcome)))?;
         Ok(Self::of(session, told))
     }
 

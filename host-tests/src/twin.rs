@@ -1,7 +1,7 @@
 //! Sessions of the twin in memory, and their replay in the board's fixed point.
 
 use calibration_tables::{ArmFile, FileError, MAX_SEGMENTS};
-use estimator_core::{ArmConfig, Condition, Estimator, ImuReading, Method, Q, Sample};
+use estimator_core::{ArmConfig, Estimator, ImuReading, Method, Q, Sample};
 use proprio::error::Error;
 use proprio::replay::{HostEstimator, Outcome};
 use proprio::session::{Row, Truth};
@@ -55,7 +55,11 @@ impl TwinSession {
     ///
     /// # Errors
     /// As [`replay`].
-    pub fn replay(&self, table: &ArmFile, visit: impl FnMut(&Row, &Outcome<Q>, bool)) -> Result<(), FileError> {
+    pub fn replay(
+        &self,
+        table: &ArmFile,
+        visit: impl FnMut(&Row, &Outcome<Q>),
+    ) -> Result<(), FileError> {
         replay(table, self.rate_hz, self.rows(), visit)
     }
 }
@@ -106,16 +110,9 @@ impl<'t> Replayer<'t> {
         let (uncertainties, contacts) = (estimator.uncertainties(), estimator.contacts());
         Outcome { estimate, shapes, uncertainties, contacts, conditions: estimator.conditions() }
     }
-
-    /// Whether the estimator reports a condition of any segment.
-    #[must_use]
-    pub fn is_degraded(&self) -> bool {
-        self.estimator.conditions().into_iter().any(Condition::is_degraded)
-    }
 }
 
-/// Replays rows sampled at `rate_hz`; `visit` receives every row with its outcome, and whether the estimator reports a
-/// condition of any segment.
+/// Replays rows sampled at `rate_hz`; `visit` receives every row with its outcome.
 ///
 /// # Errors
 /// [`FileError`] where the file is no table.
@@ -123,14 +120,13 @@ pub fn replay(
     table: &ArmFile,
     rate_hz: f64,
     rows: impl Iterator<Item = Row>,
-    mut visit: impl FnMut(&Row, &Outcome<Q>, bool),
+    mut visit: impl FnMut(&Row, &Outcome<Q>),
 ) -> Result<(), FileError> {
     let baked = table.bake::<Q>(rate_hz)?;
     let config = baked.config();
     let mut replayer = Replayer::new(&config);
     for row in rows {
-        let outcome = replayer.step(&row);
-        visit(&row, &outcome, replayer.is_degraded());
+        visit(&row, &replayer.step(&row));
     }
     Ok(())
 }

@@ -54,7 +54,7 @@ const SEGMENT: SegmentConfig<Q> = SegmentConfig {
     coord: FILTER,
 };
 
-static SEGMENTS: [SegmentConfig<Q>; 12] = [SEGMENT; 12];
+static SEGMENTS: [SegmentConfig<Q>; 8] = [SEGMENT; 8];
 
 const fn table(segments: usize) -> ArmConfig<'static, Q> {
     let anchor = AnchorConfig {
@@ -123,8 +123,8 @@ pub static BIAS_FILTER_TABLE: ArmConfig<'static, Q> = ArmConfig {
     ..table(6)
 };
 
-/// Tables of 1, 2, 6 and 12 segments.
-pub static TABLES: [ArmConfig<'static, Q>; 4] = [table(1), table(2), table(6), table(12)];
+/// Tables of 1, 2, 6 and 8 segments.
+pub static TABLES: [ArmConfig<'static, Q>; 4] = [table(1), table(2), table(6), table(8)];
 
 /// All steps of one arm.
 #[inline(never)]

@@ -43,8 +43,8 @@ impl Evaluation {
     pub fn of<R: Iterator<Item = Row>>(tables: &Tables, rate_hz: f64, rows: impl Fn() -> R) -> Result<Self, FileError> {
         let score = || Score::new(tables.own.length_mm());
         let mut evaluation = Self { own: score(), paper: score(), contact: Vec::new(), flagged: 0 };
-        replay(&tables.own, rate_hz, rows(), |row, outcome, is_degraded| evaluation.add(row, outcome, is_degraded))?;
-        replay(&tables.paper, rate_hz, rows(), |row, outcome, _| evaluation.paper.add(row, outcome))?;
+        replay(&tables.own, rate_hz, rows(), |row, outcome| evaluation.add(row, outcome))?;
+        replay(&tables.paper, rate_hz, rows(), |row, outcome| evaluation.paper.add(row, outcome))?;
         Ok(evaluation)
     }
 
@@ -53,10 +53,10 @@ impl Evaluation {
         Self::of(tables, session.rate_hz, || session.rows())
     }
 
-    fn add(&mut self, row: &Row, outcome: &Outcome<Q>, is_degraded: bool) {
+    fn add(&mut self, row: &Row, outcome: &Outcome<Q>) {
         self.own.add(row, outcome);
         self.contact.push(in_contact(outcome));
-        self.flagged += usize::from(is_degraded);
+        self.flagged += usize::from(outcome.conditions.iter().any(|condition| condition.is_degraded()));
     }
 
     /// The figures.
@@ -79,7 +79,7 @@ impl Evaluation {
 /// RMSE of fusion by one table, mm.
 pub fn fusion_mm(table: &ArmFile, session: &TwinSession) -> Result<f64, FileError> {
     let mut score = Score::new(table.length_mm());
-    session.replay(table, |row, outcome, _| score.add(row, outcome))?;
+    session.replay(table, |row, outcome| score.add(row, outcome))?;
     Ok(score.figures()[Method::Fusion as usize].tip_rmse_mm.unwrap_or(f64::INFINITY))
 }
 

@@ -8,7 +8,7 @@ use virtual_due::{CYCLES_PER_SECOND, Machine, Rig};
 use crate::Figure;
 
 /// The arms that the firmware steps, in its order, and the samples of each.
-const SEGMENTS: [u32; 4] = [1, 2, 6, 12];
+const SEGMENTS: [u32; 4] = [1, 2, 6, 8];
 const STEPS: usize = 1_000;
 /// Samples at rest that follow where the bias filter runs.
 const REST: usize = 3_000;

@@ -27,7 +27,7 @@ impl Trace {
     /// Replays a session.
     pub fn of(session: &TwinSession, table: &ArmFile) -> Result<Self, FileError> {
         let mut moments = Vec::new();
-        session.replay(table, |row, outcome, is_flagged| {
+        session.replay(table, |row, outcome| {
             let mut honesty = Honesty::default();
             honesty.add(row, outcome);
             let error_m = tip_errors_m(row, outcome)[Method::Fusion as usize];
@@ -35,7 +35,7 @@ impl Trace {
                 time_s: row.sample.time_us as f64 / 1e6,
                 error_mm: error_m.map_or(f64::INFINITY, |error_m| error_m * 1e3),
                 is_inside: honesty.figures().tip_inside_percent.is_some_and(|percent| percent > 50.0),
-                is_flagged,
+                is_flagged: outcome.conditions.iter().any(|condition| condition.is_degraded()),
             });
         })?;
         // None before the tare is complete.
