@@ -4,7 +4,7 @@ use std::ops::RangeInclusive;
 
 use estimator_core::{
     BendErrorConfig, BendMap, BendSensorConfig, CurveMap, Lag, MemoryConfig, Play, Q, QuadraticMap,
-    SENSORS_PER_SEGMENT, Scalar, TIME_UNIT_S,
+    SENSORS_PER_SEGMENT, TIME_UNIT_S,
 };
 use serde::{Deserialize, Serialize};
 
@@ -110,15 +110,15 @@ impl MemoryKeys {
         Ok(())
     }
 
-    fn bake<S: Scalar>(&self) -> MemoryConfig<S> {
+    fn bake(&self) -> MemoryConfig<Q> {
         let lag = |k: usize| Lag {
-            time: S::from_f64(self.lag_s[k] / TIME_UNIT_S),
-            rate: S::from_f64(TIME_UNIT_S / self.lag_s[k]),
-            weight: S::from_f64(self.lag_weight[k]),
+            time: Q::from_f64(self.lag_s[k] / TIME_UNIT_S),
+            rate: Q::from_f64(TIME_UNIT_S / self.lag_s[k]),
+            weight: Q::from_f64(self.lag_weight[k]),
         };
         let play = |k: usize| Play {
-            radius: S::from_f64(self.play_deg[k].to_radians()),
-            weight: S::from_f64(self.play_weight[k]),
+            radius: Q::from_f64(self.play_deg[k].to_radians()),
+            weight: Q::from_f64(self.play_weight[k]),
         };
         MemoryConfig { lags: [lag(0), lag(1)], plays: [play(0), play(1)] }
     }

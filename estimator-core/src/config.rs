@@ -79,7 +79,7 @@ pub struct BendSensorConfig<S> {
     /// Bend angle of the counts.
     pub map: BendMap<S>,
     /// Compensation of creep and hysteresis, if any.
-    pub memory: Option<MemoryConfig<S>>,
+    pub memory: Option<MemoryConfig<Q>>,
 }
 
 /// V–Orient map of one bend sensor.

@@ -274,7 +274,7 @@ impl<'t, S: FusedOps, const N: usize, const W: usize> Estimator<'t, S, N, W> {
 
     fn is_measured(&self, i: usize) -> bool {
         let measured = self.measured.get(i).is_some_and(|measured| measured.imu || measured.bend);
-        measured || self.drift.has_bias_filter
+        self.drift.bias_filter().map_or(measured, BiasFilter::is_started)
     }
 
     /// Covariance of all headings.

@@ -195,6 +195,11 @@ impl<F: Scalar, const N: usize> BiasFilter<F, N> {
         smaller(grown, track.offset_prior + F::from_q(config.mean))
     }
 
+    /// Whether the tare is complete, so that the covariance is known.
+    pub fn is_started(&self) -> bool {
+        self.is_started
+    }
+
     /// Condition of segment `i`.
     pub fn condition(&self, i: usize) -> Condition {
         let Some(track) = self.segments.get(i).filter(|_| self.is_started) else { return Condition::default() };
@@ -236,7 +241,9 @@ impl<S: Scalar, F: Scalar, const N: usize> DriftCorrection<S, N> for BiasFilter<
             track.take_bend(*angles, dt, sensed.time_us);
         }
         if !self.is_started && !self.tare(config, filter, sensed) {
-            return CorrectedArm::UNKNOWN;
+            // Before the IMUs have a zero, the bend sensors alone.
+            let fused = sensed.bend.map(|bend| bend.mean.map(S::to_turns));
+            return CorrectedArm { fused, ..CorrectedArm::UNKNOWN };
         }
         self.track_headings(config, sensed);
         self.fill_absent_headings(config.segments.len(), dt);

@@ -2,12 +2,14 @@
 
 use crate::config::{SENSORS_PER_SEGMENT, SegmentConfig};
 use crate::numeric::fused::FusedOps;
+use crate::numeric::q::Q;
 use crate::sensing::hysteresis::{Memory, PrandtlIshlinskii};
 
 /// State of a segment's bend sensors.
 #[derive(Debug, Clone, Copy)]
 pub struct BendSensors<S> {
-    memory: [Memory<S>; SENSORS_PER_SEGMENT],
+    /// In fixed point whatever `S` is: its recursion rounds, and every number type must have the same angles.
+    memory: [Memory<Q>; SENSORS_PER_SEGMENT],
     hysteresis: PrandtlIshlinskii<S>,
 }
 
@@ -41,7 +43,10 @@ impl<S: FusedOps> BendSensors<S> {
             let (Some(sensor), Some(counts)) = (sensor, counts) else { continue };
             let mapped = sensor.map.angle(counts);
             *angle = match (mapped, &sensor.memory) {
-                (Some(theta), Some(config)) => Some(memory.compensate(config, theta, time_us)),
+                (Some(theta), Some(config)) => {
+                    let compensated = memory.compensate(config, theta.to_q(), time_us);
+                    Some(theta + S::from_q(compensated - theta.to_q()))
+                }
                 (mapped, _) => mapped,
             };
             angles.is_extrapolated |= sensor.map.is_extrapolated(counts);

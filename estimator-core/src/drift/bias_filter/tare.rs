@@ -10,7 +10,7 @@ use crate::numeric::variance::{degrees, larger, scaled_square, smaller, variance
 /// A tare is bad where headings spread by more than this, or the bend sensors' root mean square is this far off the reference
 /// pose; its straightness is the last one.
 const STILL: Constant = degrees(1.5);
-const BENT: Constant = variance_deg(10.0);
+const BENT: Constant = variance_deg(6.0);
 const BAD_TARE: Constant = variance_deg(12.0);
 
 /// Sums of the tare.
