@@ -6,6 +6,7 @@ use crate::drift::bend_monitor::TrustedBend;
 use crate::drift::bias_filter::{BiasFilter, MAX_RATIO, RestChange, SegmentTrack, bounded_ratio, since};
 use crate::drift::bias_state::{BIAS, OFFSET};
 use crate::drift::rest::RestWindow;
+use crate::numeric::phase::Turns;
 use crate::numeric::scalar::{Constant, Scalar};
 use crate::numeric::variance::{degrees, is_beyond, larger, magnitude, scaled_square, smaller, variance_deg};
 
@@ -65,13 +66,32 @@ impl<F: Scalar, const N: usize> BiasFilter<F, N> {
         self.check_bend(i, &segment.bend_error, *angles, are_headings_read, time_us);
         self.grow_offset(i, filter, &segment.bend_error);
         self.predict(i, filter, time_us);
+        let biases = self.state.bias;
         self.use_tare(i, &segment.bend_error);
         self.learn_rate(i);
         let bend = self.segments.get(i).and_then(|track| track.bend).filter(|_| !bend.is_extrapolated);
         if let Some(bend) = bend.filter(|_| are_headings_read) {
             self.update(i, &segment.bend_error, bend, time_us);
         }
+        self.follow_biases(&biases);
         true
+    }
+
+    /// Moves the headings with the biases that an update has changed, so that the next readings are held against the new ones.
+    fn follow_biases(&mut self, before: &[Turns; N]) {
+        if self.state.bias == *before {
+            return;
+        }
+        let (mut below, mut below_moved) = (Turns::ZERO, Turns::ZERO);
+        for (track, (bias, before)) in self.segments.iter_mut().zip(self.state.bias.iter().zip(before)) {
+            let moved = *before - *bias;
+            track.heading = track.heading + moved;
+            track.theta = F::from_phase((track.heading - below).phase());
+            let turned: F = F::from_phase((moved - below_moved).phase());
+            track.counted_theta += turned;
+            track.turn_theta += turned;
+            (below, below_moved) = (track.heading, moved);
+        }
     }
 
     /// Holds the bend sensors of segment `i` against the IMUs: steps, departures, sensors that are stuck. Its signals go to the
