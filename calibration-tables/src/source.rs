@@ -9,8 +9,11 @@ use crate::bake::Baked;
 const CRC_32: crc::Crc<u32> = crc::Crc::<u32>::new(&crc::CRC_32_ISO_HDLC);
 
 /// Names that the source uses.
-const IMPORTS: &str = "use estimator_core::BendMap::{Curve, Quadratic};
+const IMPORTS: &str = "#[allow(unused_imports)] // A table uses some of them.
+use estimator_core::BendMap::{Curve, Quadratic};
+#[allow(unused_imports)]
 use estimator_core::OffsetAt::{End, Start};
+#[allow(unused_imports)]
 use estimator_core::{
     AnchorConfig, ArmConfig, BendErrorConfig, BendSensorConfig, BiasFilterConfig, ContactConfig, CoupledSegment, CurveMap,
     KalmanParams, Lag, MemoryConfig, Play, Q, QuadraticMap, SegmentConfig, Turns, UncertaintyConfig,

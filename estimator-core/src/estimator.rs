@@ -39,12 +39,13 @@ pub struct Estimator<'t, S, const N: usize, const W: usize> {
     fused: Shape<S, N>,
 }
 
-/// Drift correction by what the configuration asks for. The bias filter works in fixed point whatever `S` is, so that every
-/// number type takes the same decisions.
+/// Both drift corrections, of which the configuration selects one: a static has room for both, and a small stack for
+/// neither. The bias filter works in fixed point whatever `S` is, so that every number type takes the same decisions.
 #[derive(Debug, Clone)]
-enum Drift<const N: usize, const W: usize> {
-    MovingAverage(MovingAverage<N, W>),
-    BiasFilter(BiasFilter<Q, N>),
+struct Drift<const N: usize, const W: usize> {
+    moving_average: MovingAverage<N, W>,
+    bias_filter: BiasFilter<Q, N>,
+    has_bias_filter: bool,
 }
 
 /// Which of a segment's two angles a sample has.
@@ -61,10 +62,27 @@ struct Processed<S, const N: usize> {
 }
 
 impl<const N: usize, const W: usize> Drift<N, W> {
+    const fn new() -> Self {
+        let zero = Q::from_bits(0);
+        Self { moving_average: MovingAverage::new(), bias_filter: BiasFilter::new(zero), has_bias_filter: false }
+    }
+
+    fn start(&mut self, has_bias_filter: bool) {
+        self.moving_average.start();
+        self.bias_filter.start();
+        self.has_bias_filter = has_bias_filter;
+    }
+
+    /// The bias filter, if it corrects the drift.
+    fn bias_filter(&self) -> Option<&BiasFilter<Q, N>> {
+        self.has_bias_filter.then_some(&self.bias_filter)
+    }
+
     fn correct<S: FusedOps>(&mut self, config: &ArmConfig<S>, sensed: &SensedArm<S, N>) -> CorrectedArm<N> {
-        match self {
-            Self::MovingAverage(anchors) => anchors.correct(config, sensed),
-            Self::BiasFilter(filter) => filter.correct(config, sensed),
+        if self.has_bias_filter {
+            self.bias_filter.correct(config, sensed)
+        } else {
+            self.moving_average.correct(config, sensed)
         }
     }
 }
@@ -89,7 +107,7 @@ impl<'t, S: FusedOps, const N: usize, const W: usize> Estimator<'t, S, N, W> {
             has_bend_sensors: false,
             decimator: Decimator::new(),
             segments: Vec::new(),
-            drift: Drift::MovingAverage(MovingAverage::new()),
+            drift: Drift::new(),
             contact: ContactMonitor::new(),
             measured: [Measured { imu: false, bend: false }; N],
             fused: Vec::new(),
@@ -116,10 +134,7 @@ impl<'t, S: FusedOps, const N: usize, const W: usize> Estimator<'t, S, N, W> {
             return Err(ConfigError::Segments { found, room: N });
         }
         self.has_bend_sensors = config.segments.iter().any(|segment| segment.bend.iter().any(Option::is_some));
-        self.drift = match config.bias_filter {
-            Some(_) => Drift::BiasFilter(BiasFilter::new()),
-            None => Drift::MovingAverage(MovingAverage::new()),
-        };
+        self.drift.start(config.bias_filter.is_some());
         for segment in config.segments {
             // There is room: it was checked.
             let _ = self.segments.push(SegmentState::new(segment, config.tare_samples));
@@ -183,7 +198,7 @@ impl<'t, S: FusedOps, const N: usize, const W: usize> Estimator<'t, S, N, W> {
 
     /// Fusion, and forward kinematics of what it gives.
     fn fuse(&mut self, sensed: &SensedArm<S, N>, corrected: &CorrectedArm<N>) {
-        let filters = matches!(self.drift, Drift::MovingAverage(_));
+        let filters = !self.drift.has_bias_filter;
         let angles = sensed.bend.iter().zip(corrected.imu.iter().zip(corrected.fused)).zip(&mut self.measured);
         for (segment, ((bend, (theta_c, fused)), measured)) in self.segments.iter_mut().zip(angles) {
             if filters {
@@ -226,10 +241,7 @@ impl<'t, S: FusedOps, const N: usize, const W: usize> Estimator<'t, S, N, W> {
     /// Conditions of the newest sample, from the base to the tip; none hold behind the moving-average anchor.
     #[must_use]
     pub fn conditions(&self) -> Conditions<N> {
-        let condition = |i| match &self.drift {
-            Drift::MovingAverage(_) => Condition::default(),
-            Drift::BiasFilter(filter) => filter.condition(i),
-        };
+        let condition = |i| self.drift.bias_filter().map_or(Condition::default(), |filter| filter.condition(i));
         let mut conditions = Vec::new();
         for i in 0..self.segments.len() {
             let _ = conditions.push(condition(i));
@@ -262,14 +274,14 @@ impl<'t, S: FusedOps, const N: usize, const W: usize> Estimator<'t, S, N, W> {
 
     fn is_measured(&self, i: usize) -> bool {
         let measured = self.measured.get(i).is_some_and(|measured| measured.imu || measured.bend);
-        measured || matches!(self.drift, Drift::BiasFilter(_))
+        measured || self.drift.has_bias_filter
     }
 
     /// Covariance of all headings.
     fn heading_covariance(&self, sources: &UncertaintyConfig) -> [[Q; N]; N] {
-        let mut headings = match &self.drift {
-            Drift::MovingAverage(_) => self.anchored_covariance(sources),
-            Drift::BiasFilter(filter) => self.filtered_covariance(sources, filter),
+        let mut headings = match self.drift.bias_filter() {
+            Some(filter) => self.filtered_covariance(sources, filter),
+            None => self.anchored_covariance(sources),
         };
         for (i, row) in headings.iter_mut().enumerate() {
             if let Some(diagonal) = row.get_mut(i) {

@@ -87,7 +87,7 @@ struct Driven<S> {
 
 impl<S: Scalar> Driven<S> {
     fn new() -> Self {
-        let mut state = BiasState::new();
+        let mut state = BiasState::new(S::zero());
         state.initialise(&config(), S::from_f64(STRAIGHTNESS), &[S::from_f64(OFFSET); N], 0);
         Self { state }
     }
@@ -213,7 +213,7 @@ fn rest_after_a_long_outage_leaves_the_covariance_positive() {
 #[test]
 fn an_update_of_unknown_states_leaves_the_covariance_positive() {
     let config = BiasFilterConfig { initial_bias: Q::from_f64(16.0), ..config() };
-    let mut state = BiasState::<Q, N>::new();
+    let mut state = BiasState::<Q, N>::new(Scalar::from_f64(0.0));
     state.initialise(&config, Q::from_f64(0.0), &[Q::from_f64(16.0); N], 0);
     let innovation = state.innovation(1);
     state.update(&innovation, Q::from_f64(0.1), Q::from_f64(1.0));

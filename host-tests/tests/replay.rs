@@ -5,7 +5,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use estimator_core::{FusedOps, Q, Scalar};
+use estimator_core::{FusedOps, Q};
 use proprio::estimates::{write_header, write_row};
 use proprio::replay::{NamedTable, Outcome, replay};
 use proprio::score::Score;

@@ -126,3 +126,23 @@ fn the_embedded_description_is_an_arm_description() {
     let arm = parse(calibration_tables::PLANAR_6_ARM);
     assert!(matches!(arm.bend_sensors(), Err(FileError::NotCalibrated(1))));
 }
+
+#[test]
+fn tables_of_version_0_1_are_accepted_and_written_with_the_keys_of_today() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../host-tests/tables");
+    for name in ["version-0.1.toml", "version-0.1-anchor.toml"] {
+        let text = std::fs::read_to_string(folder.join(name)).expect("the table is committed");
+        let table = parse(&text);
+        let [first, second, ..] = &table.segments[..] else { panic!("six segments") };
+        assert!(first.coupled_to.is_none() && second.coupled_to.is_some(), "{name}: alike");
+        let contact = table.contact.as_ref().expect("it is in the file");
+        assert!((contact.coupling_deg - 4.0).abs() < f64::EPSILON, "{name}: alike_deg");
+        let drift = table.drift.as_ref().expect("it is in the file");
+        assert!((drift.rate_random_walk_deg_per_s_sqrt_s - 2e-4).abs() < f64::EPSILON, "{name}: walk_deg_per_s");
+        let written = table.to_toml();
+        assert_eq!(parse(&written), table);
+        for old in ["alike", "half_width_deg", "drift_share", "gate_deg", "patience_s"] {
+            assert!(!written.contains(old), "{name}: {old} is written again");
+        }
+    }
+}

@@ -2,7 +2,8 @@
 
 use calibration_tables::{ArmFile, FileError};
 use estimator_core::{
-    BiasFilterConfig, Estimator, Method, OffsetAt, Q, SENSORS_PER_SEGMENT, Sample, SegmentConfig, VARIANCE_SCALE,
+    BiasFilterConfig, Estimator, ImuReading, Method, OffsetAt, Q, SENSORS_PER_SEGMENT, Sample, SegmentConfig,
+    VARIANCE_SCALE,
 };
 
 use super::common::{DESCRIPTION, TABLE, edited, parse};
@@ -177,10 +178,14 @@ fn the_reference_table_runs() {
     let baked = file.bake::<Q>(100.0).expect("a table");
     let table = baked.config();
     let mut estimator = Estimator::<Q, 6, 100>::new(&table).expect("it has six segments");
-    let mut sample = Sample::missing(0);
-    sample.bend = [[Some(2300); SENSORS_PER_SEGMENT]; 6];
-    let estimate = estimator.update_full(&sample);
-    let tip = estimator.shape(&estimate, Method::Fusion)[5].end.expect("every bend sensor was read");
+    let sample = |k: u64| Sample {
+        bend: [[Some(2300); SENSORS_PER_SEGMENT]; 6],
+        imu: [Some(ImuReading::from_bno055([16_384, 0, 0, 0])); 6],
+        ..Sample::missing(k * 10_000)
+    };
+    let tare = u64::from(table.tare_samples);
+    let estimate = (0..=tare).map(|k| estimator.update_full(&sample(k))).last().expect("a sample");
+    let tip = estimator.shape(&estimate, Method::Fusion)[5].end.expect("every sensor was read");
     assert!(tip.x.to_f64().hypot(tip.y.to_f64()) < 0.5821, "no farther than the straight arm is long");
 }
 

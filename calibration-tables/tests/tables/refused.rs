@@ -252,10 +252,10 @@ fn the_table_that_all_these_are_made_of_is_good() {
 
 #[test]
 fn drift_keys_are_checked() {
-    let drift = |line: &str| format!("[drift]\nkind = \"observer\"\n{line}\n[[segment]]");
-    refuses("[[segment]]", &drift("gate_deg = 0.0"), "drift.gate_deg", "0.0");
-    refuses("[[segment]]", &drift("noise_deg2_s = -1.0"), "drift.noise_deg2_s", "-1.0");
-    refuses("[[segment]]", &drift("slope = nan"), "drift.slope", "NaN");
+    let drift = |line: &str| format!("[drift]\nkind = \"kalman\"\n{line}\n[[segment]]");
+    refuses("[[segment]]", &drift("rate_deg_per_s = 0.0"), "drift.rate_deg_per_s", "0.0");
+    refuses("[[segment]]", &drift("start_deg = -1.0"), "drift.start_deg", "-1.0");
+    refuses("[[segment]]", &drift("offset_deg = nan"), "drift.offset_deg", "NaN");
     let kind = error("[[segment]]", "[drift]\nkind = \"average\"\n[[segment]]");
     assert!(kind.to_string().contains("average"), "{kind}");
 }
@@ -263,16 +263,16 @@ fn drift_keys_are_checked() {
 #[test]
 fn keys_of_contact_and_uncertainty_are_checked() {
     let keys = |section: &str, line: &str| format!("[{section}]\n{line}\n[[segment]]");
-    refuses("[[segment]]", &keys("contact", "alike_deg = 0.0"), "contact.alike_deg", "0.0");
-    let rest = "drift_share = 0.1\nbend_deg = 3.0\ncontact_deg = 1.0\nheading_deg = 0.5\nend_mm = 0.5";
+    refuses("[[segment]]", &keys("contact", "coupling_deg = 0.0"), "contact.coupling_deg", "0.0");
+    let rest = "bias_share = 0.1\nbend_deg = 3.0\ncontact_deg = 1.0\nheading_deg = 0.5\nend_mm = 0.5";
     let line = format!("theta_deg = 10.0\n{rest}");
     refuses("[[segment]]", &keys("uncertainty", &line), "uncertainty.theta_deg", "10.0");
 }
 
 #[test]
-fn only_an_earlier_segment_is_alike() {
+fn a_segment_is_coupled_to_an_earlier_one_alone() {
     for number in [0, 1, 2] {
-        let alike = format!("length_mm = 80.0\nalike = {{ segment = {number}, ratio = 1.0 }}");
-        refuses("length_mm = 80.0", &alike, "segment[1].alike.segment", &number.to_string());
+        let coupled = format!("length_mm = 80.0\ncoupled_to = {{ segment = {number}, ratio = 1.0 }}");
+        refuses("length_mm = 80.0", &coupled, "segment[1].coupled_to.segment", &number.to_string());
     }
 }

@@ -1,9 +1,8 @@
 //! A file is written and read without loss: every number to its last bit, every name to its last character.
 
 use calibration_tables::{
-    AnchorKeys, ArmFile, BendErrorKeys, BendKeys, ContactKeys, CoupledKeys, CurveKeys, DriftKeys, DriftKind,
-    DriftTuningKeys, MemoryKeys, NoiseKeys, PlayKeys, RmseKeys, SegmentKeys, Side, Stopped, TareKeys, TuningKeys,
-    UncertaintyKeys,
+    AnchorKeys, ArmFile, BendKeys, ContactKeys, CoupledKeys, DriftKeys, DriftKind, DriftTuningKeys, NoiseKeys,
+    PlayKeys, RmseKeys, SegmentKeys, Side, Stopped, TareKeys, TuningKeys, UncertaintyKeys,
 };
 use proptest::option;
 use proptest::prelude::*;

@@ -115,8 +115,7 @@ struct SegmentTrack<F> {
 }
 
 impl<F: Scalar> SegmentTrack<F> {
-    fn new() -> Self {
-        let zero = F::zero();
+    const fn new(zero: F) -> Self {
         Self {
             gate: HeadingGate::new(zero),
             monitor: BendMonitor::new(zero),
@@ -157,18 +156,30 @@ impl<F: Scalar> SegmentTrack<F> {
 }
 
 impl<F: Scalar, const N: usize> BiasFilter<F, N> {
-    /// At the start of a session.
-    pub fn new() -> Self {
+    /// At the start of a session. The number's `zero` is a parameter, so that a static can hold the filter.
+    pub const fn new(zero: F) -> Self {
         Self {
-            state: BiasState::new(),
-            tare: TareStatistics::new(),
-            segments: [SegmentTrack::new(); N],
-            rest: RestDetector::new(),
+            state: BiasState::new(zero),
+            tare: TareStatistics::new(zero),
+            segments: [SegmentTrack::new(zero); N],
+            rest: RestDetector::new(zero),
             is_started: false,
             is_tare_bad: false,
             last_us: None,
             turn: 0,
         }
+    }
+
+    /// Forgets everything, at the start of a session: in parts, as a whole new one would not fit a small stack.
+    pub fn start(&mut self) {
+        let zero = F::zero();
+        self.state = BiasState::new(zero);
+        self.tare = TareStatistics::new(zero);
+        for track in &mut self.segments {
+            *track = SegmentTrack::new(zero);
+        }
+        self.rest = RestDetector::new(zero);
+        (self.is_started, self.is_tare_bad, self.last_us, self.turn) = (false, false, None, 0);
     }
 
     /// Covariance of two headings, [`VARIANCE_SCALE`](crate::VARIANCE_SCALE) times rad².

@@ -71,14 +71,13 @@ fn eighth<S: Scalar>(value: S) -> S {
 
 impl<S: Scalar, const N: usize> Default for BiasState<S, N> {
     fn default() -> Self {
-        Self::new()
+        Self::new(S::zero())
     }
 }
 
 impl<S: Scalar, const N: usize> BiasState<S, N> {
-    /// Nothing known: zero states without variance.
-    pub fn new() -> Self {
-        let zero = S::zero();
+    /// Nothing known: states of `zero` without variance.
+    pub const fn new(zero: S) -> Self {
         Self {
             bias: [Turns::ZERO; N],
             rate: [zero; N],
@@ -91,7 +90,7 @@ impl<S: Scalar, const N: usize> BiasState<S, N> {
     /// The prior at the end of a tare. Each IMU's zero and each segment's straightness have an error of their own; those of
     /// the segments add up along the arm.
     pub fn initialise(&mut self, config: &BiasFilterConfig, straightness: S, offsets: &[S; N], time_us: u64) {
-        *self = Self { predicted_at_us: [time_us; N], ..Self::new() };
+        *self = Self { predicted_at_us: [time_us; N], ..Self::new(S::zero()) };
         for (i, ([biases, rates, own_offsets], offset)) in self.covariance.iter_mut().zip(offsets).enumerate() {
             for (j, [bias, ..]) in biases.iter_mut().enumerate() {
                 *bias = S::from_int(1 + i.min(j) as i32) * straightness;

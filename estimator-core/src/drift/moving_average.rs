@@ -123,6 +123,15 @@ impl<const N: usize, const W: usize> MovingAverage<N, W> {
     }
 }
 
+impl<const N: usize, const W: usize> MovingAverage<N, W> {
+    /// Forgets everything, at the start of a session.
+    pub fn start(&mut self) {
+        for anchor in &mut self.anchors {
+            *anchor = MovingAverageAnchor::new();
+        }
+    }
+}
+
 impl<S: Scalar, const N: usize, const W: usize> DriftCorrection<S, N> for MovingAverage<N, W> {
     fn correct(&mut self, config: &ArmConfig<S>, sensed: &SensedArm<S, N>) -> CorrectedArm<N> {
         let mut corrected = CorrectedArm::UNKNOWN;

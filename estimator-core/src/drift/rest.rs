@@ -52,8 +52,8 @@ pub struct RestWindow<S, const N: usize> {
 }
 
 impl<S: Scalar> Mean<S> {
-    fn new() -> Self {
-        Self { start: None, filtered: S::zero(), lowest: S::zero(), highest: S::zero(), is_read: false }
+    const fn new(zero: S) -> Self {
+        Self { start: None, filtered: zero, lowest: zero, highest: zero, is_read: false }
     }
 
     /// Takes a value; `share` is that of the newest one in the mean.
@@ -70,15 +70,15 @@ impl<S: Scalar> Mean<S> {
     fn finish(&mut self) -> Option<(S, S)> {
         let start = self.start.filter(|_| self.is_read)?;
         let (change, range) = (self.filtered, self.highest - self.lowest);
-        *self = Self { start: Some(start + change.to_turns()), ..Self::new() };
+        *self = Self { start: Some(start + change.to_turns()), ..Self::new(S::zero()) };
         Some((change, range))
     }
 }
 
 impl<S: Scalar, const N: usize> RestDetector<S, N> {
     /// At the start of a session.
-    pub fn new() -> Self {
-        Self { headings: [Mean::new(); N], bend: [Mean::new(); N], window_from_us: None, quiet_us: 0 }
+    pub const fn new(zero: S) -> Self {
+        Self { headings: [Mean::new(zero); N], bend: [Mean::new(zero); N], window_from_us: None, quiet_us: 0 }
     }
 
     /// Whether the shape is held.

@@ -6,10 +6,11 @@
 //! Prandtl–Ishlinskii model). The difference of the input and a lag does the same for creep and relaxation.
 
 use crate::config::{Lag, MemoryConfig, PLAYS, Play};
+use crate::numeric::fused::FusedOps;
 use crate::numeric::scalar::Scalar;
 
 impl<S: Scalar> Play<S> {
-    /// Moves the play's output `y` with the input `x`; gives the weighted difference.
+    /// Moves the play's output `y` with the input `x`; gives the difference of both.
     fn update(&self, y: &mut S, x: S) -> S {
         let ahead = x - *y;
         let ahead = if ahead.is_within(self.radius) {
@@ -20,7 +21,7 @@ impl<S: Scalar> Play<S> {
             self.radius
         };
         *y = x - ahead;
-        self.weight * ahead
+        ahead
     }
 }
 
@@ -40,7 +41,7 @@ pub struct PrandtlIshlinskii<S> {
     outputs: Option<[S; PLAYS]>,
 }
 
-impl<S: Scalar> PrandtlIshlinskii<S> {
+impl<S: FusedOps> PrandtlIshlinskii<S> {
     /// Before the first angle.
     pub const fn new() -> Self {
         Self { outputs: None }
@@ -49,7 +50,11 @@ impl<S: Scalar> PrandtlIshlinskii<S> {
     /// The compensated angle.
     pub fn compensate(&mut self, plays: &[Play<S>; PLAYS], theta: S) -> S {
         let outputs = self.outputs.get_or_insert([theta; PLAYS]);
-        plays.iter().zip(outputs).fold(theta, |sum, (play, output)| sum + play.update(output, theta))
+        let mut differences = [S::zero(); PLAYS];
+        for ((difference, play), output) in differences.iter_mut().zip(plays).zip(outputs) {
+            *difference = play.update(output, theta);
+        }
+        theta + S::dot(plays.map(|play| play.weight), differences)
     }
 }
 
@@ -81,8 +86,8 @@ impl<S: Scalar> Memory<S> {
         state.read_at_us = time_us;
         let lags = config.lags.iter().zip(&mut state.lags).map(|(lag, output)| lag.update(output, theta, dt));
         let sum = lags.fold(theta, |sum, difference| sum + difference);
-        let plays = config.plays.iter().zip(&mut state.plays).map(|(play, output)| play.update(output, theta));
-        plays.fold(sum, |sum, difference| sum + difference)
+        let plays = config.plays.iter().zip(&mut state.plays);
+        plays.fold(sum, |sum, (play, output)| sum + play.weight * play.update(output, theta))
     }
 }
 

@@ -56,8 +56,8 @@ impl<F: Scalar> SegmentTare<F> {
 }
 
 impl<F: Scalar, const N: usize> TareStatistics<F, N> {
-    pub fn new() -> Self {
-        let segment = SegmentTare { first: None, range: [F::zero(); 2], bend_sum: Turns::ZERO, bend_count: 0 };
+    pub const fn new(zero: F) -> Self {
+        let segment = SegmentTare { first: None, range: [zero; 2], bend_sum: Turns::ZERO, bend_count: 0 };
         Self { samples: 0, segments: [segment; N] }
     }
 

@@ -54,7 +54,7 @@ const SEGMENT: SegmentConfig<Q> = SegmentConfig {
     coord: FILTER,
 };
 
-static SEGMENTS: [SegmentConfig<Q>; 16] = [SEGMENT; 16];
+static SEGMENTS: [SegmentConfig<Q>; 8] = [SEGMENT; 8];
 
 const fn table(segments: usize) -> ArmConfig<'static, Q> {
     let anchor = AnchorConfig {
@@ -70,7 +70,8 @@ const fn table(segments: usize) -> ArmConfig<'static, Q> {
 const PLAY: Play<Q> = Play { radius: Q::from_f64(0.01), weight: Q::from_f64(0.1) };
 
 /// A lag of a minute.
-const LAG: Lag<Q> = Lag { rate: Q::from_f64(TIME_UNIT_S / 60.0), weight: Q::from_f64(0.05) };
+const LAG: Lag<Q> =
+    Lag { time: Q::from_f64(60.0 / TIME_UNIT_S), rate: Q::from_f64(TIME_UNIT_S / 60.0), weight: Q::from_f64(0.05) };
 
 /// The quadratic's slope as a curve, with creep and hysteresis of the sensor.
 const CURVE_SENSOR: BendSensorConfig<Q> = {
@@ -122,8 +123,8 @@ pub static BIAS_FILTER_TABLE: ArmConfig<'static, Q> = ArmConfig {
     ..table(6)
 };
 
-/// Tables of 1, 2, 6, 12 and 16 segments.
-pub static TABLES: [ArmConfig<'static, Q>; 5] = [table(1), table(2), table(6), table(12), table(16)];
+/// Tables of 1, 2, 6 and 8 segments.
+pub static TABLES: [ArmConfig<'static, Q>; 4] = [table(1), table(2), table(6), table(8)];
 
 /// All steps of one arm.
 #[inline(never)]

@@ -36,12 +36,14 @@ impl Tables {
     /// Calibrates the arm of a sweep.
     pub fn of_sweep(sweep: &Path, arm: &ArmFile) -> Result<Self, Problem> {
         let quadratic = CalibrationOptions { maps: MapMode::Quadratic, hysteresis: HysteresisMode::Never };
-        let anchored = ArmFile {
-            drift: Some(DriftKeys { kind: DriftKind::Anchor, ..DriftKeys::kalman() }),
-            ..arm.clone()
-        };
+        let anchored =
+            ArmFile { drift: Some(DriftKeys { kind: DriftKind::Anchor, ..DriftKeys::kalman() }), ..arm.clone() };
         let table = |file: &ArmFile, options| -> Result<Calibration, Problem> {
-            Ok(calibrate(&[sweep.to_owned()], &NamedTable { file: file.clone(), path: Path::new("planar-6.toml") }, options)?)
+            Ok(calibrate(
+                &[sweep.to_owned()],
+                &NamedTable { file: file.clone(), path: Path::new("planar-6.toml") },
+                options,
+            )?)
         };
         let Calibration { table: paper, sensors, .. } = table(&anchored, quadratic)?;
         Ok(Self {

@@ -43,7 +43,10 @@ impl Day {
     /// The table.
     pub fn write(&self, page: &mut String) -> fmt::Result {
         writeln!(page, "{DAY}")?;
-        writeln!(page, "| arm | hour | fusion | bend | imu_o | paper's imu_c | paper's fusion |\n|---|---|---|---|---|---|---|")?;
+        writeln!(
+            page,
+            "| arm | hour | fusion | bend | imu_o | paper's imu_c | paper's fusion |\n|---|---|---|---|---|---|---|"
+        )?;
         for (seed, hours) in &self.arms {
             for (name, hour) in ["first", "last"].iter().zip(hours) {
                 let [bend, imu_o, imu_c, fusion] = hour.paper_mm;

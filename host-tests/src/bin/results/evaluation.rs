@@ -40,11 +40,7 @@ pub struct Figures {
 
 impl Evaluation {
     /// Replays rows by both tables.
-    pub fn of<R: Iterator<Item = Row>>(
-        tables: &Tables,
-        rate_hz: f64,
-        rows: impl Fn() -> R,
-    ) -> Result<Self, FileError> {
+    pub fn of<R: Iterator<Item = Row>>(tables: &Tables, rate_hz: f64, rows: impl Fn() -> R) -> Result<Self, FileError> {
         let score = || Score::new(tables.own.length_mm());
         let mut evaluation = Self { own: score(), paper: score(), contact: Vec::new(), flagged: 0 };
         replay(&tables.own, rate_hz, rows(), |row, outcome| evaluation.add(row, outcome))?;
@@ -65,9 +61,8 @@ impl Evaluation {
 
     /// The figures.
     pub fn figures(&self) -> Figures {
-        let tip_mm = |score: &Score, method: Method| {
-            score.figures()[method as usize].tip_rmse_mm.unwrap_or(f64::INFINITY)
-        };
+        let tip_mm =
+            |score: &Score, method: Method| score.figures()[method as usize].tip_rmse_mm.unwrap_or(f64::INFINITY);
         let honesty = self.own.honesty();
         let raw = [&self.own, &self.paper].map(|score| tip_mm(score, Method::Bend).min(tip_mm(score, Method::ImuO)));
         Figures {

@@ -59,11 +59,8 @@ impl ArmFigures {
             quadratic_mm.push(fusion_mm(&tables.quadratic, &session)?);
             runs.push(Run::of(session, evaluation.contact));
         }
-        let contact = Contact {
-            false_alarms: runs[0].alarms(),
-            pushes: runs[1].pushes(),
-            encounters: runs[2].encounters(),
-        };
+        let contact =
+            Contact { false_alarms: runs[0].alarms(), pushes: runs[1].pushes(), encounters: runs[2].encounters() };
         let three = "one entry a scenario";
         Ok(Self {
             seed,
@@ -104,7 +101,10 @@ impl Family {
     /// The tables of the arms' errors.
     pub fn write(&self, page: &mut String) -> fmt::Result {
         writeln!(page, "{SUMMARY}")?;
-        writeln!(page, "| arms | scenario | fusion | worst | inside | lowest | NEES | flagged | paper's method | best raw |")?;
+        writeln!(
+            page,
+            "| arms | scenario | fusion | worst | inside | lowest | NEES | flagged | paper's method | best raw |"
+        )?;
         writeln!(page, "|---|---|---|---|---|---|---|---|---|---|")?;
         let groups: [(&str, &[u64]); 3] =
             [("**test**", &TEST), ("development", &DEVELOPMENT), ("reference", &[REFERENCE])];
@@ -124,7 +124,10 @@ impl Family {
 
     fn write_arms(&self, page: &mut String) -> fmt::Result {
         writeln!(page, "{ARM_BY_ARM}")?;
-        writeln!(page, "| arm | I | paper | raw | II | paper | raw | III | paper | raw |\n|---|---|---|---|---|---|---|---|---|---|")?;
+        writeln!(
+            page,
+            "| arm | I | paper | raw | II | paper | raw | III | paper | raw |\n|---|---|---|---|---|---|---|---|---|---|"
+        )?;
         for arm in &self.arms {
             write!(page, "| {} ", arm.seed)?;
             for figures in arm.scenarios {

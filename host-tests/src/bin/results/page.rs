@@ -94,7 +94,10 @@ fn write_seeds(page: &mut String) -> fmt::Result {
     let [development, test] = [&DEVELOPMENT[..], &TEST[..]].map(|seeds| [seeds[0], seeds[seeds.len() - 1]]);
     writeln!(page, "{SEEDS}")?;
     writeln!(page, "| arms | `--arm-seed` | |\n|---|---|---|")?;
-    writeln!(page, "| reference | {REFERENCE} | the arm of the tests and of the emulated board; constants were chosen on it |")?;
+    writeln!(
+        page,
+        "| reference | {REFERENCE} | the arm of the tests and of the emulated board; constants were chosen on it |"
+    )?;
     writeln!(page, "| development | {} to {} | constants were chosen on them |", development[0], development[1])?;
     writeln!(page, "| test | {} to {} | judge: no constant was chosen on them |", test[0], test[1])?;
     writeln!(page, "| other simulators | | judge: no constant was chosen on them |\n\n{REPRODUCE}")

@@ -50,8 +50,13 @@ impl RealDrift {
     /// The table, or why there is none.
     pub fn write(drift: Option<&Self>, family: &Family, page: &mut String) -> fmt::Result {
         writeln!(page, "{DRIFT}")?;
-        let Some(drift) = drift else { return writeln!(page, "The recordings were not there when this page was made.\n") };
-        writeln!(page, "| arm | scenario | none added | paper | as it is | paper | raw | 45° in 15 min | paper | raw |")?;
+        let Some(drift) = drift else {
+            return writeln!(page, "The recordings were not there when this page was made.\n");
+        };
+        writeln!(
+            page,
+            "| arm | scenario | none added | paper | as it is | paper | raw | 45° in 15 min | paper | raw |"
+        )?;
         writeln!(page, "|---|---|---|---|---|---|---|---|---|---|")?;
         for (seed, scenario, added) in &drift.rows {
             let k = SCENARIOS.iter().position(|(name, _)| name == scenario);

@@ -40,8 +40,7 @@ impl Rigs {
             eprintln!("no ../shared/rigs beside the checkout: its section stays empty");
             return Ok(None);
         }
-        let mut paths: Vec<PathBuf> =
-            fs::read_dir(&rigs)?.map(|entry| Ok(entry?.path())).collect::<io::Result<_>>()?;
+        let mut paths: Vec<PathBuf> = fs::read_dir(&rigs)?.map(|entry| Ok(entry?.path())).collect::<io::Result<_>>()?;
         paths.retain(|path| path.is_dir());
         paths.sort();
         let rigs = in_parallel(&paths, |path| Rig::measure(arm, path, folder));

@@ -8,6 +8,6 @@ use board_probe::step::{TABLES, alone, steps};
 
 #[cortex_m_rt::entry]
 fn main() -> ! {
-    let [_, _, six, _, _] = &TABLES;
+    let [_, _, six, _] = &TABLES;
     alone(|| steps::<6>(six))
 }

@@ -8,7 +8,7 @@ use virtual_due::{CYCLES_PER_SECOND, Machine, Rig};
 use crate::Figure;
 
 /// The arms that the firmware steps, in its order, and the samples of each.
-const SEGMENTS: [u32; 5] = [1, 2, 6, 12, 16];
+const SEGMENTS: [u32; 4] = [1, 2, 6, 8];
 const STEPS: usize = 1_000;
 /// Samples at rest that follow where the bias filter runs.
 const REST: usize = 3_000;
@@ -49,7 +49,7 @@ pub fn figures() -> [Figure; 7] {
         Figure { name: "step_instructions", value: after.most as f64 },
         Figure { name: "step_in_tare", value: tare.most as f64 },
         Figure { name: "step_spread", value: (after.most - after.least) as f64 / after.least as f64 * 100.0 },
-        Figure { name: "step_growth", value: for_each(4) / for_each(2) },
+        Figure { name: "step_growth", value: for_each(3) / for_each(2) },
         Figure { name: "step_routines", value: unwanted(&elf("board-probe", "step")) as f64 },
         Figure { name: "bias_filter_instructions", value: bias_filter.most as f64 },
         Figure { name: "bias_filter_routines", value: unwanted(&elf("board-probe", "bias_filter")) as f64 },

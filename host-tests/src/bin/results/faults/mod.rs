@@ -137,12 +137,13 @@ impl Spoiled {
     fn new(fault: &Fault, clean: &Clean, setup: &Setup) -> Result<Option<Self>, Problem> {
         let Fault { at_s, rate_hz, course, .. } = *fault;
         let simulated = |setup: &Setup| Simulation::of(setup, SESSION_S, rate_hz);
-        let from = |session: TwinSession, at_s: f64| Some(Self { session, judged_s: at_s..f64::INFINITY, clean_s: at_s });
+        let from =
+            |session: TwinSession, at_s: f64| Some(Self { session, judged_s: at_s..f64::INFINITY, clean_s: at_s });
         Ok(match course {
             Course::Spoiled(spoil) => from(clean.spoiled(clean.session.index(at_s), spoil), at_s),
-            Course::SpoiledInContact(spoil) => clean.contact_after(at_s).and_then(|k| {
-                from(clean.spoiled(k, spoil), clean.session.samples[k].time_us as f64 / 1e6)
-            }),
+            Course::SpoiledInContact(spoil) => clean
+                .contact_after(at_s)
+                .and_then(|k| from(clean.spoiled(k, spoil), clean.session.samples[k].time_us as f64 / 1e6)),
             Course::Moves(motion) => from(TwinSession::of(simulated(&Setup { motion, ..*setup })?, rate_hz), at_s),
             Course::Rest | Course::AfterRest => {
                 let simulation = Simulation::of(setup, SESSION_S + REST_S, rate_hz)?.with_rest(at_s, REST_S);
