@@ -55,11 +55,7 @@ impl TwinSession {
     ///
     /// # Errors
     /// As [`replay`].
-    pub fn replay(
-        &self,
-        table: &ArmFile,
-        visit: impl FnMut(&Row, &Outcome<Q>),
-    ) -> Result<(), FileError> {
+    pub fn replay(&self, table: &ArmFile, visit: impl FnMut(&Row, &Outcome<Q>)) -> Result<(), FileError> {
         replay(table, self.rate_hz, self.rows(), visit)
     }
 }
