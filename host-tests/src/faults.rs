@@ -137,3 +137,45 @@ fn shift(sample: &mut Recorded, sensor: usize, counts: f64) {
     let shifted = |before: u16| (f64::from(before) + counts).round().clamp(0.0, f64::from(FULL_SCALE)) as u16;
     sample.counts[sensor] = sample.counts[sensor].map(shifted);
 }
+
+#[cfg(test)]
+mod tests {
+    use proprio::simulate::Simulation;
+    use rig_twin::Scenario;
+
+    use super::{Recorded, Spoiler};
+
+    fn spoiled(spoil: fn(&mut Spoiler)) -> [Vec<Recorded>; 2] {
+        let simulation = Simulation::new(Scenario::One, 1, 10.0, 10.0).expect("a session");
+        let clean: Vec<Recorded> = simulation.collect();
+        let mut samples = clean.clone();
+        spoil(&mut Spoiler { samples: &mut samples, from: 50, rate_hz: 10.0 });
+        [clean, samples]
+    }
+
+    #[test]
+    fn an_imu_is_absent_before_it_restarts_with_another_zero() {
+        let [clean, samples] = spoiled(|spoiler| spoiler.imu_restarts(2, 0.7, 130.0));
+        let is_absent = |k: usize| samples[k].quaternions[2].is_none();
+        assert!((43..50).all(is_absent) && !is_absent(42) && !is_absent(50));
+        assert_eq!(samples[42].quaternions, clean[42].quaternions);
+        assert_ne!(samples[50].quaternions[2], clean[50].quaternions[2]);
+        assert_eq!(samples[50].quaternions[3], clean[50].quaternions[3]);
+    }
+
+    #[test]
+    fn missing_rows_end_where_the_fault_is_over() {
+        let [clean, samples] = spoiled(|spoiler| spoiler.rows_missing(3.0));
+        assert_eq!(samples.len(), clean.len() - 30);
+        assert_eq!(samples[19].time_us, 1_900_000);
+        assert_eq!(samples[20].time_us, 5_000_000);
+    }
+
+    #[test]
+    fn a_drifting_bend_sensor_stops_at_the_end_of_the_converters_range() {
+        let [clean, samples] = spoiled(|spoiler| spoiler.bend_drifts(4, 10_000.0));
+        assert_eq!(samples[50].counts, clean[50].counts);
+        assert_eq!(samples[99].counts[4], Some(4095));
+        assert_eq!(samples[99].counts[5], clean[99].counts[5]);
+    }
+}
