@@ -85,7 +85,6 @@ fn both_missing_sensors_leave_one_angle_and_the_points_beyond_empty() {
     assert_eq!(unknown(&estimates, ROW, "fusion"), (vec![], vec![]));
 }
 
-/// A = I and B u = 0: a filter that only predicts keeps its state.
 #[test]
 fn a_row_without_readings_keeps_the_fused_shape() {
     let session = session();
@@ -97,7 +96,9 @@ fn a_row_without_readings_keeps_the_fused_shape() {
         assert_eq!(unknown(&estimates, ROW, method), (all.clone(), all.clone()), "{method}");
     }
     for name in estimates.names.iter().filter(|name| name.starts_with("fusion")) {
-        assert_eq!(estimates.cell(ROW, name), estimates.cell(ROW - 1, name), "{name}");
+        let [before, after] = [ROW - 1, ROW].map(|row| estimates.cell(row, name).parse::<f64>().expect("it is known"));
+        // The update by the row before is in the next one's biases.
+        assert!((after - before).abs() < 0.01, "{name}: {before} and then {after}");
     }
 }
 

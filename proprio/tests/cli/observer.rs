@@ -15,29 +15,29 @@ fn folder(scenario: &str) -> Folder {
     folder
 }
 
-fn halves_the_error(scenario: &str) {
+fn beats_the_anchor(scenario: &str) {
     let folder = folder(scenario);
     let rmse_mm = |table| {
         let report = json(&folder.done(&["replay", "session.csv", "--table", table, "--json"]));
         figure(&report, "fusion", "tip_rmse_mm")
     };
-    let (anchor, observer) = (rmse_mm("anchor.toml"), rmse_mm("observer.toml"));
-    assert!(observer < anchor / 2.0, "{observer} mm, and {anchor} mm with the anchor");
+    let (anchor, filter) = (rmse_mm("anchor.toml"), rmse_mm("observer.toml"));
+    assert!(filter < anchor * 0.6, "{filter} mm, and {anchor} mm with the anchor");
 }
 
 #[test]
-fn the_observer_halves_the_error_of_free_swings() {
-    halves_the_error("1");
+fn the_bias_filter_takes_two_fifths_of_the_error_of_free_swings() {
+    beats_the_anchor("1");
 }
 
 #[test]
-fn the_observer_halves_the_error_under_pushes() {
-    halves_the_error("2");
+fn the_bias_filter_takes_two_fifths_of_the_error_under_pushes() {
+    beats_the_anchor("2");
 }
 
 #[test]
-fn the_observer_halves_the_error_around_an_obstacle() {
-    halves_the_error("3");
+fn the_bias_filter_takes_two_fifths_of_the_error_around_an_obstacle() {
+    beats_the_anchor("3");
 }
 
 #[test]
@@ -52,8 +52,9 @@ fn fixed_point_and_floats_agree_on_the_drift() {
         for ((fixed, float), column) in fixed.iter().zip(float).zip(names) {
             assert_eq!(fixed.is_empty(), float.is_empty(), "{column}");
             let difference = number(fixed) - number(float);
-            // 1e-6 rad and 0.002 mm, and what rounding to six and five decimals adds.
-            let most = if column.ends_with("_deg") { 5.8e-5 } else { 0.002_01 };
+            // 2e-6 rad and 0.002 mm, and what rounding to six and five decimals adds: one step of the bend angles that the
+            // bias filter takes in fixed point is in its biases for minutes.
+            let most = if column.ends_with("_deg") { 11.6e-5 } else { 0.002_01 };
             assert!(difference.abs() < most, "{column}: {fixed} and {float}");
         }
     }
