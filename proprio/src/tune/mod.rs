@@ -103,7 +103,7 @@ impl<'t> Tuner<'t> {
             stopped,
             variances,
             drift: observer,
-            observer: Default::default(),
+            observer: serde::de::IgnoredAny,
             before: pooled(&self.before, |session| &session.training).keys(),
             after: pooled(&after, |session| &session.training).keys(),
             held_back_before: pooled(&self.before, |session| &session.held_back).keys(),

@@ -213,7 +213,12 @@ fn check_scenario(scenario: u64) {
     let report = json(&folder.done(&["replay", "session.csv", "--table", "table.toml", "--json"]));
     let rmse = |method| figure(&report, method, "tip_rmse_mm");
     for method in ["bend", "imu_o"] {
-        assert!(rmse("fusion") < rmse(method) * 2.0 / 3.0, "fusion {} mm, {method} {} mm", rmse("fusion"), rmse(method));
+        assert!(
+            rmse("fusion") < rmse(method) * 2.0 / 3.0,
+            "fusion {} mm, {method} {} mm",
+            rmse("fusion"),
+            rmse(method)
+        );
     }
     // Behind the observer a filter that is not tuned has next to nothing to add; it takes nothing from most runs, and this
     // much from none.
