@@ -1,9 +1,9 @@
-//! Tuning on sessions with truth: the drift observer's parameters, and Q, R and H of all filters, by the RMSE of fusion; and
-//! the variances, by what the errors are.
+//! Tuning on sessions with truth, by the RMSE of the fused shape, and of the variances, by what the errors are.
 //!
-//! 1. Where the table has the observer, a search tries other parameters; each try is a run of the estimator up to its filters.
-//! 2. Nothing before the filters depends on their parameters. Gradient descent runs the estimator's own filters over what
-//!    they measure, in dual numbers, and chains what they say.
+//! 1. A table with the bias filter: its Kalman filters are bypassed, so a search tries other parameters of the bias filter.
+//!    Each try is a run of the estimator, and its errors are those of the fused shape.
+//! 2. A table with the anchor: Q, R and H of all Kalman filters. Nothing before the filters depends on their parameters, so
+//!    gradient descent runs the estimator's own filters over their inputs, in dual numbers, and chains the derivatives.
 //! 3. The last fifth of each session is held back. What gets worse there was tuned to noise, and is not kept.
 //! 4. Where the table says what errors come from, all variances grow by one factor if they are too small.
 
@@ -22,7 +22,7 @@ mod training;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use calibration_tables::{ArmFile, DriftTuningKeys, Stopped, TuningKeys};
+use calibration_tables::{ArmFile, DriftKeys, DriftTuningKeys, Stopped, TuningKeys};
 
 pub use dual::Dual;
 pub use error::TuningError;
@@ -54,7 +54,7 @@ pub struct Tuning {
     pub table: ArmFile,
     /// That record.
     pub record: TuningKeys,
-    /// What an iteration of the descent took.
+    /// What an iteration of the descent took; zero with the bias filter, which has no descent.
     pub iteration_time: Duration,
 }
 
@@ -84,16 +84,19 @@ impl<'t> Tuner<'t> {
         cut.map(|session| session.path.as_path())
     }
 
-    /// Searches and descends until the RMSE converges, or until `is_interrupted` after an iteration.
+    /// Searches or descends until the RMSE converges, or until `is_interrupted` after a run or an iteration.
     ///
     /// # Errors
-    /// [`Error::Tuning`] where the RMSE is no number, or falls on and on; [`Error::Session`] where a session is no longer
-    /// what it was.
+    /// [`Error::Tuning`] where the RMSE of descent is no number, or falls on and on; [`Error::Session`] where a session is no
+    /// longer what it was.
     pub fn tune(mut self, is_interrupted: impl Fn() -> bool) -> Result<Tuning, Error> {
-        let (observed, observer) = self.tune_observer(&is_interrupted);
         let start = Instant::now();
-        let Filtered { mut table, iterations, kept, stopped } = self.tune_filters(observed, &is_interrupted)?;
-        let iteration_time = start.elapsed().div_f64(iterations.max(1) as f64);
+        let Tuned { mut table, drift, iterations, kept, stopped } = match self.table.file.bias_filter() {
+            Some(start) => self.tune_bias_filter(start, &is_interrupted),
+            None => self.tune_filters(&is_interrupted)?,
+        };
+        let descended = if drift.is_none() { start.elapsed() } else { Duration::ZERO };
+        let iteration_time = descended.div_f64(iterations.max(1) as f64);
         let variances = self.widen(&mut table)?;
         let after = self.objective.of_table(&table);
         let record = TuningKeys {
@@ -102,7 +105,7 @@ impl<'t> Tuner<'t> {
             kept,
             stopped,
             variances,
-            drift: observer,
+            drift,
             observer: serde::de::IgnoredAny,
             before: pooled(&self.before, |session| &session.training).keys(),
             after: pooled(&after, |session| &session.training).keys(),
@@ -112,23 +115,25 @@ impl<'t> Tuner<'t> {
         Ok(Tuning { table: ArmFile { tuning: Some(record.clone()), ..table }, record, iteration_time })
     }
 
-    /// The table with the best observer that is no worse on what is held back, which the sessions are measured with, and the
-    /// record of it.
-    fn tune_observer(&mut self, is_interrupted: impl Fn() -> bool) -> (ArmFile, Option<DriftTuningKeys>) {
+    /// The table with the best bias filter that is no worse on what is held back, which the sessions are measured with.
+    fn tune_bias_filter(&mut self, start: &DriftKeys, is_interrupted: impl Fn() -> bool) -> Tuned {
         let mut table = self.table.file.clone();
-        let Some(start) = table.bias_filter().cloned() else { return (table, None) };
-        let mut progress = Progress::new("tuning the observer".to_owned(), MAX_RUNS as u64);
-        let mut runs = 0;
+        let mut progress = Progress::new("tuning the bias filter".to_owned(), MAX_RUNS as u64);
+        let (mut runs, mut stopped) = (0, Stopped::Converged);
         let finds = search(self.before.clone(), |place| {
-            table.drift = Some(observer_at(&start, place));
+            table.drift = Some(observer_at(start, place));
             self.objective.measure(&table);
             let found = self.objective.of_table(&table);
             runs += 1;
-            progress.tell(runs, format!("tuning the observer: {}", told(&found)));
-            (!is_interrupted()).then_some(found)
+            progress.tell(runs, format!("tuning the bias filter: {}", told(&found)));
+            if is_interrupted() {
+                stopped = Stopped::Interrupted;
+                return None;
+            }
+            Some(found)
         });
         let kept = finds.iter().rev().find(|find| find.found.held_back_loss <= self.before.held_back_loss);
-        let tuned = kept.map_or(start.clone(), |kept| observer_at(&start, &kept.place));
+        let tuned = kept.map_or_else(|| start.clone(), |kept| observer_at(start, &kept.place));
         let record = DriftTuningKeys {
             runs,
             rate_deg_per_s: [start.rate_deg_per_s, tuned.rate_deg_per_s],
@@ -144,17 +149,18 @@ impl<'t> Tuner<'t> {
         };
         table.drift = Some(tuned);
         self.objective.measure(&table);
-        (table, Some(record))
+        Tuned { table, drift: Some(record), iterations: 0, kept: 0, stopped }
     }
 
-    /// The table with better filters.
-    fn tune_filters(&self, table: ArmFile, is_interrupted: impl Fn() -> bool) -> Result<Filtered, Error> {
+    /// The table with better Kalman filters.
+    fn tune_filters(&self, is_interrupted: impl Fn() -> bool) -> Result<Tuned, Error> {
+        let table = &self.table.file;
         let mut progress = Progress::new("tuning".to_owned(), MAX_ITERATIONS);
-        let before = self.objective.of_table(&table);
+        let before = &self.before;
         let (mut last, mut best): (Option<Iterate>, Option<Iterate>) = (None, None);
         let stopped = descend(
             |place| self.objective.at(place),
-            self.objective.start(&table),
+            self.objective.start(table),
             |iterate| {
                 progress.tell(iterate.number, format!("tuning: {}", told(&iterate.found)));
                 let is_best = |best: &Iterate| iterate.found.held_back_loss < best.found.held_back_loss;
@@ -173,8 +179,8 @@ impl<'t> Tuner<'t> {
         };
         let kept = [last, best].into_iter().flatten().find(is_good);
         let number = kept.as_ref().map_or(0, |kept| kept.number);
-        let table = kept.map_or(table.clone(), |kept| self.objective.table(&kept.place, table));
-        Ok(Filtered { table, iterations, kept: number, stopped })
+        let table = kept.map_or(table.clone(), |kept| self.objective.table(&kept.place, table.clone()));
+        Ok(Tuned { table, drift: None, iterations, kept: number, stopped })
     }
 
     /// Multiplies all variances by what the ends' errors on the training part have them too small by, and gives the factor.
@@ -198,16 +204,19 @@ impl<'t> Tuner<'t> {
     }
 }
 
-/// What came of the descent.
-struct Filtered {
+/// Result of the search or of the descent.
+struct Tuned {
     table: ArmFile,
+    /// Of the search.
+    drift: Option<DriftTuningKeys>,
+    /// Of the descent.
     iterations: u64,
     /// The iteration that the table's filters are of.
     kept: u64,
     stopped: Stopped,
 }
 
-/// The errors of what descent sees, for people.
+/// The errors on the training part, for people.
 fn told(of: &Evaluation) -> String {
     let rmse = pooled(of, |session| &session.training).keys();
     format!("RMSE of the tip {:.2} mm, of headings {:.2} deg", rmse.tip_rmse_mm, rmse.heading_rmse_deg)

@@ -1,4 +1,4 @@
-//! What descent lowers, and its exact gradient.
+//! What the search and descent lower, and its exact gradient by the parameters of the Kalman filters.
 //!
 //! Of a session it is the RMSE of all segments' positions plus that of their headings, at the lever of the arm's length: a
 //! heading counts as what it moves the far end by. Of several sessions it is the geometric mean, so that a percent counts
@@ -29,14 +29,14 @@ pub(super) struct Objective {
     lever_m: f64,
 }
 
-/// What the filters are worth at one place.
+/// What a table, or the filters at one place, are worth.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Evaluation {
     /// Logarithm of the objective on what descent sees.
     pub loss: f64,
     /// The same of what is held back.
     pub held_back_loss: f64,
-    /// Of `loss` by each coordinate of the place.
+    /// Of `loss` by each coordinate of the place; empty with the bias filter.
     pub gradient: Vec<f64>,
     /// Of each session.
     pub sessions: Vec<SessionErrors>,
@@ -62,15 +62,19 @@ impl Objective {
         &self.sessions
     }
 
-    /// Measures all sessions anew, with a table's observer.
+    /// Measures all sessions again, with a table's drift correction.
     pub fn measure(&mut self, table: &ArmFile) {
         thread::scope(|scope| {
             self.sessions.iter_mut().for_each(|session| drop(scope.spawn(|| session.measure(table))));
         });
     }
 
-    /// What a table's own filters are worth; the gradient is none.
+    /// What a table is worth that differs from the one of the last [`measure`](Self::measure) in no more than its Kalman
+    /// filters; its gradient is not for use.
     pub fn of_table(&self, table: &ArmFile) -> Evaluation {
+        if let Some(fused) = self.sessions.iter().map(Training::fused).collect() {
+            return self.pool(fused);
+        }
         self.evaluate(|rate_hz| {
             let baked = table.bake::<Dual>(rate_hz).expect("it is a table");
             let segments = baked.config().segments.iter();
@@ -118,17 +122,26 @@ impl Objective {
             let threads: Vec<_> = self.sessions.iter().map(|session| scope.spawn(move || run(session))).collect();
             threads.into_iter().map(|thread| thread.join().unwrap_or_else(|panic| resume_unwind(panic))).collect()
         });
-        let mut all = Evaluation { gradient: vec![0.0; 2 * PARAMETERS * self.pccs.len()], ..Evaluation::default() };
+        let mut sums = vec![0.0; 2 * PARAMETERS * self.pccs.len()];
         let share = 1.0 / parts.len() as f64;
-        for (errors, gradient) in parts {
-            all.loss += share * libm::log(errors.training.joint_m(self.lever_m));
-            all.held_back_loss += share * libm::log(errors.held_back.joint_m(self.lever_m));
-            for (sum, derivative) in all.gradient.iter_mut().zip(gradient.of_log(&errors.training, self.lever_m)) {
+        for (errors, gradient) in &parts {
+            for (sum, derivative) in sums.iter_mut().zip(gradient.of_log(&errors.training, self.lever_m)) {
                 *sum += share * derivative;
             }
-            all.sessions.push(errors);
         }
-        all
+        let all = self.pool(parts.into_iter().map(|(errors, _)| errors).collect());
+        Evaluation { gradient: sums, ..all }
+    }
+
+    /// The errors of all sessions together, without a gradient.
+    fn pool(&self, sessions: Vec<SessionErrors>) -> Evaluation {
+        let mut all = Evaluation::default();
+        let share = 1.0 / sessions.len() as f64;
+        for errors in &sessions {
+            all.loss += share * libm::log(errors.training.joint_m(self.lever_m));
+            all.held_back_loss += share * libm::log(errors.held_back.joint_m(self.lever_m));
+        }
+        Evaluation { sessions, ..all }
     }
 
     fn session(&self, session: &Training, noises: &[SegmentNoises]) -> (SessionErrors, Gradient) {

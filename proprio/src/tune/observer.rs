@@ -1,4 +1,4 @@
-//! The drift observer's own parameters: a pattern search, one coordinate at a time, with shorter and shorter steps.
+//! The bias filter's own parameters: a pattern search, one coordinate at a time, with shorter and shorter steps.
 //!
 //! Around the best place the errors hardly change with these parameters, and where it lies differs from scenario to
 //! scenario. So none goes further than a decade from where it was, and what it wins must pay for the way.

@@ -44,10 +44,16 @@ fn session(folder: &Path, scenario: Scenario, rate_hz: f64, gaps: bool) -> PathB
     path
 }
 
-/// The reference table with filters that remember, weigh and scale.
-fn table() -> NamedTable<'static> {
+/// The reference table, which has the bias filter.
+fn reference() -> NamedTable<'static> {
     let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../calibration-tables/planar-6.toml"));
-    let mut table = NamedTable { file: ArmFile::load(path).expect("it is committed"), path };
+    NamedTable { file: ArmFile::load(path).expect("it is committed"), path }
+}
+
+/// The reference table with the anchor, and with Kalman filters that remember, weigh and scale.
+fn table() -> NamedTable<'static> {
+    let mut table = reference();
+    (table.file.drift, table.file.uncertainty) = (None, None);
     for (i, segment) in (1..).map(f64::from).zip(&mut table.file.segments) {
         let keys =
             |r_imu| NoiseKeys { q: 2e-3 * i, r_imu, r_bend: 1e-3, h_imu: 1.0 - 0.01 * i, h_bend: 1.0 + 0.02 * i };
@@ -95,23 +101,44 @@ fn the_gradient_is_exact_over_sessions_of_two_rates_with_readings_and_truth_miss
     assert_gradient_is_exact(&table(), &sessions);
 }
 
-#[test]
-fn the_errors_are_those_of_replay() {
+fn assert_errors_are_those_of_replay(table: &NamedTable) {
     let folder = tempfile::tempdir().expect("a temporary folder");
-    let (path, table) = (session(folder.path(), Scenario::One, 10.0, true), table());
+    let path = session(folder.path(), Scenario::One, 10.0, true);
     let mut score = Score::new(table.file.length_mm());
     let visit = |row: &_, outcome: &_| {
         score.add(row, outcome);
         Ok(())
     };
-    replay::<f64>(&path, &table, visit).expect("a good session");
+    replay::<f64>(&path, table, visit).expect("a good session");
     let [.., fusion] = score.figures();
 
-    let found = objective(&table, &[path]).of_table(&table.file);
+    let found = objective(table, &[path]).of_table(&table.file);
     let mut errors = pooled(&found, |session| &session.training);
     errors.append(&pooled(&found, |session| &session.held_back));
     let (found, expected) = (errors.keys().tip_rmse_mm, fusion.tip_rmse_mm.expect("there is truth"));
     assert!((found - expected).abs() < 1e-9 * expected, "{found} instead of {expected}");
+}
+
+#[test]
+fn the_errors_are_those_of_replay() {
+    assert_errors_are_those_of_replay(&reference());
+}
+
+#[test]
+fn the_errors_with_the_anchor_are_those_of_replay() {
+    assert_errors_are_those_of_replay(&table());
+}
+
+/// The bias filter bypasses the Kalman filters.
+#[test]
+fn the_errors_with_the_bias_filter_do_not_depend_on_the_kalman_filters() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let sessions = [session(folder.path(), Scenario::One, 10.0, true)];
+    let (bare, mut filtered) = (reference(), reference());
+    filtered.file.segments = table().file.segments;
+    assert_ne!(bare.file.segments, filtered.file.segments);
+    let [bare, filtered] = [bare, filtered].map(|table| objective(&table, &sessions).of_table(&table.file));
+    assert_eq!(bare.sessions, filtered.sessions);
 }
 
 #[test]

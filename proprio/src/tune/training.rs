@@ -1,4 +1,4 @@
-//! A training session as descent needs it: what the filters measure, and what the camera saw.
+//! A training session: what the camera saw, and what the Kalman filters measure or how far the fused shape is off.
 
 use std::path::{Path, PathBuf};
 
@@ -6,6 +6,8 @@ use calibration_tables::{ArmFile, MAX_SEGMENTS};
 use estimator_core::{Estimator, Sample};
 
 use super::error::TuningError;
+use super::errors::ends;
+use super::objective::SessionErrors;
 use crate::calibrate::{MISFIT_PERCENT, constant_curvature_error};
 use crate::error::Error;
 use crate::progress::Progress;
@@ -44,6 +46,8 @@ pub(super) struct Training {
     segments: usize,
     samples: Vec<Sample<MAX_SEGMENTS>>,
     measured: Vec<Measured>,
+    /// Errors of the fused shape; `None` with the anchor, where they depend on the Kalman filters.
+    fused: Option<SessionErrors>,
     /// Rows before which the estimator starts anew.
     starts: Vec<bool>,
 }
@@ -86,21 +90,31 @@ impl Training {
             segments: segments.len(),
             samples,
             measured,
+            fused: None,
             starts,
         };
         training.measure(&table.file);
         Ok(training)
     }
 
-    /// Runs the samples through that part of the estimator on which no filter's parameters act.
+    /// Runs the estimator on all samples. With the bias filter, which bypasses the Kalman filters, it computes the errors of
+    /// the fused shape; with the anchor, the inputs of the Kalman filters, which do not depend on their parameters.
     pub fn measure(&mut self, table: &ArmFile) {
         let baked = table.bake::<f64>(self.rate_hz).expect("it is a table");
         let baked = baked.config();
         let mut estimator: Box<HostEstimator<f64>> = Box::new(Estimator::new(&baked).expect("the file was checked"));
+        let seen = self.seen();
+        self.fused = table.bias_filter().map(|_| SessionErrors::default());
         let rows = self.measured.chunks_exact_mut(self.segments).zip(&self.samples).zip(&self.starts);
-        for ((measured, sample), starts) in rows {
+        for (row, ((measured, sample), starts)) in rows.enumerate() {
             if *starts {
                 estimator.start().expect("the file was checked");
+            }
+            if let Some(errors) = &mut self.fused {
+                let ends = ends(estimator.update(sample).iter().copied(), measured);
+                let part = if row < seen { &mut errors.training } else { &mut errors.held_back };
+                part.add(&ends, self.segments);
+                continue;
             }
             let estimate = estimator.update_full(sample);
             for (measured, segment) in measured.iter_mut().zip(&estimate.segments) {
@@ -109,6 +123,11 @@ impl Training {
                 [measured.imu_c, measured.bend] = thetas;
             }
         }
+    }
+
+    /// Errors of the fused shape with the table that it was measured with; `None` with the anchor.
+    pub fn fused(&self) -> Option<SessionErrors> {
+        self.fused
     }
 
     /// How many samples are not held back.

@@ -1,10 +1,10 @@
 //! `tune` of the bias filter's parameters and of the variances.
 
-use calibration_tables::{ArmFile, DriftKeys, DriftTuningKeys, TuningKeys, UncertaintyKeys};
+use calibration_tables::{ArmFile, DriftKeys, DriftTuningKeys, Stopped, TuningKeys, UncertaintyKeys};
 use serde::de::IgnoredAny;
 
 use super::common::{Csv, Folder, figure, json, simulate, table};
-use super::tune::{TUNE, load, training};
+use super::tune::{TUNE, assert_record_is_what_replay_finds, load, training};
 
 /// The reference table with this bias filter and these error sources.
 pub fn with_bias_filter(drift: DriftKeys, uncertainty: Option<UncertaintyKeys>) -> String {
@@ -13,9 +13,10 @@ pub fn with_bias_filter(drift: DriftKeys, uncertainty: Option<UncertaintyKeys>) 
     file.to_toml()
 }
 
-/// Priors that trust the gyroscopes fifty times as much as they deserve: the bias filter hardly learns.
+/// Rates a tenth of those that the search finds: the bias filter hardly learns. From 0.001°/s the tip's error grows up to
+/// 0.01°/s, and falls only beyond that; a search that keeps within a decade does not get there.
 fn timid() -> DriftKeys {
-    DriftKeys { rate_deg_per_s: 0.001, rate_random_walk_deg_per_s_sqrt_s: 1e-5, ..DriftKeys::kalman() }
+    DriftKeys { rate_deg_per_s: 0.02, rate_random_walk_deg_per_s_sqrt_s: 1e-5, ..DriftKeys::kalman() }
 }
 
 /// Deviations for which the errors are too large, or too small, by this factor.
@@ -54,7 +55,7 @@ fn a_bias_filter_that_hardly_learns_becomes_a_better_one_for_other_runs_of_its_k
     ] {
         assert_eq!(found.map(f64::to_bits), [before, after].map(f64::to_bits));
     }
-    assert!((0.001..=0.01).contains(&drift.rate_deg_per_s), "better, and within a decade: {}", drift.rate_deg_per_s);
+    assert!((0.02..=0.2).contains(&drift.rate_deg_per_s), "better, and within a decade: {}", drift.rate_deg_per_s);
     assert!((1..=60).contains(&runs), "{runs} runs");
 
     folder.write("bias-filter.toml", with_bias_filter(drift, None));
@@ -70,12 +71,36 @@ fn a_bias_filter_that_hardly_learns_becomes_a_better_one_for_other_runs_of_its_k
 }
 
 #[test]
+fn the_record_of_a_bias_filter_is_what_replay_finds() {
+    let session = simulate("--scenario 1 --seconds 300 --seed 55");
+    let (folder, _, record) = tuned(&session, with_bias_filter(timid(), None));
+    assert!(record.after.tip_rmse_mm < record.before.tip_rmse_mm, "{record:?}");
+    assert_record_is_what_replay_finds(&folder, &session);
+}
+
+/// The bias filter bypasses the Kalman filters: their parameters act on nothing, so that there is no descent.
+#[test]
+fn nothing_but_the_bias_filter_and_the_record_changes() {
+    let mut before = load(table());
+    (before.drift, before.uncertainty) = (Some(timid()), None);
+    before.segments = ArmFile::parse(&super::tune::spoiled()).expect("a valid table").segments;
+    let (folder, mut after, record) = tuned(&training(), before.to_toml());
+    assert_eq!((record.iterations, record.kept, record.stopped), (0, 0, Stopped::Converged));
+    assert_ne!(before.drift, after.drift);
+    before = load(folder.path("table.toml"));
+    for file in [&mut before, &mut after] {
+        (file.drift, file.tuning) = (None, None);
+    }
+    assert_eq!(before, after);
+}
+
+#[test]
 fn the_bias_filter_before_and_after_is_printed() {
     let folder = Folder::with("session.csv", training().to_string());
     folder.write("table.toml", with_bias_filter(timid(), Some(deviations(1.0))));
     let stdout = folder.done(&TUNE).stdout;
     let line = stdout.lines().find(|line| line.trim_start().starts_with("rate_deg_per_s")).expect("a line of its own");
-    assert!(line.contains("1.000e-3"), "{stdout}");
+    assert!(line.contains("2.000e-2"), "{stdout}");
     assert!(stdout.contains("runs of the estimator") && stdout.contains("variances are "), "{stdout}");
 }
 
@@ -137,7 +162,32 @@ fn variances_that_are_too_large_stay_as_they_are() {
 
 #[test]
 fn variances_grow_no_further_than_a_table_may_say() {
-    let tiny = UncertaintyKeys { contact_deg: 8.9, ..deviations(1e-3) };
-    let (_, file, _) = tuned(&training(), with_bias_filter(DriftKeys::kalman(), Some(tiny)));
-    assert!(file.uncertainty.is_some_and(|keys| keys.contact_deg <= 9.0 && keys.end_mm > 5e-4));
+    let small = UncertaintyKeys { contact_deg: 8.9, ..deviations(0.1) };
+    let end_mm = small.end_mm;
+    let (_, file, _) = tuned(&training(), with_bias_filter(DriftKeys::kalman(), Some(small)));
+    assert!(file.uncertainty.is_some_and(|keys| keys.contact_deg <= 9.0 && keys.end_mm > 1.1 * end_mm));
+}
+
+/// Tuned on free swings alone, the errors of the fused shape fall in runs of scenarios 1 and 2 that it has not seen; in
+/// scenario 3 they grow. Fusion stays better than the bend sensors and the open-loop IMUs in each scenario. It is not compared
+/// with `imu_c`, which has the correction of the same bias filter and the same errors to 1 %.
+#[test]
+fn a_tuned_bias_filter_is_better_than_uncorrected_sensors_in_every_scenario() {
+    let folder = Folder::new();
+    folder.done(&["simulate", "--scenario", "1", "--seconds", "900", "--seed", "7", "-o", "session.csv"]);
+    folder.done(&["tune", "session.csv", "--table", table(), "-o", "tuned.toml"]);
+    for scenario in ["1", "2", "3"] {
+        folder.done(&["simulate", "--scenario", scenario, "--seconds", "900", "--seed", "12", "-o", "unseen.csv"]);
+        let rmse_mm = |table, method| {
+            let report = json(&folder.done(&["replay", "unseen.csv", "--table", table, "--json"]));
+            figure(&report, method, "tip_rmse_mm")
+        };
+        let tuned = rmse_mm("tuned.toml", "fusion");
+        for method in ["bend", "imu_o"] {
+            assert!(tuned < rmse_mm("tuned.toml", method), "{scenario}: fusion {tuned} mm, {method}");
+        }
+        if scenario != "3" {
+            assert!(tuned < rmse_mm(table(), "fusion"), "{scenario}: {tuned} mm is better than before");
+        }
+    }
 }
