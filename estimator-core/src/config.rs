@@ -245,7 +245,7 @@ pub struct UncertaintyConfig {
     pub contact: Q,
     /// Variance of each heading's own error, rad²: what one θ has too much of it, the next has too little.
     pub heading: Q,
-    /// Variance of either coordinate of a segment's end in its own frame, whatever the angle, m².
+    /// Variance of either coordinate of a segment's end in its own frame, at any bend angle, m².
     pub end: Q,
 }
 

@@ -40,7 +40,7 @@ pub struct Estimator<'t, S, const N: usize, const W: usize> {
 }
 
 /// Both drift corrections, of which the configuration selects one: a static has room for both, and a small stack for
-/// neither. The bias filter works in fixed point whatever `S` is, so that every number type takes the same decisions.
+/// neither. The bias filter works in fixed point for every `S`, so that every number type takes the same decisions.
 #[derive(Debug, Clone)]
 struct Drift<const N: usize, const W: usize> {
     moving_average: MovingAverage<N, W>,

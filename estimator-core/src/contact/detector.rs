@@ -83,7 +83,7 @@ struct Residual {
     angle: i32,
 }
 
-/// A contact that has begun.
+/// An active contact.
 #[derive(Debug, Clone, Copy)]
 struct ActiveContact {
     /// The residual before it.

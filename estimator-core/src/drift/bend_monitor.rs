@@ -10,11 +10,11 @@ use crate::numeric::variance::{degrees, is_beyond, magnitude, scaled_square, sma
 
 /// Time over which the difference is averaged, time units: 60 s.
 const DIFFERENCE_TIME: Constant = Constant::new(60.0 / TIME_UNIT_S);
-/// Part of the slow difference that says nothing about the mean.
+/// Part of the slow difference that carries no information about the mean.
 const IGNORED_DIFFERENCE: Constant = degrees(0.2);
 /// A sensor is left out for so long after it last departed.
 const DISTRUST_US: u64 = 20_000_000;
-/// Departure from the IMUs, and from the twin, in predicted standard deviations, beside 1°.
+/// One over the departure from the IMUs, and from the twin (1° subtracted first), in predicted standard deviations.
 const DEPARTURE: Constant = Constant::new(1.0 / 4.0);
 const DIFFERENCE_DEPARTURE: Constant = Constant::new(1.0 / 5.0);
 const DIFFERENCE_MARGIN: Constant = degrees(1.0);

@@ -187,7 +187,7 @@ impl<F: Scalar, const N: usize> BiasFilter<F, N> {
         self.state.bias_covariance(i, j)
     }
 
-    /// Variance of heading `i` beside the biases: of one that is absent, what its bend sensors may be off by.
+    /// Variance of heading `i` in addition to its bias: that of the bend sensors for an absent heading, else zero.
     pub fn absence_variance(&self, config: &BendErrorConfig, i: usize) -> F {
         let Some(track) = self.segments.get(i).filter(|track| !track.is_heading_read) else { return F::zero() };
         let absent = since(track.heading_read_at_us, self.last_us.unwrap_or(0));

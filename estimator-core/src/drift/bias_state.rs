@@ -126,7 +126,7 @@ impl<S: Scalar, const N: usize> BiasState<S, N> {
         self.grow(i, RATE, S::from_q(config.rate_noise) * dt, S::constant(LARGEST_RATE));
     }
 
-    /// Time since the last prediction, time units; `None` where there is none.
+    /// Time since the last prediction, time units; `None` where no time has passed.
     fn elapsed(&mut self, i: usize, time_us: u64) -> Option<S> {
         let dt = self.elapsed_until(i, time_us)?;
         *self.predicted_at_us.get_mut(i)? = time_us;

@@ -12,7 +12,7 @@ pub struct Decimator {
     oldest: u16,
 }
 
-/// What [`Decimator`] says of one sample.
+/// Output of [`Decimator`] for one sample.
 #[derive(Debug, Clone, Copy)]
 pub struct Decimated {
     pub(crate) oldest: u16,

@@ -14,7 +14,7 @@ const WINDOW_US: u64 = 5_000_000;
 const HOLD_US: u64 = 19_500_000;
 /// Time constant of the means, time units: half a second, a 128th.
 const MEAN_TIME: Constant = Constant::new(0.5 / TIME_UNIT_S);
-/// Largest change of a heading in a window, and range of its readings: 0.15 °/s, and 0.5° of noise beside it.
+/// Largest change of a heading in a window, and range of its readings: 0.15 °/s, plus 0.5° of noise for the range.
 const HEADING_CHANGE: Constant = degrees(0.75);
 const HEADING_RANGE: Constant = degrees(1.25);
 /// Largest change of a bend angle in a window.

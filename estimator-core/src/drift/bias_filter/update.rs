@@ -20,7 +20,7 @@ const LONG_ERRORS: i32 = 2;
 /// Factor on the measurement noise of one sensor whose twin is missing, and the largest noise that it multiplies.
 const SINGLE: i32 = 5;
 const LARGEST_SINGLE: Constant = Constant::new(6.0);
-/// Innovation gate in predicted standard deviations.
+/// Innovation gate: one over six predicted standard deviations.
 const GATE: Constant = Constant::new(1.0 / 6.0);
 /// A turn is repeated where a heading is missing that was read within this time.
 const RETRY_US: u64 = 500_000;
@@ -36,7 +36,7 @@ const LOST_SENSOR: Constant = Constant::new(1.5);
 /// Doubt about the heading of a resting arm, 0.02 °/√s, and about the rate learned at rest.
 const REST_CREEP: Constant = variance_deg(0.02 * 8.0);
 const REST_READING: Constant = variance_deg(0.064);
-/// Gate of a rest's heading change, in predicted standard deviations.
+/// Gate of a heading change at rest: one over three predicted standard deviations.
 const REST_GATE: Constant = Constant::new(1.0 / 3.0);
 
 impl<F: Scalar, const N: usize> BiasFilter<F, N> {
