@@ -289,7 +289,7 @@ impl BiasFilterConfig {
         // 0.01 °/√s and 2e-4 °/s/√s, over a time unit of 64 s.
         bias_noise: variance_deg(0.01 * 8.0).q,
         rate_noise: variance_deg(2e-4 * TIME_UNIT_S * 8.0).q,
-        offset: variance_deg(1.5).q,
+        offset: variance_deg(1.0).q,
         offset_rate: Q::from_f64(TIME_UNIT_S / 1000.0),
     };
 }

@@ -19,13 +19,11 @@ use crate::drift::rest::RestDetector;
 use crate::drift::{CorrectedArm, DriftCorrection, SensedArm};
 use crate::numeric::phase::Turns;
 use crate::numeric::scalar::{Constant, Scalar};
-use crate::numeric::variance::{degrees, magnitude, smaller, variance_deg};
+use crate::numeric::variance::{smaller, variance_deg};
 use crate::types::Condition;
 
 /// An absent heading's own error: 0.5° after a second, growing with the root of time.
 const ABSENT: Constant = variance_deg(0.5 * 8.0);
-/// Bend sensors do not move by more in one sample: a step of a sensor, not of the arm.
-const BEND_STEP: Constant = degrees(12.0);
 /// A restart of an IMU and a step of a bend sensor are reported for so long.
 const RECENT_US: u64 = 60_000_000;
 /// Largest ratio of two errors: nothing is learned beyond it.
@@ -87,6 +85,8 @@ struct SegmentTrack<F> {
     theta: F,
     turn_theta: F,
     turned_at_us: Option<u64>,
+    /// Mean of θ over the last minutes, rad.
+    lean: F,
     /// θ_bend less its reference in the tare, until the first turn, rad.
     tare_bend: Option<F>,
     /// Change over a window of rest, until the next turn.
@@ -107,7 +107,8 @@ struct SegmentTrack<F> {
     gated_since_us: Option<u64>,
     restarted_at_us: Option<u64>,
     stepped_at_us: Option<u64>,
-    /// Variance of the offset's prior, so², and the part of it that lost sensors have added.
+    /// Variance of the offset that the tare shows, that of the prior, so², and the part of it that lost sensors have added.
+    session_offset: F,
     offset_prior: F,
     lost: F,
     /// Whether one sensor of two is missing.
@@ -125,6 +126,7 @@ impl<F: Scalar> SegmentTrack<F> {
             theta: zero,
             turn_theta: zero,
             turned_at_us: None,
+            lean: zero,
             tare_bend: None,
             rest: None,
             bend: None,
@@ -139,19 +141,17 @@ impl<F: Scalar> SegmentTrack<F> {
             gated_since_us: None,
             restarted_at_us: None,
             stepped_at_us: None,
+            session_offset: zero,
             offset_prior: zero,
             lost: zero,
             is_single: false,
         }
     }
 
-    /// Takes the angles of the bend sensors, `dt` after the last ones.
-    fn take_bend(&mut self, angles: [Option<F>; SENSORS_PER_SEGMENT], dt: F, time_us: u64) {
+    /// Takes the angles of the bend sensors.
+    fn take_bend(&mut self, angles: [Option<F>; SENSORS_PER_SEGMENT], time_us: u64) {
         self.bend = self.monitor.mean(angles, self.has_twins, time_us);
-        let bend = self.bend;
-        let motion = bend.zip(self.last_bend).map_or(F::zero(), |(now, last)| now.theta - last);
-        let is_step = magnitude(motion) > F::constant(BEND_STEP) && dt < F::from_micros(1_000_000);
-        self.motion = if is_step { F::zero() } else { motion };
+        self.motion = self.bend.zip(self.last_bend).map_or(F::zero(), |(now, last)| now.theta - last);
     }
 }
 
@@ -238,7 +238,7 @@ impl<S: Scalar, F: Scalar, const N: usize> DriftCorrection<S, N> for BiasFilter<
         let mut angles = sensed.bend.map(|bend| bend.sensors.map(|theta| theta.map(converted)));
         for (track, angles) in self.segments.iter_mut().zip(&mut angles) {
             *angles = track.monitor.corrected(*angles);
-            track.take_bend(*angles, dt, sensed.time_us);
+            track.take_bend(*angles, sensed.time_us);
         }
         if !self.is_started && !self.tare(config, filter, sensed) {
             // Before the IMUs have a zero, the bend sensors alone.

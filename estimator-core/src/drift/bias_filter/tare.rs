@@ -5,13 +5,16 @@ use crate::drift::SensedArm;
 use crate::drift::bias_filter::{BiasFilter, SegmentTrack};
 use crate::numeric::phase::Turns;
 use crate::numeric::scalar::{Constant, Scalar};
-use crate::numeric::variance::{degrees, larger, scaled_square, smaller, variance_deg};
+use crate::numeric::variance::{degrees, scaled_square, smaller, variance_deg};
 
 /// A tare is bad where headings spread by more than this, or the bend sensors' root mean square is this far off the reference
 /// pose; its straightness is the last one.
 const STILL: Constant = degrees(1.5);
 const BENT: Constant = variance_deg(6.0);
 const BAD_TARE: Constant = variance_deg(12.0);
+
+/// Weight of the offsets' prior variance, in segments that show their offset.
+const PRIOR_SEGMENTS: i32 = 2;
 
 /// Sums of the tare.
 #[derive(Debug, Clone, Copy)]
@@ -92,13 +95,6 @@ impl<F: Scalar, const N: usize> TareStatistics<F, N> {
     }
 }
 
-/// Mean of the bend sensors' variances over the segments that have any.
-fn mean_variance<S: Scalar, F: Scalar>(segments: &[SegmentConfig<S>]) -> F {
-    let with_sensors = || segments.iter().filter(|segment| segment.bend.iter().any(Option::is_some));
-    let count = F::from_int(with_sensors().count().max(1) as i32);
-    with_sensors().fold(F::zero(), |sum, segment| sum + F::from_q(segment.bend_error.mean) / count)
-}
-
 impl<F: Scalar, const N: usize> BiasFilter<F, N> {
     /// Gathers the tare, and starts at its end; `false` until then.
     pub(super) fn tare<S: Scalar>(
@@ -134,9 +130,12 @@ impl<F: Scalar, const N: usize> BiasFilter<F, N> {
         let spread = self.tare.bend_variance(segments);
         self.is_tare_bad = self.tare.has_moved() || spread > F::constant(BENT);
         if !self.is_tare_bad {
-            let shown = smaller(larger(spread - mean_variance(segments), F::zero()), F::constant(BENT));
+            let count = F::from_int(self.tare.segments.iter().filter(|tare| tare.bend_count > 0).count() as i32);
+            let (own, all) = (F::from_int(PRIOR_SEGMENTS), F::from_int(PRIOR_SEGMENTS) + count);
             for track in &mut self.segments {
-                track.offset_prior = larger(track.offset_prior, shown + shown);
+                let shown = track.session_offset * (own / all) + spread * (count / all);
+                track.offset_prior += shown - track.session_offset;
+                track.session_offset = shown;
             }
         }
     }
@@ -147,7 +146,8 @@ impl<F: Scalar, const N: usize> BiasFilter<F, N> {
         let headings = sensed.headings.iter().zip(config.segments);
         for (track, (heading, segment)) in self.segments.iter_mut().zip(headings) {
             let excess = track.monitor.offset_excess(&segment.bend_error, true);
-            track.offset_prior = F::from_q(filter.offset) + excess;
+            track.session_offset = F::from_q(filter.offset);
+            track.offset_prior = track.session_offset + excess;
             track.has_twins = segment.bend.iter().all(Option::is_some);
             track.last_bend = track.bend.map(|bend| bend.theta);
             track.motion = F::zero();

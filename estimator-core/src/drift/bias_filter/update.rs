@@ -15,6 +15,8 @@ const IMU_TRAVEL: Constant = degrees(1.0);
 const BEND_TRAVEL: Constant = degrees(0.5);
 /// Travel is counted up to this, rad.
 const LONGEST_TRAVEL: Constant = Constant::new(16.0);
+/// A segment that has not moved teaches once in this time, with the largest noise.
+const STILL_US: u64 = 20_000_000;
 /// Factor on the measurement noise: errors that last longer than ℓ and τ.
 const LONG_ERRORS: i32 = 2;
 /// Factor on the measurement noise of one sensor whose twin is missing, and the largest noise that it multiplies.
@@ -31,6 +33,9 @@ const GATED: Constant = variance_deg(3.0);
 const STEPPED: Constant = variance_deg(1.0);
 /// Factor on the bend sensors' variance in the tare: one pose, with hysteresis in it.
 const TARE_NOISE: Constant = Constant::new(4.0);
+/// Error of bend sensors that stay bent, by their creep: a share of the mean bend angle over this time, time units.
+const LEAN_ERROR: Constant = Constant::new(0.1);
+const LEAN_TIME: Constant = Constant::new(0.5);
 /// Growth of the offset's variance where one sensor of two is lost, in slow variances of their difference.
 const LOST_SENSOR: Constant = Constant::new(1.5);
 /// Doubt about the heading of a resting arm, 0.02 °/√s, and about the rate learned at rest.
@@ -64,7 +69,7 @@ impl<F: Scalar, const N: usize> BiasFilter<F, N> {
         }
         self.turn = if i + 1 < segments.len().min(N) { i + 1 } else { 0 };
         self.check_bend(i, &segment.bend_error, *angles, are_headings_read, time_us);
-        self.grow_offset(i, filter, &segment.bend_error);
+        self.grow_offset(i, &segment.bend_error);
         self.predict(i, filter, time_us);
         let biases = self.state.bias;
         self.use_tare(i, &segment.bend_error);
@@ -106,6 +111,7 @@ impl<F: Scalar, const N: usize> BiasFilter<F, N> {
     ) {
         let Some(track) = self.segments.get_mut(i) else { return };
         let dt = since(track.turned_at_us.replace(time_us).unwrap_or(time_us), time_us);
+        track.lean += smaller(dt / F::constant(LEAN_TIME), F::one()) * (track.theta - track.lean);
         track.monitor.compare(angles, dt, time_us);
         let motion = are_headings_read.then(|| track.theta - track.turn_theta);
         if track.monitor.find_steps(error, angles, motion, dt, time_us) {
@@ -141,14 +147,17 @@ impl<F: Scalar, const N: usize> BiasFilter<F, N> {
     }
 
     /// Widens the prior of the offset where the two sensors disagree more than before, or one is lost.
-    fn grow_offset(&mut self, i: usize, filter: &BiasFilterConfig, error: &BendErrorConfig) {
+    fn grow_offset(&mut self, i: usize, error: &BendErrorConfig) {
         let Some(track) = self.segments.get_mut(i) else { return };
         let is_single = track.bend.is_some_and(|bend| bend.is_single);
         if is_single && !track.is_single {
             track.lost += F::constant(LOST_SENSOR) * scaled_square(F::from_q(error.slow_difference));
         }
         track.is_single = is_single;
-        let prior = F::from_q(filter.offset) + track.lost + track.monitor.offset_excess(error, false);
+        let prior = track.session_offset
+            + track.lost
+            + track.monitor.offset_excess(error, false)
+            + scaled_square(F::constant(LEAN_ERROR) * track.lean);
         if prior > track.offset_prior {
             self.state.doubt(i, OFFSET, prior - track.offset_prior);
             track.offset_prior = prior;
@@ -170,6 +179,9 @@ impl<F: Scalar, const N: usize> BiasFilter<F, N> {
             return;
         }
         track.gated_since_us = None;
+        if self.rest.is_resting() {
+            track.updated_at_us = time_us;
+        }
         if let Some(ratio) = track.noise_ratio(error, bend.theta, time_us) {
             let r = F::from_int(LONG_ERRORS) * ratio * sigma;
             let r = if bend.is_single { F::from_int(SINGLE) * smaller(r, F::constant(LARGEST_SINGLE)) } else { r };
@@ -219,7 +231,8 @@ impl<F: Scalar> SegmentTrack<F> {
         let travel = magnitude(self.theta - self.counted_theta);
         let bend_travel = magnitude(bend - self.counted_bend);
         if travel < F::constant(IMU_TRAVEL) || bend_travel < F::constant(BEND_TRAVEL) {
-            return None;
+            let is_overdue = time_us.saturating_sub(self.updated_at_us) >= STILL_US;
+            return is_overdue.then(|| F::from_int(MAX_RATIO));
         }
         (self.counted_theta, self.counted_bend) = (self.theta, bend);
         self.travelled = smaller(self.travelled + travel, F::constant(LONGEST_TRAVEL));
