@@ -150,7 +150,7 @@ pub struct Condition {
     pub tare_bad: bool,
     /// The IMU is not read, frozen, or reads what the arm cannot have done.
     pub imu_absent: bool,
-    /// The IMU has had a new zero within the last minute.
+    /// The IMU has had a new zero within the last minute, or may have: it was absent.
     pub imu_restarted: bool,
     /// A bend sensor is missing or left out, or has had a new zero within the last minute.
     pub bend_distrusted: bool,

@@ -75,8 +75,8 @@ struct RestChange<F> {
 struct SegmentTrack<F> {
     gate: HeadingGate<F>,
     monitor: BendMonitor<F>,
-    /// Whether the segment has two bend sensors.
-    has_twins: bool,
+    /// Number of bend sensors that the segment has.
+    sensors: usize,
     /// Heading of the segment's end in {W}.
     heading: Turns,
     /// Bias that it is corrected by.
@@ -113,6 +113,8 @@ struct SegmentTrack<F> {
     lost: F,
     /// Whether one sensor of two is missing.
     is_single: bool,
+    /// Whether any bend sensor is missing.
+    is_bend_missing: bool,
 }
 
 impl<F: Scalar> SegmentTrack<F> {
@@ -120,7 +122,7 @@ impl<F: Scalar> SegmentTrack<F> {
         Self {
             gate: HeadingGate::new(zero),
             monitor: BendMonitor::new(zero),
-            has_twins: false,
+            sensors: 0,
             heading: Turns::ZERO,
             bias: Turns::ZERO,
             theta: zero,
@@ -145,12 +147,18 @@ impl<F: Scalar> SegmentTrack<F> {
             offset_prior: zero,
             lost: zero,
             is_single: false,
+            is_bend_missing: false,
         }
+    }
+
+    /// Whether the segment has two bend sensors.
+    fn has_twins(&self) -> bool {
+        self.sensors > 1
     }
 
     /// Takes the angles of the bend sensors.
     fn take_bend(&mut self, angles: [Option<F>; SENSORS_PER_SEGMENT], time_us: u64) {
-        self.bend = self.monitor.mean(angles, self.has_twins, time_us);
+        self.bend = self.monitor.mean(angles, self.has_twins(), time_us);
         self.motion = self.bend.zip(self.last_bend).map_or(F::zero(), |(now, last)| now.theta - last);
     }
 }
@@ -209,7 +217,9 @@ impl<F: Scalar, const N: usize> BiasFilter<F, N> {
             tare_bad: self.is_tare_bad,
             imu_absent: !track.is_heading_read,
             imu_restarted: is_recent(track.restarted_at_us),
-            bend_distrusted: track.monitor.is_distrusted(now_us) || track.is_single || is_recent(track.stepped_at_us),
+            bend_distrusted: track.monitor.is_distrusted(now_us)
+                || track.is_bend_missing
+                || is_recent(track.stepped_at_us),
             gated: track.gated_since_us.is_some(),
         }
     }

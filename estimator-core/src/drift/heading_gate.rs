@@ -66,8 +66,8 @@ pub struct Expected<S> {
 pub enum Verdict<S> {
     /// The heading in {W}.
     Accepted(Turns),
-    /// The heading in {W} after an absence of so many µs, in which the IMU may have restarted near its old zero.
-    Returned(Turns, u64),
+    /// The heading in {W} after an absence, in which the IMU may have restarted near its old zero.
+    Returned(Turns),
     /// The IMU has a new zero after an absence of so many µs: add the angle to its bias.
     Restarted(Turns, u64),
     /// Not read, or not used.
@@ -136,7 +136,7 @@ impl<S: Scalar> HeadingGate<S> {
         }
         self.accept(reading, expected.heading + expected.bias + deviation, time_us);
         let heading = expected.heading + deviation;
-        if absence_us > ABSENCE_US { Verdict::Returned(heading, absence_us) } else { Verdict::Accepted(heading) }
+        if absence_us > ABSENCE_US { Verdict::Returned(heading) } else { Verdict::Accepted(heading) }
     }
 
     fn accept(&mut self, reading: Turns, scaled: Turns, time_us: u64) {

@@ -101,7 +101,11 @@ impl<F: Scalar> SegmentTrack<F> {
         let mut excess = F::zero();
         self.bias = expected.bias;
         (self.heading, self.is_heading_read) = match verdict {
-            Verdict::Accepted(heading) | Verdict::Returned(heading, _) => (heading, true),
+            Verdict::Accepted(heading) => (heading, true),
+            Verdict::Returned(heading) => {
+                self.restarted_at_us = Some(time_us);
+                (heading, true)
+            }
             Verdict::Restarted(deviation, _) => {
                 self.bias = self.bias + deviation;
                 self.restarted_at_us = Some(time_us);
@@ -130,7 +134,7 @@ fn doubt<F: Scalar, const N: usize>(
     error: &BendErrorConfig,
 ) {
     match verdict {
-        Verdict::Returned(..) => state.doubt(i, BIAS, F::constant(RETURNED)),
+        Verdict::Returned(_) => state.doubt(i, BIAS, F::constant(RETURNED)),
         Verdict::Restarted(deviation, absence_us) => {
             state.add_to_bias(i, deviation);
             let absence = F::from_micros(absence_us.min(400_000_000) as u32);

@@ -5,13 +5,17 @@ use crate::drift::SensedArm;
 use crate::drift::bias_filter::{BiasFilter, SegmentTrack};
 use crate::numeric::phase::Turns;
 use crate::numeric::scalar::{Constant, Scalar};
-use crate::numeric::variance::{degrees, scaled_square, smaller, variance_deg};
+use crate::numeric::variance::{degrees, magnitude, scaled_square, smaller, variance_deg};
 
 /// A tare is bad where headings spread by more than this, or the bend sensors' root mean square is this far off the reference
 /// pose; its straightness is the last one.
 const STILL: Constant = degrees(1.5);
 const BENT: Constant = variance_deg(6.0);
 const BAD_TARE: Constant = variance_deg(12.0);
+
+/// A heading that changes by more than this from one reading to the next, and by twice what the bend sensors below have
+/// moved, has a new zero.
+const STEP: Constant = degrees(6.0);
 
 /// Weight of the offsets' prior variance, in segments that show their offset.
 const PRIOR_SEGMENTS: i32 = 2;
@@ -26,26 +30,37 @@ pub struct TareStatistics<F, const N: usize> {
 /// Sums of one segment.
 #[derive(Debug, Clone, Copy)]
 struct SegmentTare<F> {
-    /// First heading, and the range of all relative to it.
+    /// First heading since the last step, and the range of all relative to it.
     first: Option<Turns>,
     range: [F; 2],
+    newest: Option<Turns>,
+    /// Whether the IMU has restarted with another zero.
+    has_stepped: bool,
+    newest_bend: Option<F>,
     bend_sum: Turns,
     bend_count: u16,
 }
 
 impl<F: Scalar> SegmentTare<F> {
-    fn add_heading(&mut self, heading: Turns) {
+    /// Takes a heading; the bend sensors up to this segment have moved by `moved` since the last sample.
+    fn add_heading(&mut self, heading: Turns, moved: F) {
+        let change = self.newest.replace(heading).map_or(F::zero(), |last| F::from_phase((heading - last).phase()));
+        if magnitude(change) > F::constant(STEP) + moved + moved {
+            (self.first, self.range, self.has_stepped) = (None, [F::zero(); 2], true);
+        }
         let first = *self.first.get_or_insert(heading);
         let deviation: F = F::from_phase((heading - first).phase());
         let [lowest, highest] = self.range;
         self.range = [smaller(lowest, deviation), -smaller(-highest, -deviation)];
     }
 
-    fn add_bend(&mut self, theta: F) {
+    /// Takes a bend angle; gives its change since the last one.
+    fn add_bend(&mut self, theta: F) -> F {
         if self.bend_count < u16::MAX {
             self.bend_sum = self.bend_sum + theta.to_turns();
             self.bend_count += 1;
         }
+        self.newest_bend.replace(theta).map_or(F::zero(), |last| magnitude(theta - last))
     }
 
     fn has_moved(&self) -> bool {
@@ -60,18 +75,25 @@ impl<F: Scalar> SegmentTare<F> {
 
 impl<F: Scalar, const N: usize> TareStatistics<F, N> {
     pub const fn new(zero: F) -> Self {
-        let segment = SegmentTare { first: None, range: [zero; 2], bend_sum: Turns::ZERO, bend_count: 0 };
+        let segment = SegmentTare {
+            first: None,
+            range: [zero; 2],
+            newest: None,
+            has_stepped: false,
+            newest_bend: None,
+            bend_sum: Turns::ZERO,
+            bend_count: 0,
+        };
         Self { samples: 0, segments: [segment; N] }
     }
 
     fn add<S>(&mut self, sensed: &SensedArm<S, N>, tracks: &[SegmentTrack<F>; N]) {
         self.samples = self.samples.saturating_add(1);
+        let mut moved = F::zero();
         for ((segment, heading), track) in self.segments.iter_mut().zip(&sensed.headings).zip(tracks) {
+            moved += track.bend.map_or(F::zero(), |bend| segment.add_bend(bend.theta));
             if heading.is_read() {
-                segment.add_heading(heading.unwrapped());
-            }
-            if let Some(bend) = track.bend {
-                segment.add_bend(bend.theta);
+                segment.add_heading(heading.unwrapped(), moved);
             }
         }
     }
@@ -144,15 +166,21 @@ impl<F: Scalar, const N: usize> BiasFilter<F, N> {
     fn start_tracks<S: Scalar>(&mut self, config: &ArmConfig<S>, filter: &BiasFilterConfig, sensed: &SensedArm<S, N>) {
         let mut below = Turns::ZERO;
         let headings = sensed.headings.iter().zip(config.segments);
-        for (track, (heading, segment)) in self.segments.iter_mut().zip(headings) {
+        for ((track, tare), (heading, segment)) in self.segments.iter_mut().zip(&self.tare.segments).zip(headings) {
             let excess = track.monitor.offset_excess(&segment.bend_error, true);
             track.session_offset = F::from_q(filter.offset);
             track.offset_prior = track.session_offset + excess;
-            track.has_twins = segment.bend.iter().all(Option::is_some);
+            track.sensors = segment.bend.iter().flatten().count();
             track.last_bend = track.bend.map(|bend| bend.theta);
             track.motion = F::zero();
             let is_tared = config.tare_samples > 0;
-            if let Some(in_world) = heading.in_world().filter(|_| is_tared || heading.is_read()) {
+            let in_world = heading.in_world().filter(|_| is_tared || heading.is_read());
+            // The mean over the tare is no zero of an IMU that restarted in it: the newest reading is.
+            let in_world = if tare.has_stepped { Some(segment.reference) } else { in_world };
+            if tare.has_stepped {
+                track.restarted_at_us = Some(sensed.time_us);
+            }
+            if let Some(in_world) = in_world {
                 track.gate.tare(heading.unwrapped(), in_world, sensed.time_us);
                 (track.heading, track.heading_read_at_us) = (in_world, sensed.time_us);
             } else if is_tared {

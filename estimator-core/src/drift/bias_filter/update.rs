@@ -124,7 +124,7 @@ impl<F: Scalar, const N: usize> BiasFilter<F, N> {
         }
         track.turn_theta = track.theta;
         // Without a sensor that has just stepped.
-        track.bend = track.monitor.mean(angles, track.has_twins, time_us);
+        track.bend = track.monitor.mean(angles, track.has_twins(), time_us);
         let heading = track.is_heading_read.then(|| track.heading + track.bias);
         self.rest.take(i, heading, track.bend.map(|bend| bend.theta.to_turns()), dt);
     }
@@ -154,6 +154,7 @@ impl<F: Scalar, const N: usize> BiasFilter<F, N> {
             track.lost += F::constant(LOST_SENSOR) * scaled_square(F::from_q(error.slow_difference));
         }
         track.is_single = is_single;
+        track.is_bend_missing = is_single || (track.bend.is_none() && track.sensors > 0);
         let prior = track.session_offset
             + track.lost
             + track.monitor.offset_excess(error, false)
