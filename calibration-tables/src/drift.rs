@@ -147,11 +147,11 @@ impl DriftKeys {
     }
 
     const fn offset_deg() -> f64 {
-        1.5
+        1.0
     }
 
     const fn offset_s() -> f64 {
-        1000.0
+        1500.0
     }
 
     pub(crate) fn check(&self) -> Result<(), FileError> {

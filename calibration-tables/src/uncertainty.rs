@@ -118,7 +118,7 @@ impl UncertaintyKeys {
     /// Factor of the bias filter's covariance: the priors and the noise of the bend sensors are wide.
     #[must_use]
     pub const fn bias_share() -> f64 {
-        0.7
+        0.6
     }
 }
 

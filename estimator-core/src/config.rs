@@ -290,7 +290,7 @@ impl BiasFilterConfig {
         bias_noise: variance_deg(0.01 * 8.0).q,
         rate_noise: variance_deg(2e-4 * TIME_UNIT_S * 8.0).q,
         offset: variance_deg(1.0).q,
-        offset_rate: Q::from_f64(TIME_UNIT_S / 1000.0),
+        offset_rate: Q::from_f64(TIME_UNIT_S / 1500.0),
     };
 }
 
