@@ -54,6 +54,8 @@ pub struct DriftTuningKeys {
     pub angle_random_walk_deg_per_sqrt_s: [f64; 2],
     /// Of `[drift]`.
     pub offset_deg: [f64; 2],
+    /// Of `[drift]`.
+    pub offset_s: [f64; 2],
 }
 
 /// Root mean square errors of fusion over all samples.

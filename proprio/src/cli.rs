@@ -31,7 +31,7 @@ pub enum Command {
     Align(Align),
     /// Make a table of a session with camera truth
     Calibrate(Calibrate),
-    /// Tune a table's observer and filters on sessions with truth; Ctrl-C keeps the best so far
+    /// Tune a table's bias filter, or its Kalman filters, on sessions with truth; Ctrl-C keeps the best so far
     Tune(Tune),
     /// Run sessions through the estimator and compare with truth
     Replay(Replay),

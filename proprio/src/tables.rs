@@ -86,17 +86,18 @@ pub fn tuning(record: &TuningKeys, iteration_time: Duration) -> String {
         "{}\n{stopped} after {iterations} iterations of {each_s:.3} s; the table has iteration {kept}\n",
         text(&mut table)
     );
-    filters + &record.drift.as_ref().map_or_else(String::new, observer) + &variances(record)
+    filters + &record.drift.as_ref().map_or_else(String::new, bias_filter) + &variances(record)
 }
 
-/// The drift observer's parameters, before and after.
-fn observer(of: &DriftTuningKeys) -> String {
-    let mut table = table(&["drift observer", "before", "after"]);
+/// The bias filter's parameters, before and after.
+fn bias_filter(of: &DriftTuningKeys) -> String {
+    let mut table = table(&["bias filter", "before", "after"]);
     let keys = [
         ("rate_deg_per_s", of.rate_deg_per_s),
         ("rate_random_walk_deg_per_s_sqrt_s", of.rate_random_walk_deg_per_s_sqrt_s),
         ("angle_random_walk_deg_per_sqrt_s", of.angle_random_walk_deg_per_sqrt_s),
         ("offset_deg", of.offset_deg),
+        ("offset_s", of.offset_s),
     ];
     for (name, values) in keys {
         table.add_row([name.to_owned()].into_iter().chain(values.map(|value| format!("{value:.3e}"))));

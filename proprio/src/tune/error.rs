@@ -17,13 +17,10 @@ pub enum TuningError {
         least_deg: f64,
     },
     /// Too little truth to tune on, or to check the tuning.
-    #[error(
-        "{} has {found} samples with a fused and a true tip, expected at least {least}",
-        if *.is_held_back { "the last fifth, which is held back," } else { "the part before the last fifth" }
-    )]
+    #[error("{part} has {found} samples with a fused and a true tip, expected at least {least}")]
     TooFewSamples {
-        /// Which part.
-        is_held_back: bool,
+        /// Which part of the session.
+        part: &'static str,
         /// Samples found.
         found: u64,
         /// Samples needed.

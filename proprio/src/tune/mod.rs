@@ -4,7 +4,8 @@
 //!    Each try is a run of the estimator, and its errors are those of the fused shape.
 //! 2. A table with the anchor: Q, R and H of all Kalman filters. Nothing before the filters depends on their parameters, so
 //!    gradient descent runs the estimator's own filters over their inputs, in dual numbers, and chains the derivatives.
-//! 3. The last fifth of each session is held back. What gets worse there was tuned to noise, and is not kept.
+//! 3. Every third session is held back, or the last fifth of each where there are fewer than three. What gets worse there was
+//!    tuned to noise or to one motion, and is not kept.
 //! 4. Where the table says what errors come from, all variances grow by one factor if they are too small.
 
 mod descent;
@@ -13,8 +14,8 @@ mod error;
 mod errors;
 mod filters;
 mod objective;
-mod observer;
 mod parameters;
+mod search;
 #[cfg(test)]
 mod tests;
 mod training;
@@ -34,11 +35,8 @@ use crate::replay::{NamedTable, replay};
 use descent::{Iterate, MAX_ITERATIONS, descend};
 use errors::Errors;
 use objective::{Evaluation, Objective, SessionErrors};
-use observer::{MAX_RUNS, observer_at, search};
-use training::Training;
-
-/// Samples with truth that each part of a session needs.
-const LEAST_SAMPLES: u64 = 50;
+use search::{MAX_RUNS, filter_at, search};
+use training::{Part, Training};
 
 /// Sessions on which a table can be tuned.
 pub struct Tuner<'t> {
@@ -69,11 +67,14 @@ impl<'t> Tuner<'t> {
         if !has_bend_sensors {
             return Err(Error::Tuning { path: table.path.to_owned(), source: TuningError::NoBendSensors });
         }
-        let sessions = sessions.iter().map(|path| Training::read(path, table)).collect::<Result<Vec<_>, _>>()?;
+        let count = sessions.len();
+        let part = |k| Part::of_session(k, count);
+        let read = |(k, path): (usize, &PathBuf)| Training::read(path, part(k), table);
+        let sessions = sessions.iter().enumerate().map(read).collect::<Result<Vec<_>, _>>()?;
         let objective = Objective::new(sessions, table.bake::<f64>(table.file.rate_hz)?.config().segments);
         let before = objective.of_table(&table.file);
         for (session, errors) in objective.sessions().iter().zip(&before.sessions) {
-            errors.check_count().and_then(|()| session.check_truth()).map_err(|source| session.error(source))?;
+            session.check_count(errors).and_then(|()| session.check_truth()).map_err(|source| session.error(source))?;
         }
         Ok(Self { table, objective, before })
     }
@@ -121,7 +122,7 @@ impl<'t> Tuner<'t> {
         let mut progress = Progress::new("tuning the bias filter".to_owned(), MAX_RUNS as u64);
         let (mut runs, mut stopped) = (0, Stopped::Converged);
         let finds = search(self.before.clone(), |place| {
-            table.drift = Some(observer_at(start, place));
+            table.drift = Some(filter_at(start, place));
             self.objective.measure(&table);
             let found = self.objective.of_table(&table);
             runs += 1;
@@ -133,7 +134,7 @@ impl<'t> Tuner<'t> {
             Some(found)
         });
         let kept = finds.iter().rev().find(|find| find.found.held_back_loss <= self.before.held_back_loss);
-        let tuned = kept.map_or_else(|| start.clone(), |kept| observer_at(start, &kept.place));
+        let tuned = kept.map_or_else(|| start.clone(), |kept| filter_at(start, &kept.place));
         let record = DriftTuningKeys {
             runs,
             rate_deg_per_s: [start.rate_deg_per_s, tuned.rate_deg_per_s],
@@ -146,6 +147,7 @@ impl<'t> Tuner<'t> {
                 tuned.angle_random_walk_deg_per_sqrt_s,
             ],
             offset_deg: [start.offset_deg, tuned.offset_deg],
+            offset_s: [start.offset_s, tuned.offset_s],
         };
         table.drift = Some(tuned);
         self.objective.measure(&table);
@@ -220,18 +222,6 @@ struct Tuned {
 fn told(of: &Evaluation) -> String {
     let rmse = pooled(of, |session| &session.training).keys();
     format!("RMSE of the tip {:.2} mm, of headings {:.2} deg", rmse.tip_rmse_mm, rmse.heading_rmse_deg)
-}
-
-impl SessionErrors {
-    fn check_count(&self) -> Result<(), TuningError> {
-        for (is_held_back, errors) in [(false, &self.training), (true, &self.held_back)] {
-            let found = errors.tips.count();
-            if found < LEAST_SAMPLES {
-                return Err(TuningError::TooFewSamples { is_held_back, found, least: LEAST_SAMPLES });
-            }
-        }
-        Ok(())
-    }
 }
 
 /// Errors over all sessions.

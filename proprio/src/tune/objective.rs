@@ -123,8 +123,9 @@ impl Objective {
             threads.into_iter().map(|thread| thread.join().unwrap_or_else(|panic| resume_unwind(panic))).collect()
         });
         let mut sums = vec![0.0; 2 * PARAMETERS * self.pccs.len()];
-        let share = 1.0 / parts.len() as f64;
-        for (errors, gradient) in &parts {
+        let seen = || parts.iter().filter(|(errors, _)| errors.training.tips.count() > 0);
+        let share = 1.0 / seen().count() as f64;
+        for (errors, gradient) in seen() {
             for (sum, derivative) in sums.iter_mut().zip(gradient.of_log(&errors.training, self.lever_m)) {
                 *sum += share * derivative;
             }
@@ -136,11 +137,11 @@ impl Objective {
     /// The errors of all sessions together, without a gradient.
     fn pool(&self, sessions: Vec<SessionErrors>) -> Evaluation {
         let mut all = Evaluation::default();
-        let share = 1.0 / sessions.len() as f64;
-        for errors in &sessions {
-            all.loss += share * libm::log(errors.training.joint_m(self.lever_m));
-            all.held_back_loss += share * libm::log(errors.held_back.joint_m(self.lever_m));
-        }
+        let mean = |part: fn(&SessionErrors) -> &Errors| {
+            let parts = || sessions.iter().map(part).filter(|errors| errors.tips.count() > 0);
+            parts().map(|errors| libm::log(errors.joint_m(self.lever_m))).sum::<f64>() / parts().count() as f64
+        };
+        (all.loss, all.held_back_loss) = (mean(|session| &session.training), mean(|session| &session.held_back));
         Evaluation { sessions, ..all }
     }
 

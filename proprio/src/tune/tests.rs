@@ -11,9 +11,9 @@ use rig_twin::Scenario;
 
 use super::descent::{MAX_ITERATIONS, descend};
 use super::objective::{Evaluation, Objective};
-use super::observer::{MAX_RUNS, Place, observer_at, search};
 use super::parameters::Ranges;
-use super::training::Training;
+use super::search::{MAX_RUNS, Place, filter_at, search};
+use super::training::{Part, Training};
 use super::{Dual, TuningError, pooled};
 use crate::replay::{NamedTable, replay};
 use crate::score::Score;
@@ -63,7 +63,8 @@ fn table() -> NamedTable<'static> {
 }
 
 fn objective(table: &NamedTable, sessions: &[PathBuf]) -> Objective {
-    let sessions = sessions.iter().map(|path| Training::read(path, table).expect("a good session")).collect();
+    let read = |path: &PathBuf| Training::read(path, Part::Both, table).expect("a good session");
+    let sessions = sessions.iter().map(read).collect();
     Objective::new(sessions, table.bake::<f64>(10.0).expect("a table").config().segments)
 }
 
@@ -127,6 +128,22 @@ fn the_errors_are_those_of_replay() {
 #[test]
 fn the_errors_with_the_anchor_are_those_of_replay() {
     assert_errors_are_those_of_replay(&table());
+}
+
+#[test]
+fn of_three_sessions_the_third_judges_and_of_two_the_last_fifths() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let path = session(folder.path(), Scenario::One, 10.0, false);
+    let counts = |count: usize| -> Vec<[u64; 2]> {
+        let sessions = (0..count).map(|k| {
+            let training = Training::read(&path, Part::of_session(k, count), &reference()).expect("a good session");
+            let errors = training.fused().expect("it has the bias filter");
+            [errors.training.tips.count(), errors.held_back.tips.count()]
+        });
+        sessions.collect()
+    };
+    assert_eq!(counts(2), [[480, 120]; 2]);
+    assert_eq!(counts(4), [[600, 0], [600, 0], [0, 600], [600, 0]]);
 }
 
 /// The bias filter bypasses the Kalman filters.
@@ -220,16 +237,16 @@ fn errors_that_are_no_numbers_are_refused() {
 }
 
 /// What a place costs that is off from the bottom of a bowl, in decades.
-fn bowl(place: &Place, bottom: [f64; 3], depth: f64) -> Evaluation {
+fn bowl(place: &Place, bottom: [f64; 5], depth: f64) -> Evaluation {
     let off = place.iter().zip(bottom).map(|(steps, bottom)| f64::from(*steps) / 8.0 - bottom);
     Evaluation { loss: depth * off.map(|off| off * off).sum::<f64>(), ..Evaluation::default() }
 }
 
 #[test]
-fn the_observers_search_finds_the_bottom_of_a_bowl_to_a_factor_of_1_3() {
-    let bottom = [-0.7, 0.45, 0.3];
+fn the_search_finds_the_bottom_of_a_bowl_to_a_factor_of_1_3() {
+    let bottom = [-0.7, 0.45, 0.3, 0.0, -0.2];
     let mut runs = 0;
-    let finds = search(bowl(&[0; 3], bottom, 10.0), |place| {
+    let finds = search(bowl(&[0; 5], bottom, 10.0), |place| {
         runs += 1;
         Some(bowl(place, bottom, 10.0))
     });
@@ -240,31 +257,32 @@ fn the_observers_search_finds_the_bottom_of_a_bowl_to_a_factor_of_1_3() {
 
 #[test]
 fn the_search_keeps_within_a_decade() {
-    let bottom = [-3.0, 3.0, -3.0];
-    let mut finds = search(bowl(&[0; 3], bottom, 10.0), |place| Some(bowl(place, bottom, 10.0)));
-    assert_eq!(finds.pop().expect("there are better places").place, [-8, 8, -8]);
+    let bottom = [-3.0, 3.0, -3.0, 0.0, 0.0];
+    let mut finds = search(bowl(&[0; 5], bottom, 10.0), |place| Some(bowl(place, bottom, 10.0)));
+    assert_eq!(finds.pop().expect("there are better places").place, [-8, 8, -8, 0, 0]);
 }
 
 /// A fifth of a percent for a decade is not worth the way.
 #[test]
-fn the_observers_search_stays_where_there_is_little_to_win() {
-    let bottom = [1.0, -1.0, 1.0];
-    assert!(search(bowl(&[0; 3], bottom, 0.002), |place| Some(bowl(place, bottom, 0.002))).is_empty());
+fn the_search_stays_where_there_is_little_to_win() {
+    let bottom = [1.0, -1.0, 1.0, 0.5, -0.5];
+    assert!(search(bowl(&[0; 5], bottom, 0.002), |place| Some(bowl(place, bottom, 0.002))).is_empty());
 }
 
 #[test]
-fn the_observers_search_ends_when_it_is_told_to_and_has_the_best_so_far() {
-    let bottom = [1.0, 0.0, 0.0];
-    let mut left = 7;
-    let finds = search(bowl(&[0; 3], bottom, 10.0), |place| {
+fn the_search_ends_when_it_is_told_to_and_has_the_best_so_far() {
+    let bottom = [1.0, 0.0, 0.0, 0.0, 0.0];
+    // Ten neighbours, and one of the next place's.
+    let mut left = 11;
+    let finds = search(bowl(&[0; 5], bottom, 10.0), |place| {
         left -= 1;
         (left > 0).then(|| bowl(place, bottom, 10.0))
     });
-    assert_eq!((finds.len(), finds[0].place, left), (1, [8, 0, 0], 0));
+    assert_eq!((finds.len(), finds[0].place, left), (1, [8, 0, 0, 0, 0], 0));
 }
 
 #[test]
-fn an_observer_at_any_place_is_one_that_the_format_takes() {
+fn a_bias_filter_at_any_place_is_one_that_the_format_takes() {
     for start in [
         DriftKeys {
             rate_deg_per_s: 1e-4,
@@ -279,8 +297,8 @@ fn an_observer_at_any_place_is_one_that_the_format_takes() {
             ..DriftKeys::kalman()
         },
     ] {
-        for place in [[-8, -8, 0], [8, 8, 8]] {
-            let file = ArmFile { drift: Some(observer_at(&start, &place)), ..table().file };
+        for place in [[-8, -8, -8, 0, -8], [8; 5]] {
+            let file = ArmFile { drift: Some(filter_at(&start, &place)), ..table().file };
             assert_eq!(ArmFile::parse(&file.to_toml()).expect("it is in range"), file);
         }
     }

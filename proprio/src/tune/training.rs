@@ -6,7 +6,7 @@ use calibration_tables::{ArmFile, MAX_SEGMENTS};
 use estimator_core::{Estimator, Sample};
 
 use super::error::TuningError;
-use super::errors::ends;
+use super::errors::{Errors, ends};
 use super::objective::SessionErrors;
 use crate::calibrate::{MISFIT_PERCENT, constant_curvature_error};
 use crate::error::Error;
@@ -14,8 +14,12 @@ use crate::progress::Progress;
 use crate::replay::{HostEstimator, NamedTable};
 use crate::session::{Needs, SessionReader, Truth};
 
-/// One in so many samples is held back, those at the end.
+/// Of a session of which a part is held back, one in so many samples, those at the end.
 const HELD_BACK: usize = 5;
+/// One in so many sessions is held back as a whole, where there are as many.
+const HELD_BACK_SESSIONS: usize = 3;
+/// Samples with truth that each part of a session needs.
+const LEAST_SAMPLES: u64 = 50;
 /// An arm of which no true heading changes by more than this does not move, degrees.
 const STILL_DEG: f64 = 10.0;
 
@@ -35,10 +39,33 @@ impl Measured {
     }
 }
 
+/// What a session is for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Part {
+    /// To train on.
+    Seen,
+    /// To judge by.
+    HeldBack,
+    /// The last fifth to judge by, the rest to train on.
+    Both,
+}
+
+impl Part {
+    /// Of session `k` of `count`.
+    pub fn of_session(k: usize, count: usize) -> Self {
+        match k % HELD_BACK_SESSIONS {
+            _ if count < HELD_BACK_SESSIONS => Self::Both,
+            2 => Self::HeldBack,
+            _ => Self::Seen,
+        }
+    }
+}
+
 /// One session.
 #[derive(Debug)]
 pub(super) struct Training {
     pub path: PathBuf,
+    part: Part,
     pub rate_hz: f64,
     pub ends_with_line: bool,
     /// Root mean square distance of the true tip from the chain of the true bend angles, % of the arm's length.
@@ -64,7 +91,7 @@ pub(super) struct Moment<'t> {
 
 impl Training {
     /// Reads a session and [measures](Self::measure) it.
-    pub fn read(session: &Path, table: &NamedTable) -> Result<Self, Error> {
+    pub fn read(session: &Path, part: Part, table: &NamedTable) -> Result<Self, Error> {
         let mut reader = SessionReader::open(session, &Needs { truth: true, ..table.needs()? })?;
         let rate_hz = reader.rate_hz(table.file.rate_hz);
         let baked = table.bake::<f64>(rate_hz)?;
@@ -84,6 +111,7 @@ impl Training {
         }
         let mut training = Self {
             path: session.to_owned(),
+            part,
             rate_hz,
             ends_with_line: reader.ends_with_line(),
             misfit_percent: (misfit / f64::max(tips, 1.0)).sqrt() * 1e5 / table.file.length_mm(),
@@ -132,7 +160,11 @@ impl Training {
 
     /// How many samples are not held back.
     pub fn seen(&self) -> usize {
-        self.samples.len() - self.samples.len() / HELD_BACK
+        match self.part {
+            Part::Seen => self.samples.len(),
+            Part::HeldBack => 0,
+            Part::Both => self.samples.len() - self.samples.len() / HELD_BACK,
+        }
     }
 
     /// All samples.
@@ -147,7 +179,7 @@ impl Training {
         Error::Tuning { path: self.path.clone(), source }
     }
 
-    /// Whether the truth hangs together, and moves while descent looks at it.
+    /// Whether the truth hangs together, and moves.
     pub fn check_truth(&self) -> Result<(), TuningError> {
         if self.misfit_percent > MISFIT_PERCENT {
             return Err(TuningError::TruthMisfit { percent: self.misfit_percent });
@@ -156,10 +188,26 @@ impl Training {
         if range_deg < STILL_DEG { Err(TuningError::Still { range_deg, least_deg: STILL_DEG }) } else { Ok(()) }
     }
 
+    /// Whether there is enough truth in each part of it.
+    pub fn check_count(&self, errors: &SessionErrors) -> Result<(), TuningError> {
+        let parts: &[(&'static str, &Errors)] = match self.part {
+            Part::Seen => &[("it", &errors.training)],
+            Part::HeldBack => &[("it", &errors.held_back)],
+            Part::Both => &[
+                ("the part before the last fifth", &errors.training),
+                ("the last fifth, which is held back,", &errors.held_back),
+            ],
+        };
+        let found = parts.iter().map(|(part, errors)| (*part, errors.tips.count()));
+        match found.into_iter().find(|(_, found)| *found < LEAST_SAMPLES) {
+            Some((part, found)) => Err(TuningError::TooFewSamples { part, found, least: LEAST_SAMPLES }),
+            None => Ok(()),
+        }
+    }
+
     /// From the smallest to the largest true heading of one segment's end.
     fn heading_range_deg(&self, segment: usize) -> f64 {
-        let rows = self.rows().filter(|moment| !moment.is_held_back);
-        let headings = rows.filter_map(|moment| moment.measured[segment].truth?.heading_rad);
+        let headings = self.rows().filter_map(|moment| moment.measured[segment].truth?.heading_rad);
         let [lo, hi] = headings.fold([f64::INFINITY, f64::NEG_INFINITY], |[lo, hi], h| [lo.min(h), hi.max(h)]);
         (hi - lo).to_degrees()
     }

@@ -10,8 +10,8 @@ use calibration_tables::DriftKeys;
 
 use super::objective::Evaluation;
 
-/// Rate, rate random walk and offset.
-const PARAMETERS: usize = 3;
+/// Rate, rate random walk, angle random walk, offset and its time constant.
+const PARAMETERS: usize = 5;
 /// Where the search is: shares of a decade, in units of 1/[`DECADE`], from the table's own parameters.
 pub(super) type Place = [i32; PARAMETERS];
 
@@ -20,7 +20,7 @@ const DECADE: i32 = 8;
 /// Factors of 10, 3.2, 1.8 and 1.3.
 const STEPS: [i32; 4] = [8, 4, 2, 1];
 /// The search is over after so many runs of the estimator.
-pub(super) const MAX_RUNS: usize = 60;
+pub(super) const MAX_RUNS: usize = 100;
 /// What a factor of e costs, as a share of the error; more cost by the square of their logarithm.
 const PRICE: f64 = 0.01;
 
@@ -79,13 +79,16 @@ fn neighbours(place: Place, step: i32) -> impl Iterator<Item = Place> {
     places.filter(|place| place.iter().all(|steps| steps.abs() <= DECADE))
 }
 
-/// The observer at a place as seen from `start`.
-pub(super) fn observer_at(start: &DriftKeys, place: &Place) -> DriftKeys {
-    let [rate, walk, offset] = place.map(|steps| libm::pow(10.0, f64::from(steps) / f64::from(DECADE)));
+/// The bias filter at a place as seen from `start`.
+pub(super) fn filter_at(start: &DriftKeys, place: &Place) -> DriftKeys {
+    let [rate, rate_walk, angle_walk, offset, time] =
+        place.map(|steps| libm::pow(10.0, f64::from(steps) / f64::from(DECADE)));
     DriftKeys {
         rate_deg_per_s: within(start.rate_deg_per_s * rate, &(1e-4..=0.2)),
-        rate_random_walk_deg_per_s_sqrt_s: within(start.rate_random_walk_deg_per_s_sqrt_s * walk, &(1e-5..=0.01)),
+        rate_random_walk_deg_per_s_sqrt_s: within(start.rate_random_walk_deg_per_s_sqrt_s * rate_walk, &(1e-5..=0.01)),
+        angle_random_walk_deg_per_sqrt_s: within(start.angle_random_walk_deg_per_sqrt_s * angle_walk, &(0.0..=1.0)),
         offset_deg: within(start.offset_deg * offset, &(0.0..=20.0)),
+        offset_s: within(start.offset_s * time, &(64.0..=1e6)),
         ..start.clone()
     }
 }
