@@ -5,9 +5,9 @@ use estimator_core::{
     PLAYS, Play, SENSORS_PER_SEGMENT, Scalar, SegmentConfig, Turns, UncertaintyConfig,
 };
 
+use crate::contact::{ContactKeys, CoupledKeys};
 use crate::drift::DriftKeys;
 use crate::file::{ArmFile, FileError, NoiseKeys, SegmentKeys, Side};
-use crate::contact::{ContactKeys, CoupledKeys};
 use crate::uncertainty::UncertaintyKeys;
 
 /// A table's parameters in the number type `S`, for sessions of one sample rate.

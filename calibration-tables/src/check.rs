@@ -4,10 +4,10 @@ use std::ops::RangeInclusive;
 
 use estimator_core::{H_LIMIT, PLAYS, QuadraticMap, SENSORS_PER_SEGMENT, VOLTS_PER_COUNT};
 
+use crate::contact::ContactKeys;
 use crate::drift::DriftKeys;
 use crate::file::{ArmFile, BendKeys, FileError, MAX_SEGMENTS, MAX_WINDOW, NoiseKeys, SegmentKeys};
 use crate::tuning::TuningKeys;
-use crate::contact::ContactKeys;
 use crate::uncertainty::UncertaintyKeys;
 
 /// Lengths that fixed point holds with room for the chain (m: ±32).

@@ -8,10 +8,10 @@ use serde::{Deserialize, Deserializer, Serialize};
 use toml_edit::Item;
 
 use crate::bend::{BendErrorKeys, CurveKeys, MemoryKeys};
+use crate::contact::{ChangeKeys, ContactKeys, CoupledKeys};
 use crate::drift::{DriftKeys, DriftKind};
 use crate::place::{line_and_column, line_of};
 use crate::tuning::TuningKeys;
-use crate::contact::{ChangeKeys, ContactKeys, CoupledKeys};
 use crate::uncertainty::UncertaintyKeys;
 
 /// The `format` that this crate reads and writes.

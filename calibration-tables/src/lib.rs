@@ -43,6 +43,7 @@ mod uncertainty;
 pub use bake::Baked;
 pub use bend::{BendErrorKeys, CURVE_POINTS, CurveKeys, MemoryKeys};
 pub use check::H_RANGE;
+pub use contact::{ChangeKeys, ContactKeys, CoupledKeys, RATIO_RANGE};
 pub use drift::{DriftKeys, DriftKind};
 pub use file::{
     AnchorKeys, ArmFile, BendKeys, FileError, MAX_SEGMENTS, MAX_WINDOW, NoiseKeys, PlayKeys, SegmentKeys, Side,
@@ -50,7 +51,6 @@ pub use file::{
 };
 pub use noise::{LAG_S, RMSE_DEG_UNKNOWN};
 pub use tuning::{DriftTuningKeys, RmseKeys, Stopped, TuningKeys};
-pub use contact::{ChangeKeys, ContactKeys, CoupledKeys, RATIO_RANGE};
 pub use uncertainty::UncertaintyKeys;
 
 /// The reference arm's description, `arms/planar-6.toml`.

@@ -1,8 +1,8 @@
 //! A file is written and read without loss: every number to its last bit, every name to its last character.
 
 use calibration_tables::{
-    AnchorKeys, ArmFile, BendKeys, ContactKeys, CoupledKeys, DriftKeys, DriftKind, DriftTuningKeys, NoiseKeys,
-    PlayKeys, RmseKeys, SegmentKeys, Side, Stopped, TareKeys, TuningKeys, UncertaintyKeys,
+    AnchorKeys, ArmFile, BendKeys, ChangeKeys, ContactKeys, CoupledKeys, DriftKeys, DriftKind, DriftTuningKeys,
+    NoiseKeys, PlayKeys, RmseKeys, SegmentKeys, Side, Stopped, TareKeys, TuningKeys, UncertaintyKeys,
 };
 use proptest::option;
 use proptest::prelude::*;

@@ -23,10 +23,8 @@ const DEBOUNCE: u8 = 2;
 /// Share of its motion that a segment's hysteresis may keep, as a right shift.
 const HYSTERESIS_SHIFT: u32 = 2;
 
-/// Share of the motion beyond that of the sweep that is taken off the change, as a right shift: half of it of the bend
-/// sensors' residual, all of it of a coupled segment's.
-const BEND_EXCESS_SHIFT: u32 = 1;
-const COUPLING_EXCESS_SHIFT: u32 = 0;
+/// Share of the motion beyond that of the sweep that is taken off the change, as a right shift.
+const EXCESS_SHIFT: u32 = 1;
 
 /// Decay of the largest motion in one value, as a right shift.
 const HOLD_SHIFT: u32 = 4;
@@ -216,17 +214,12 @@ impl Thresholds {
         }
     }
 
-    /// The sweep's, of the IMUs against the bend sensors.
-    pub fn of_bend_limit(limit: &ChangeLimit) -> Self {
-        Self { excess_shift: BEND_EXCESS_SHIFT, ..Self::of_coupling_limit(limit) }
-    }
-
-    /// The sweep's, of a segment against the coupled one.
-    pub fn of_coupling_limit(limit: &ChangeLimit) -> Self {
+    /// Those of a residual in the sweep.
+    pub fn of_limit(limit: &ChangeLimit) -> Self {
         Self {
             change: limit.change.bits() as u32,
             motion: limit.motion.bits() as u32,
-            excess_shift: COUPLING_EXCESS_SHIFT,
+            excess_shift: EXCESS_SHIFT,
             hold_shift: HOLD_SHIFT,
             window: LONGEST_WINDOW as u8,
             debounce: DEBOUNCE,
@@ -249,8 +242,8 @@ mod tests {
     use std::vec::Vec;
 
     use super::{
-        COUPLING_EXCESS_SHIFT, ChangeDetector, CoupledSegment, DEBOUNCE, HOLD_SHIFT, LONGEST_WINDOW, Residual,
-        SHORT_WINDOW, TIMEOUT, Thresholds,
+        ChangeDetector, CoupledSegment, DEBOUNCE, EXCESS_SHIFT, HOLD_SHIFT, LONGEST_WINDOW, Residual, SHORT_WINDOW,
+        TIMEOUT, Thresholds,
     };
 
     /// 4° and 1°, in units of 2⁻³² turns.
@@ -270,7 +263,7 @@ mod tests {
     /// By the sweep, which has moved by 10° in half a second.
     const SWEPT: Thresholds = Thresholds {
         motion: 5 * DEGREE as u32,
-        excess_shift: COUPLING_EXCESS_SHIFT,
+        excess_shift: EXCESS_SHIFT,
         hold_shift: HOLD_SHIFT,
         window: LONGEST_WINDOW as u8,
         debounce: DEBOUNCE,
@@ -362,14 +355,14 @@ mod tests {
     fn motion_beyond_that_of_the_sweep_is_taken_off_the_change() {
         let swing = |speed: i32| (0..40).map(move |k| [k * 3 / 4, speed * k]);
         assert!(touched_in_motion(swing(1)).contains(&true), "7.5° within a second, as the sweep has moved");
-        assert!(!touched_in_motion(swing(2)).contains(&true), "the same at twice the sweep's motion");
+        assert!(!touched_in_motion(swing(3)).contains(&true), "the same at three times the sweep's motion");
     }
 
     #[test]
     fn fast_motion_is_held_over_the_turning_point() {
         let residual = |k: i32| if k < 25 { 0 } else { 8 };
-        let turning = |k: i32| [residual(k), if k < 20 { 3 * k } else { 60 }];
-        assert!(!touched_in_motion((0..30).map(turning)).contains(&true), "right after 30° within a second");
+        let turning = |k: i32| [residual(k), if k < 20 { 4 * k } else { 80 }];
+        assert!(!touched_in_motion((0..30).map(turning)).contains(&true), "right after 20° within half a second");
         assert!(touched_in_motion((0..40).map(|k| [residual(k), 60])).contains(&true), "at rest");
     }
 }

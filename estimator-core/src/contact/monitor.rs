@@ -133,12 +133,12 @@ impl<const N: usize> ContactMonitor<N> {
             return;
         };
         if let Some(limit) = &limits.bend {
-            monitor.detector.update_bend(Thresholds::of_bend_limit(limit), by_bend);
+            monitor.detector.update_bend(Thresholds::of_limit(limit), by_bend);
         }
         if let Some(((coupled, lead, steps), coupling)) = coupled.zip(limits.coupling.as_ref()) {
             let model = &mut monitor.coupling;
             let value = imu.zip(lead).map(|(own, lead)| model.update(coupled, coupling, own, lead, steps));
-            monitor.detector.update_coupling(Thresholds::of_coupling_limit(&coupling.limit), value);
+            monitor.detector.update_coupling(Thresholds::of_limit(&coupling.limit), value);
         }
     }
 
@@ -187,7 +187,8 @@ impl SegmentMonitor {
         let by_bend = by_bend.map(|value| Residual { residual: value.residual.wrapping_add(self.steps), ..value });
         self.detector.update_bend(Thresholds::of_bend(thresholds), by_bend);
         if let Some((coupled, lead, lead_steps)) = coupled {
-            let both = self.imu.zip(lead).map(|(own, lead)| [own.wrapping_add(self.steps), lead.wrapping_add(lead_steps)]);
+            let both =
+                self.imu.zip(lead).map(|(own, lead)| [own.wrapping_add(self.steps), lead.wrapping_add(lead_steps)]);
             let value = both.map(|[own, lead]| Residual { residual: coupled.residual(own, lead), angle: 0 });
             self.detector.update_coupling(Thresholds::of_coupling(thresholds), value);
         }

@@ -18,6 +18,9 @@ const PLAY_STEPS: i32 = 6;
 const PLAY_STEP_DEG: f64 = 0.5;
 const LAG_STEPS: i32 = 5;
 const LAG_STEP_S: f64 = 0.1;
+/// Share of the fitted lag that is used: what the ratios and the play do not explain of a slow sweep looks like lag. Chosen on
+/// fast motion of development arms.
+const LAG_SHARE: f64 = 0.85;
 /// Values of the detector's window, and of its motion, which is the window of the fit, too.
 const WINDOW: usize = 10;
 const MOTION_WINDOW: usize = 5;
@@ -27,8 +30,7 @@ const MOTION_DECAY: f64 = 1.0 / 16.0;
 const USUAL: f64 = 0.99;
 /// Limits in root mean squares of the change; chosen on development arms, for no false alarm but in motion much faster than
 /// the sweep's.
-const BEND_FACTOR: f64 = 8.0;
-const COUPLING_FACTOR: f64 = 8.0;
+const FACTOR: f64 = 8.0;
 /// Smallest limit that a sweep of a quarter of an hour can show, and the largest that detects anything, degrees.
 const LIMITS_DEG: [f64; 2] = [2.0, 10.0];
 
@@ -79,7 +81,8 @@ pub(super) fn set(sweep: &Sweep, sensors: &[Vec<&FittedMap>], has_limits: bool, 
 impl Values {
     fn of(sweep: &Sweep, scales: &[f64], value_hz: f64) -> Self {
         let per = (sweep.rate_hz / value_hz).round().max(1.0) as usize;
-        let scaled: Vec<Vec<Option<f64>>> = sweep.imu.iter().zip(scales).map(|(imu, scale)| divided(imu, *scale)).collect();
+        let scaled: Vec<Vec<Option<f64>>> =
+            sweep.imu.iter().zip(scales).map(|(imu, scale)| divided(imu, *scale)).collect();
         let zero = vec![Some(0.0); sweep.runs.len()];
         let below = std::iter::once(&zero).chain(&scaled);
         let imu = scaled.iter().zip(below).map(|(imu, below)| {
@@ -104,7 +107,7 @@ impl Values {
             let bend = (*theta)? + (*error)?;
             Some([(*imu)? - bend, bend])
         });
-        self.limit(&residuals.collect::<Vec<Residual>>(), BEND_FACTOR)
+        self.limit(&residuals.collect::<Vec<Residual>>())
     }
 
     /// The earlier segment that segment `j` is coupled to, with the response and the limit.
@@ -115,15 +118,15 @@ impl Values {
             return None;
         }
         let model = self.fit(i, j)?;
-        let limit = self.limit(&self.residuals(&model, i, j, &self.imu), COUPLING_FACTOR);
+        let limit = self.limit(&self.residuals(&model, i, j, &self.imu));
         let is_within = model.ratios.iter().all(|ratio| RATIO_RANGE.contains(ratio));
         let limit = limit.filter(|limit| is_within && limit.change_deg <= LIMITS_DEG[1])?;
         Some(CoupledKeys {
             segment: i + 1,
             ratio: model.ratios[0],
             ratio_left: Some(model.ratios[1]),
-            lag_s: model.lag_s,
-            play_deg: model.play_rad.to_degrees(),
+            lag_s: rounded(model.lag_s),
+            play_deg: rounded(model.play_rad.to_degrees()),
             limit: Some(limit),
         })
     }
@@ -145,7 +148,7 @@ impl Values {
         let (_, model, residuals) = trials.filter_map(trial).min_by(|(a, ..), (b, ..)| a.total_cmp(b))?;
         let left = variance(residuals.iter().flatten().map(|[residual, _]| *residual));
         let all = variance(self.theta[j].iter().flatten().copied());
-        (left < (1.0 - COUPLED) * all).then_some(model)
+        (left < (1.0 - COUPLED) * all).then_some(Model { lag_s: LAG_SHARE * model.lag_s, ..model })
     }
 
     /// Angles of segments `i` and `j` behind the response, and the motion of that of `i`.
@@ -174,7 +177,7 @@ impl Values {
         behind.map(residual).collect()
     }
 
-    fn limit(&self, residuals: &[Residual], factor: f64) -> Option<ChangeKeys> {
+    fn limit(&self, residuals: &[Residual]) -> Option<ChangeKeys> {
         let scatter = rms_change(residuals, &self.runs, WINDOW)?;
         let mut held = 0.0_f64;
         let motions = changes(residuals, &self.runs, MOTION_WINDOW).map(|[_, motion]| {
@@ -184,7 +187,7 @@ impl Values {
         let mut motions: Vec<f64> = motions.collect();
         motions.sort_unstable_by(f64::total_cmp);
         Some(ChangeKeys {
-            change_deg: rounded((factor * scatter).to_degrees().max(LIMITS_DEG[0])),
+            change_deg: rounded((FACTOR * scatter).to_degrees().max(LIMITS_DEG[0])),
             motion_deg: rounded(quantile(&motions, USUAL).to_degrees()),
         })
     }

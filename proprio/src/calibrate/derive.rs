@@ -10,7 +10,8 @@ use super::maps::MapMode;
 use super::sensors::{self, Sensor};
 use super::sweep::Sweep;
 use super::{
-    CalibrationOptions, MISFIT_PERCENT, SegmentReport, bend_error, contact, extensions, hysteresis, imu_scale, residuals,
+    CalibrationOptions, MISFIT_PERCENT, SegmentReport, bend_error, contact, extensions, hysteresis, imu_scale,
+    residuals,
 };
 use crate::error::Error;
 use crate::replay::NamedTable;
