@@ -123,7 +123,7 @@ impl<'t, S: FusedOps, const N: usize, const W: usize> Estimator<'t, S, N, W> {
         self.segments.clear();
         self.fused.clear();
         self.decimator = Decimator::new();
-        self.contact = ContactMonitor::new();
+        self.contact.start();
         self.measured = [Measured::default(); N];
         let window = config.anchor.window;
         if window == 0 || usize::from(window) > W {

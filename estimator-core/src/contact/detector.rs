@@ -360,7 +360,7 @@ mod tests {
 
     #[test]
     fn fast_motion_is_held_over_the_turning_point() {
-        let residual = |k: i32| if k < 25 { 0 } else { 8 };
+        let residual = |k: i32| if k < 25 { 0 } else { 6 };
         let turning = |k: i32| [residual(k), if k < 20 { 4 * k } else { 80 }];
         assert!(!touched_in_motion((0..30).map(turning)).contains(&true), "right after 20° within half a second");
         assert!(touched_in_motion((0..40).map(|k| [residual(k), 60])).contains(&true), "at rest");

@@ -67,15 +67,15 @@ impl Sum {
 impl<const N: usize> ContactMonitor<N> {
     /// At the start of a session.
     pub const fn new() -> Self {
-        let segment = SegmentMonitor {
-            accumulating: Sums::EMPTY,
-            latest: Sums::EMPTY,
-            steps: 0,
-            imu: None,
-            coupling: CouplingModel::new(),
-            detector: ContactDetector::new(),
-        };
-        Self { segments: [segment; N], has_value: false }
+        Self { segments: [SegmentMonitor::new(); N], has_value: false }
+    }
+
+    /// Forgets everything: in parts, as a whole new one would not fit a small stack.
+    pub fn start(&mut self) {
+        for segment in &mut self.segments {
+            *segment = SegmentMonitor::new();
+        }
+        self.has_value = false;
     }
 
     /// Takes one sample's angles. `condition` of a segment leaves out sensors that are not trusted.
@@ -177,6 +177,17 @@ impl<const N: usize> ContactMonitor<N> {
 }
 
 impl SegmentMonitor {
+    const fn new() -> Self {
+        Self {
+            accumulating: Sums::EMPTY,
+            latest: Sums::EMPTY,
+            steps: 0,
+            imu: None,
+            coupling: CouplingModel::new(),
+            detector: ContactDetector::new(),
+        }
+    }
+
     /// The turn of a segment without limits of its own: θ_c against the bend sensors, and against the coupled segment's.
     fn detect_by_thresholds(
         &mut self,
