@@ -5,9 +5,10 @@ use estimator_core::{
     PLAYS, Play, SENSORS_PER_SEGMENT, Scalar, SegmentConfig, Turns, UncertaintyConfig,
 };
 
+use crate::contact::{ContactKeys, CoupledKeys};
 use crate::drift::DriftKeys;
 use crate::file::{ArmFile, FileError, NoiseKeys, SegmentKeys, Side};
-use crate::uncertainty::{ContactKeys, CoupledKeys, UncertaintyKeys};
+use crate::uncertainty::UncertaintyKeys;
 
 /// A table's parameters in the number type `S`, for sessions of one sample rate.
 #[derive(Debug, Clone, PartialEq)]
@@ -46,8 +47,10 @@ impl ArmFile {
         self.bend_sensors()?;
         let references = self.tare.heading_deg.iter().copied().chain(std::iter::repeat(0.0));
         let segments = self.segments.iter().zip(references);
+        // Above the sample rate, every sample is a value.
+        let value_hz = self.anchor.rate_hz.min(rate_hz);
         Ok(Baked {
-            segments: segments.map(|(segment, reference)| segment.bake(reference, rate_hz)).collect(),
+            segments: segments.map(|(segment, reference)| segment.bake(reference, rate_hz, value_hz)).collect(),
             tare_samples: samples(self.tare.seconds, rate_hz),
             anchor: AnchorConfig {
                 window: self.anchor.window,
@@ -72,7 +75,7 @@ fn samples(seconds: f64, rate_hz: f64) -> u32 {
 }
 
 impl SegmentKeys {
-    fn bake<S: FusedOps>(&self, reference_deg: f64, rate_hz: f64) -> SegmentConfig<S> {
+    fn bake<S: FusedOps>(&self, reference_deg: f64, rate_hz: f64, value_hz: f64) -> SegmentConfig<S> {
         let mut bend = [None; SENSORS_PER_SEGMENT];
         for (place, sensor) in bend.iter_mut().zip(self.bend.iter().flatten()) {
             *place = Some(sensor.bake());
@@ -90,6 +93,7 @@ impl SegmentKeys {
             // The reading is divided by the scale: less (1 − 1/scale) of it.
             imu_scale_error: ((1.0 - 1.0 / self.imu_scale.unwrap_or(1.0)) * f64::powi(2.0, 32)).round() as i32,
             coupled_to: self.coupled_to.map(CoupledKeys::bake),
+            contact: self.bake_contact(value_hz),
             reference: Turns::from_rad(reference_deg.to_radians()),
             orient: self.orient_or_default().bake(rate_hz),
             coord: self.coord_or_default().bake(rate_hz),

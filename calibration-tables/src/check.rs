@@ -4,10 +4,11 @@ use std::ops::RangeInclusive;
 
 use estimator_core::{H_LIMIT, PLAYS, QuadraticMap, SENSORS_PER_SEGMENT, VOLTS_PER_COUNT};
 
+use crate::contact::ContactKeys;
 use crate::drift::DriftKeys;
 use crate::file::{ArmFile, BendKeys, FileError, MAX_SEGMENTS, MAX_WINDOW, NoiseKeys, SegmentKeys};
 use crate::tuning::TuningKeys;
-use crate::uncertainty::{ContactKeys, UncertaintyKeys};
+use crate::uncertainty::UncertaintyKeys;
 
 /// Lengths that fixed point holds with room for the chain (m: ±32).
 const MAX_ARM_MM: f64 = 16_000.0;
@@ -46,6 +47,7 @@ impl ArmFile {
             segment
                 .coupled_to
                 .map_or(Ok(()), |coupled| coupled.check(&format!("segment[{}].coupled_to", i + 1), i + 1))?;
+            segment.contact.map_or(Ok(()), |limit| limit.check(&format!("segment[{}].contact", i + 1)))?;
         }
         let length = self.length_mm();
         ensure(length <= MAX_ARM_MM, "segment", &format!("{length} mm of arm"), &format!("at most {MAX_ARM_MM} mm"))

@@ -8,10 +8,11 @@ use serde::{Deserialize, Deserializer, Serialize};
 use toml_edit::Item;
 
 use crate::bend::{BendErrorKeys, CurveKeys, MemoryKeys};
+use crate::contact::{ChangeKeys, ContactKeys, CoupledKeys};
 use crate::drift::{DriftKeys, DriftKind};
 use crate::place::{line_and_column, line_of};
 use crate::tuning::TuningKeys;
-use crate::uncertainty::{ContactKeys, CoupledKeys, UncertaintyKeys};
+use crate::uncertainty::UncertaintyKeys;
 
 /// The `format` that this crate reads and writes.
 const FORMAT: u32 = 1;
@@ -115,6 +116,9 @@ pub struct SegmentKeys {
     /// The earlier segment that bends alike, where there is one.
     #[serde(default, skip_serializing_if = "Option::is_none", alias = "alike")]
     pub coupled_to: Option<CoupledKeys>,
+    /// Limits of contact detection by the bend sensors; those of `coupled_to` are there.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub contact: Option<ChangeKeys>,
     /// KF_orient's parameters, rad² and rad²/s; derived from the maps' `rmse_deg` where there are none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub orient: Option<NoiseKeys>,

@@ -31,6 +31,7 @@
 mod bake;
 mod bend;
 mod check;
+mod contact;
 mod drift;
 mod file;
 mod noise;
@@ -42,6 +43,7 @@ mod uncertainty;
 pub use bake::Baked;
 pub use bend::{BendErrorKeys, CURVE_POINTS, CurveKeys, MemoryKeys};
 pub use check::H_RANGE;
+pub use contact::{ChangeKeys, ContactKeys, CoupledKeys, RATIO_RANGE};
 pub use drift::{DriftKeys, DriftKind};
 pub use file::{
     AnchorKeys, ArmFile, BendKeys, FileError, MAX_SEGMENTS, MAX_WINDOW, NoiseKeys, PlayKeys, SegmentKeys, Side,
@@ -49,7 +51,7 @@ pub use file::{
 };
 pub use noise::{LAG_S, RMSE_DEG_UNKNOWN};
 pub use tuning::{DriftTuningKeys, RmseKeys, Stopped, TuningKeys};
-pub use uncertainty::{ContactKeys, CoupledKeys, RATIO_RANGE, UncertaintyKeys};
+pub use uncertainty::UncertaintyKeys;
 
 /// The reference arm's description, `arms/planar-6.toml`.
 pub const PLANAR_6_ARM: &str = include_str!("../arms/planar-6.toml");

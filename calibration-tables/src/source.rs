@@ -15,8 +15,8 @@ use estimator_core::BendMap::{Curve, Quadratic};
 use estimator_core::OffsetAt::{End, Start};
 #[allow(unused_imports)]
 use estimator_core::{
-    AnchorConfig, ArmConfig, BendErrorConfig, BendSensorConfig, BiasFilterConfig, ContactConfig, CoupledSegment, CurveMap,
-    KalmanParams, Lag, MemoryConfig, Play, Q, QuadraticMap, SegmentConfig, Turns, UncertaintyConfig,
+    AnchorConfig, ArmConfig, BendErrorConfig, BendSensorConfig, BiasFilterConfig, ChangeLimit, ContactConfig,
+    ContactLimits, CoupledSegment, Coupling, CurveMap, KalmanParams, Lag, MemoryConfig, Play, Q, QuadraticMap, Response, SegmentConfig, Turns, UncertaintyConfig,
 };
 ";
 

@@ -1,31 +1,12 @@
-//! `[contact]` and `[uncertainty]`: thresholds of contact detection, and error sources of the estimates.
+//! `[uncertainty]`: error sources of the estimates.
 
-use std::ops::RangeInclusive;
-
-use estimator_core::{ContactConfig, CoupledSegment, Q, Turns, UncertaintyConfig, VARIANCE_SCALE};
+use estimator_core::{Q, UncertaintyConfig, VARIANCE_SCALE};
 use serde::de::IgnoredAny;
 use serde::{Deserialize, Serialize};
 
-use crate::check::{ensure, within};
+use crate::check::within;
 use crate::drift::variance;
 use crate::file::FileError;
-
-/// `[contact]`: changes within five values, half a second at 10 Hz, that a free arm does not make.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct ContactKeys {
-    /// Of a segment's IMUs against its bend sensors, a quarter of the motion taken off.
-    pub bend_deg: f64,
-    /// Of a segment against the one that it is coupled to.
-    #[serde(alias = "alike_deg")]
-    pub coupling_deg: f64,
-}
-
-impl Default for ContactKeys {
-    fn default() -> Self {
-        Self { bend_deg: 5.0, coupling_deg: 4.0 }
-    }
-}
 
 /// `[uncertainty]`: standard deviations that an estimate's errors come from.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -48,31 +29,6 @@ pub struct UncertaintyKeys {
     /// Of either coordinate of a segment's end, whatever its angle.
     pub end_mm: f64,
 }
-
-/// `coupled_to`: an earlier segment that bends alike while the arm moves freely, θ = ratio · θ of that one.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct CoupledKeys {
-    /// Its number, from 1.
-    pub segment: usize,
-    /// What its θ is multiplied by.
-    pub ratio: f64,
-}
-
-impl ContactKeys {
-    pub(crate) fn check(&self) -> Result<(), FileError> {
-        within("contact.bend_deg", self.bend_deg, 0.1..=90.0)?;
-        within("contact.coupling_deg", self.coupling_deg, 0.1..=90.0)
-    }
-
-    pub(crate) fn bake(&self) -> ContactConfig {
-        let [bend, coupling] = [self.bend_deg, self.coupling_deg].map(|degrees| Turns::from_rad(degrees.to_radians()));
-        ContactConfig { bend, coupling }
-    }
-}
-
-/// What the `ratio` of segments that bend alike may be.
-pub const RATIO_RANGE: RangeInclusive<f64> = -7.9..=7.9;
 
 /// Largest deviation of an angle.
 const LARGEST_DEG: f64 = 9.0;
@@ -119,18 +75,5 @@ impl UncertaintyKeys {
     #[must_use]
     pub const fn bias_share() -> f64 {
         0.6
-    }
-}
-
-impl CoupledKeys {
-    /// Of the segment of this number.
-    pub(crate) fn check(&self, key: &str, segment: usize) -> Result<(), FileError> {
-        let is_earlier = (1..segment).contains(&self.segment);
-        ensure(is_earlier, &format!("{key}.segment"), &self.segment, "the number of an earlier segment")?;
-        within(&format!("{key}.ratio"), self.ratio, RATIO_RANGE)
-    }
-
-    pub(crate) fn bake(self) -> CoupledSegment {
-        CoupledSegment { segment: (self.segment - 1) as u8, ratio: (self.ratio * CoupledSegment::ONE).round() as i32 }
     }
 }

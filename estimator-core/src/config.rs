@@ -3,10 +3,14 @@
 //! The firmware holds an [`ArmConfig`] as a constant; on the host `calibration-tables` makes it from TOML. Variances are held
 //! [`VARIANCE_SCALE`] times as large as they are, times in units of [`TIME_UNIT_S`](crate::TIME_UNIT_S).
 
+mod contact;
+
 use crate::numeric::phase::Turns;
 use crate::numeric::q::Q;
 use crate::numeric::scalar::{Scalar, TIME_UNIT_S};
 use crate::numeric::variance::{degrees, variance_deg};
+
+pub use contact::{ChangeLimit, ContactConfig, ContactLimits, CoupledSegment, Coupling, Response};
 
 /// Bend sensors that a segment can carry: `a` and `b`.
 pub const SENSORS_PER_SEGMENT: usize = 2;
@@ -56,6 +60,8 @@ pub struct SegmentConfig<S> {
     pub imu_scale_error: i32,
     /// The earlier segment that bends alike, where there is one.
     pub coupled_to: Option<CoupledSegment>,
+    /// Limits of contact detection; `None`: the thresholds of the arm.
+    pub contact: Option<ContactLimits>,
     /// Heading of the segment's end in the reference pose.
     pub reference: Turns,
     /// KF_orient's parameters.
@@ -209,29 +215,6 @@ pub struct BiasFilterConfig {
     pub offset_rate: Q,
 }
 
-/// Thresholds of contact detection: changes within half a second that a free arm does not make.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct ContactConfig {
-    /// Of a segment's IMUs against its bend sensors, a quarter of the motion taken off.
-    pub bend: Turns,
-    /// Of a segment against the one that it is coupled to.
-    pub coupling: Turns,
-}
-
-/// An earlier segment that bends alike in free motion: θ = ratio · θ of that one.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct CoupledSegment {
-    /// Its place in the table, from 0.
-    pub segment: u8,
-    /// In units of 2⁻²⁸, within ±8.
-    pub ratio: i32,
-}
-
-impl CoupledSegment {
-    /// One in the units of the ratio.
-    pub const ONE: f64 = 268_435_456.0;
-}
-
 /// Error sources of the shape; the same for all segments.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct UncertaintyConfig {
@@ -308,6 +291,7 @@ impl<S: Scalar> SegmentConfig<S> {
             bend_error: BendErrorConfig::PAPER,
             imu_scale_error: 0,
             coupled_to: None,
+            contact: None,
             reference: Turns::ZERO,
             orient: unit,
             coord: unit,

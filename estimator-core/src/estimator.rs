@@ -123,7 +123,7 @@ impl<'t, S: FusedOps, const N: usize, const W: usize> Estimator<'t, S, N, W> {
         self.segments.clear();
         self.fused.clear();
         self.decimator = Decimator::new();
-        self.contact = ContactMonitor::new();
+        self.contact.start();
         self.measured = [Measured::default(); N];
         let window = config.anchor.window;
         if window == 0 || usize::from(window) > W {
@@ -216,11 +216,9 @@ impl<'t, S: FusedOps, const N: usize, const W: usize> Estimator<'t, S, N, W> {
 
     fn detect_contact(&mut self, sensed: &SensedArm<S, N>, corrected: &CorrectedArm<N>) {
         let Some(thresholds) = &self.config.contact else { return };
-        let mut angles = [None; N];
-        for ((both, theta_c), bend) in angles.iter_mut().zip(corrected.imu).zip(&sensed.bend) {
-            *both = theta_c.zip(bend.mean.map(S::to_turns));
-        }
-        self.contact.update(self.config, thresholds, self.decimator, sensed.decimated, &angles);
+        let Self { contact, drift, .. } = self;
+        let condition = |i| drift.bias_filter().map_or(Condition::default(), |filter| filter.condition(i));
+        contact.update(self.config, thresholds, self.decimator, sensed.decimated, &corrected.measured, condition);
     }
 
     /// Contact of each segment, from the base to the tip; empty where the configuration disables detection.

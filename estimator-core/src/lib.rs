@@ -57,14 +57,14 @@ mod sensing;
 mod types;
 
 pub use config::{
-    AnchorConfig, ArmConfig, BendErrorConfig, BendMap, BendSensorConfig, BiasFilterConfig, ConfigError, ContactConfig,
-    CoupledSegment, CurveMap, KNOTS, KalmanParams, Lag, MemoryConfig, OffsetAt, PLAYS, Play, QuadraticMap,
-    SENSORS_PER_SEGMENT, SegmentConfig, UncertaintyConfig, VARIANCE_SCALE,
+    AnchorConfig, ArmConfig, BendErrorConfig, BendMap, BendSensorConfig, BiasFilterConfig, ChangeLimit, ConfigError,
+    ContactConfig, ContactLimits, CoupledSegment, Coupling, CurveMap, KNOTS, KalmanParams, Lag, MemoryConfig, OffsetAt,
+    PLAYS, Play, QuadraticMap, Response, SENSORS_PER_SEGMENT, SegmentConfig, UncertaintyConfig, VARIANCE_SCALE,
 };
 pub use drift::bias_state::{BiasState, Innovation, Row};
 pub use drift::decimator::{Decimated, Decimator};
 pub use drift::moving_average::MovingAverageAnchor;
-pub use drift::{CorrectedArm, DriftCorrection, SensedArm};
+pub use drift::{CorrectedArm, DriftCorrection, MeasuredAngles, SensedArm};
 pub use estimator::Estimator;
 pub use fusion::kalman::{COVARIANCE_LIMIT, H_LIMIT, KalmanFilter, KalmanGains};
 pub use kinematics::covariance::{CovariancePropagation, lever_arm};

@@ -1,8 +1,9 @@
 //! Contact and uncertainty behind the moving-average anchor, from samples to the estimator's output.
 
 use estimator_core::{
-    ArmConfig, BendMap, BendSensorConfig, ContactConfig, CoupledSegment, Estimator, ImuReading, Phase, Q, QuadraticMap,
-    Sample, SegmentConfig, Turns, Uncertainty, UncertaintyConfig, VARIANCE_SCALE,
+    ArmConfig, BendMap, BendSensorConfig, ChangeLimit, ContactConfig, ContactLimits, CoupledSegment, Coupling,
+    Estimator, ImuReading, Phase, Q, QuadraticMap, Response, Sample, SegmentConfig, Turns, Uncertainty,
+    UncertaintyConfig, VARIANCE_SCALE,
 };
 
 /// Deviations: of θ, of θ by bend sensors alone, and while something touches the segment, degrees.
@@ -130,4 +131,39 @@ fn a_configuration_without_thresholds_and_error_sources_gets_neither() {
     }
     assert!(estimator.uncertainties().is_empty());
     assert!(estimator.contacts().iter().all(|contact| !contact.in_contact));
+}
+
+/// The second segment bends a tenth less than the first, with limits of its own.
+fn limited_segments() -> [SegmentConfig<f64>; 2] {
+    let [first, second] = segments();
+    let limit = ChangeLimit { change: turns(3.0), motion: turns(10.0) };
+    let ratio = (0.9 * CoupledSegment::ONE) as i32;
+    let coupling = Coupling { ratio_left: ratio, lead: Response::NONE, own: Response::NONE, limit };
+    let contact = Some(ContactLimits { bend: None, coupling: Some(coupling) });
+    [first, SegmentConfig { coupled_to: Some(CoupledSegment { segment: 0, ratio }), contact, ..second }]
+}
+
+/// Whether contact is told of each segment at last, after so many values of a swing and then `pushed` values of a push that
+/// bends the second segment by 1° more in each.
+fn told_after(estimator: &mut Estimator<f64, 2, 100>, pushed: u32) -> [bool; 2] {
+    for k in 0..40_u32 {
+        let swing = f64::from(k.min(20));
+        estimator.update_full(&sample([swing, 0.9 * swing]));
+        assert!(estimator.contacts().iter().all(|contact| !contact.in_contact), "value {k}");
+    }
+    for k in 1..=pushed {
+        estimator.update_full(&sample([20.0, 18.0 + f64::from(k)]));
+    }
+    let contacts = estimator.contacts();
+    [contacts[0].in_contact, contacts[1].in_contact]
+}
+
+#[test]
+fn a_limit_of_the_sweep_is_exceeded_in_two_values_in_a_row() {
+    let segments = limited_segments();
+    let table = table(&segments);
+    for (pushed, expected) in [(4, false), (5, true)] {
+        let mut estimator = Estimator::new(&table).expect("it fits");
+        assert_eq!(told_after(&mut estimator, pushed), [expected; 2], "after {pushed}°");
+    }
 }

@@ -46,6 +46,12 @@ impl AddAssign for Found {
     }
 }
 
+/// How often contact is told of where there was none before: of a free arm, false alarms.
+#[must_use]
+pub fn alarms(told: &[[bool; SEGMENTS]]) -> usize {
+    told.windows(2).filter(|pair| pair[1] != [false; SEGMENTS] && pair[0] == [false; SEGMENTS]).count()
+}
+
 impl Run {
     /// Simulates a session of the reference arm and replays it with this table.
     ///
@@ -67,7 +73,7 @@ impl Run {
     /// How often contact is told of where there was none before: of a free arm, false alarms.
     #[must_use]
     pub fn alarms(&self) -> usize {
-        self.told.windows(2).filter(|pair| pair[1] != [false; SEGMENTS] && pair[0] == [false; SEGMENTS]).count()
+        alarms(&self.told)
     }
 
     /// Pushes over 10°, and those of them that are told of on their segment within half a second of the first touch.

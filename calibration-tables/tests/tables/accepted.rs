@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use calibration_tables::{ArmFile, FileError, Side};
+use calibration_tables::{ArmFile, ChangeKeys, CoupledKeys, FileError, Side};
+use estimator_core::{CoupledSegment, Coupling, Q, Response};
 
 use super::common::{DESCRIPTION, TABLE, edited, parse};
 
@@ -125,6 +126,34 @@ fn the_committed_reference_table_is_as_it_would_be_written() {
 fn the_embedded_description_is_an_arm_description() {
     let arm = parse(calibration_tables::PLANAR_6_ARM);
     assert!(matches!(arm.bend_sensors(), Err(FileError::NotCalibrated(1))));
+}
+
+#[test]
+fn segments_without_limits_have_the_thresholds_of_the_arm() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../host-tests/tables");
+    let text = std::fs::read_to_string(folder.join("version-0.1.toml")).expect("the table is committed");
+    let baked = parse(&text).bake::<Q>(100.0).expect("it is a table");
+    let config = baked.config();
+    assert!(config.segments.iter().all(|segment| segment.contact.is_none()));
+    let contact = config.contact.expect("it is in the file");
+    assert!((contact.coupling.rad().to_degrees() - 4.0).abs() < 1e-6);
+}
+
+#[test]
+fn the_segment_with_more_play_and_lag_is_compared_with_the_other_behind_them() {
+    let text = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("planar-6.toml"))
+        .expect("the reference table is committed");
+    let mut table = parse(&text);
+    let limit = ChangeKeys { change_deg: 4.0, motion_deg: 8.0 };
+    let coupled = CoupledKeys { lag_s: 0.1, play_deg: -1.0, limit: Some(limit), ..CoupledKeys::with_ratio(1, 0.9) };
+    table.segments[1].coupled_to = Some(coupled);
+    let baked = table.bake::<Q>(100.0).expect("it is a table");
+    let limits = baked.config().segments[1].contact.expect("it has a limit");
+    let Coupling { lead, own, ratio_left, .. } = limits.coupling.expect("it is coupled");
+    // A lag of one value: 1 − 1/e.
+    assert_eq!((lead.play, lead.share), (0, 41_427));
+    assert_eq!((own.play, own.share), (11_930_465, Response::PROMPT));
+    assert_eq!(ratio_left, (0.9 * CoupledSegment::ONE).round() as i32, "that of the other side");
 }
 
 #[test]

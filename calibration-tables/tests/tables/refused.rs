@@ -276,3 +276,11 @@ fn a_segment_is_coupled_to_an_earlier_one_alone() {
         refuses("length_mm = 80.0", &coupled, "segment[1].coupled_to.segment", &number.to_string());
     }
 }
+
+#[test]
+fn limits_of_contact_are_checked() {
+    let contact = "length_mm = 80.0\ncontact = { change_deg = 0.0, motion_deg = 5.0 }";
+    refuses("length_mm = 80.0", contact, "segment[1].contact.change_deg", "0.0");
+    let contact = "length_mm = 80.0\ncontact = { change_deg = 4.0, motion_deg = 91.0 }";
+    refuses("length_mm = 80.0", contact, "segment[1].contact.motion_deg", "91.0");
+}

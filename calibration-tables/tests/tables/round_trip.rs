@@ -1,8 +1,8 @@
 //! A file is written and read without loss: every number to its last bit, every name to its last character.
 
 use calibration_tables::{
-    AnchorKeys, ArmFile, BendKeys, ContactKeys, CoupledKeys, DriftKeys, DriftKind, DriftTuningKeys, NoiseKeys,
-    PlayKeys, RmseKeys, SegmentKeys, Side, Stopped, TareKeys, TuningKeys, UncertaintyKeys,
+    AnchorKeys, ArmFile, BendKeys, ChangeKeys, ContactKeys, CoupledKeys, DriftKeys, DriftKind, DriftTuningKeys,
+    NoiseKeys, PlayKeys, RmseKeys, SegmentKeys, Side, Stopped, TareKeys, TuningKeys, UncertaintyKeys,
 };
 use proptest::option;
 use proptest::prelude::*;
@@ -60,6 +60,7 @@ fn segment() -> impl Strategy<Value = SegmentKeys> {
             bend_error: None,
             imu_scale: None,
             coupled_to: None,
+            contact: None,
             orient,
             coord,
         },
@@ -84,6 +85,10 @@ fn drift() -> impl Strategy<Value = DriftKeys> {
     })
 }
 
+fn change() -> impl Strategy<Value = ChangeKeys> {
+    (0.1..90.0_f64, 0.0..90.0_f64).prop_map(|(change_deg, motion_deg)| ChangeKeys { change_deg, motion_deg })
+}
+
 fn contact() -> impl Strategy<Value = ContactKeys> {
     (0.1..90.0_f64, 0.1..90.0_f64).prop_map(|(bend_deg, coupling_deg)| ContactKeys { bend_deg, coupling_deg })
 }
@@ -104,8 +109,17 @@ fn uncertainty() -> impl Strategy<Value = UncertaintyKeys> {
 
 /// Segments of which each may bend like the first.
 fn segments() -> impl Strategy<Value = Vec<SegmentKeys>> {
-    let coupled = option::of((-7.9..7.9_f64).prop_map(|ratio| CoupledKeys { segment: 1, ratio }));
-    let later = (segment(), coupled).prop_map(|(segment, coupled_to)| SegmentKeys { coupled_to, ..segment });
+    let coupled = (-7.9..7.9_f64, option::of(-7.9..7.9_f64), -10.0..10.0_f64, -30.0..30.0_f64, option::of(change()));
+    let coupled = coupled.prop_map(|(ratio, ratio_left, lag_s, play_deg, limit)| CoupledKeys {
+        segment: 1,
+        ratio,
+        ratio_left,
+        lag_s,
+        play_deg,
+        limit,
+    });
+    let later = (segment(), option::of(coupled), option::of(change()));
+    let later = later.prop_map(|(segment, coupled_to, contact)| SegmentKeys { coupled_to, contact, ..segment });
     (segment(), prop::collection::vec(later, 0..16))
         .prop_map(|(first, later)| std::iter::once(first).chain(later).collect())
 }

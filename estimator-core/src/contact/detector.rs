@@ -1,27 +1,44 @@
 //! Contact detector: fast changes of residuals that a free arm does not make.
 //!
-//! Free, coupled segments bend coupled, and the bend sensors of a segment follow its IMUs, up to the share of the motion that
-//! hysteresis keeps. A push or an obstacle breaks both within half a second: it bends one segment and not the coupled one,
-//! and it bends it unevenly, which constant curvature cannot explain. Slow changes are drift and hysteresis.
+//! Free, coupled segments bend coupled, and the bend sensors of a segment follow its IMUs. A push or an obstacle breaks both
+//! within a second: it bends one segment and not the coupled one, and it bends it unevenly, which constant curvature cannot
+//! explain. Slow changes are drift and hysteresis. The change over a window is a high-pass filter of the residual; contact
+//! begins where it exceeds its threshold in a number of values in a row (debounce).
 
-use crate::config::{ContactConfig, CoupledSegment};
-use crate::numeric::phase::Turns;
+use crate::config::{ChangeLimit, ContactConfig, CoupledSegment};
 use crate::types::Contact;
 
-/// Window of the change, values: half a second at 10 Hz.
-const WINDOW: usize = 5;
+/// Longest window of the change, values: a second at 10 Hz.
+const LONGEST_WINDOW: usize = 10;
+
+/// Window of the change by the arm's thresholds, and of the motion, values.
+const SHORT_WINDOW: u8 = 5;
 
 /// Contact times out after so many values (a minute at 10 Hz); the residual then becomes the new baseline.
 const TIMEOUT: u16 = 600;
 
+/// Values in a row over a limit of the sweep.
+const DEBOUNCE: u8 = 2;
+
 /// Share of its motion that a segment's hysteresis may keep, as a right shift.
 const HYSTERESIS_SHIFT: u32 = 2;
+
+/// Share of the motion beyond that of the sweep that is taken off the change, as a right shift.
+const EXCESS_SHIFT: u32 = 1;
+
+/// Decay of the largest motion in one value, as a right shift.
+const HOLD_SHIFT: u32 = 4;
 
 impl CoupledSegment {
     /// θ less what the coupling expects of it, in units of 2⁻³² turns.
     pub(crate) fn residual(self, theta: i32, other: i32) -> i32 {
-        theta.wrapping_sub(((i64::from(self.ratio) * i64::from(other)) >> 28) as i32)
+        theta.wrapping_sub(scaled(other, self.ratio))
     }
+}
+
+/// `angle` times a ratio in units of 2⁻²⁸.
+pub(crate) fn scaled(angle: i32, ratio: i32) -> i32 {
+    ((i64::from(ratio) * i64::from(angle)) >> 28) as i32
 }
 
 /// Detectors of one segment.
@@ -29,29 +46,23 @@ impl CoupledSegment {
 pub(crate) struct ContactDetector {
     bend: ChangeDetector,
     coupling: ChangeDetector,
-    /// θ_c of the newest value, in units of 2⁻³² turns.
-    pub theta: Option<i32>,
 }
 
 impl ContactDetector {
     pub const fn new() -> Self {
-        Self { bend: ChangeDetector::new(), coupling: ChangeDetector::new(), theta: None }
+        Self { bend: ChangeDetector::new(), coupling: ChangeDetector::new() }
     }
 
-    /// Takes one value of θ_c and θ_bend.
+    /// Takes one value of the IMUs against the bend sensors.
     #[inline(never)]
-    pub fn update(&mut self, rule: &ContactConfig, value: Option<(Turns, Turns)>) {
-        let value = value.map(|(corrected, bend)| (corrected.bits() as i32, bend.bits() as i32));
-        self.theta = value.map(|(corrected, _)| corrected);
-        let value = value.map(|(corrected, bend)| Residual { residual: corrected.wrapping_sub(bend), angle: bend });
-        self.bend.update(Thresholds { change: rule.bend.bits() as u32, hysteresis_shift: HYSTERESIS_SHIFT }, value);
+    pub fn update_bend(&mut self, thresholds: Thresholds, value: Option<Residual>) {
+        self.bend.update(thresholds, value);
     }
 
-    /// Takes one value of the residual against the coupled segment, where both are known.
+    /// Takes one value of the segment against the coupled one.
     #[inline(never)]
-    pub fn update_pair(&mut self, rule: &ContactConfig, difference: Option<i32>) {
-        let value = difference.map(|residual| Residual { residual, angle: 0 });
-        self.coupling.update(Thresholds { change: rule.coupling.bits() as u32, hysteresis_shift: 31 }, value);
+    pub fn update_coupling(&mut self, thresholds: Thresholds, value: Option<Residual>) {
+        self.coupling.update(thresholds, value);
     }
 
     /// Contact by the segment's own sensors.
@@ -69,18 +80,22 @@ impl ContactDetector {
 #[derive(Debug, Clone, Copy)]
 struct ChangeDetector {
     /// Ring buffer of the latest residuals, its length and head.
-    recent: [Residual; WINDOW],
+    recent: [Residual; LONGEST_WINDOW],
     len: u8,
     head: u8,
+    /// Values in a row over the threshold.
+    exceeded: u8,
+    /// Largest motion within half a second, decaying.
+    motion: u32,
     active: Option<ActiveContact>,
     contact: Contact,
 }
 
 /// A residual, and the angle whose motion explains a part of it.
 #[derive(Debug, Clone, Copy)]
-struct Residual {
-    residual: i32,
-    angle: i32,
+pub(crate) struct Residual {
+    pub residual: i32,
+    pub angle: i32,
 }
 
 /// An active contact.
@@ -88,24 +103,35 @@ struct Residual {
 struct ActiveContact {
     /// The residual before it.
     from: i32,
+    is_rise: bool,
     values: u16,
 }
 
 /// Thresholds of a detector.
 #[derive(Debug, Clone, Copy)]
-struct Thresholds {
+pub(crate) struct Thresholds {
     /// Change of the residual, in units of 2⁻³² turns.
     change: u32,
-    /// Share of the motion that is taken off the change, as a right shift.
-    hysteresis_shift: u32,
+    /// Motion that explains nothing of it.
+    motion: u32,
+    /// Share of the motion beyond it that is taken off the change, as a right shift.
+    excess_shift: u32,
+    /// Decay of the largest motion in one value, as a right shift; 0: the newest motion alone.
+    hold_shift: u32,
+    window: u8,
+    debounce: u8,
+    /// Whether the residual of the free arm is near zero, so that contact ends there.
+    has_zero: bool,
 }
 
 impl ChangeDetector {
     const fn new() -> Self {
         Self {
-            recent: [Residual { residual: 0, angle: 0 }; WINDOW],
+            recent: [Residual { residual: 0, angle: 0 }; LONGEST_WINDOW],
             len: 0,
             head: 0,
+            exceeded: 0,
+            motion: 0,
             active: None,
             contact: Contact { score_percent: 0, in_contact: false },
         }
@@ -115,26 +141,35 @@ impl ChangeDetector {
     fn update(&mut self, limits: Thresholds, value: Option<Residual>) {
         let score_percent = value.map_or(0, |value| self.score(limits, value));
         if value.is_none() {
-            self.len = 0;
+            (self.len, self.exceeded) = (0, 0);
         }
         self.contact = Contact { score_percent, in_contact: self.active.is_some() };
     }
 
     fn score(&mut self, limits: Thresholds, value: Residual) -> u16 {
+        let later = self.head + limits.window - SHORT_WINDOW;
+        let later = if later < limits.window { later } else { later - limits.window };
+        let Some(half_second_ago) = self.recent.get(usize::from(later)).copied() else { return 0 };
         let Some(place) = self.recent.get_mut(usize::from(self.head)) else { return 0 };
         let before = core::mem::replace(place, value);
-        self.head = if usize::from(self.head) + 1 < WINDOW { self.head + 1 } else { 0 };
-        let is_known = usize::from(self.len) == WINDOW;
-        let score_percent = if is_known { limits.percent(before, value) } else { 0 };
+        self.head = if self.head + 1 < limits.window { self.head + 1 } else { 0 };
+        let is_known = self.len == limits.window;
+        let motion = if is_known { value.angle.wrapping_sub(half_second_ago.angle).unsigned_abs() } else { 0 };
+        self.motion = motion.max(self.motion - (self.motion >> limits.hold_shift));
+        let score_percent = if is_known { limits.percent(before, value, self.motion) } else { 0 };
         self.len += u8::from(!is_known);
+        self.exceeded = if score_percent > 100 { self.exceeded.saturating_add(1) } else { 0 };
         self.active = match self.active {
-            None if score_percent > 100 => Some(ActiveContact { from: before.residual, values: 0 }),
+            None if self.exceeded >= limits.debounce => {
+                let is_rise = value.residual.wrapping_sub(before.residual) > 0;
+                Some(ActiveContact { from: before.residual, is_rise, values: 0 })
+            }
             Some(departure) if departure.lasts(limits, value) => {
                 Some(ActiveContact { values: departure.values + 1, ..departure })
             }
             Some(_) => {
                 // Its end is as fast as its beginning, and is not a new contact.
-                self.len = 0;
+                (self.len, self.exceeded) = (0, 0);
                 None
             }
             None => None,
@@ -147,16 +182,54 @@ impl ActiveContact {
     /// Whether it lasts: until the residual is back where it was, or near zero.
     fn lasts(self, limits: Thresholds, value: Residual) -> bool {
         let half = limits.change / 2;
-        let away = value.residual.wrapping_sub(self.from).unsigned_abs();
-        away > half && value.residual.unsigned_abs() > half && self.values < TIMEOUT
+        let away = value.residual.wrapping_sub(self.from);
+        let departure = if limits.has_zero {
+            away.unsigned_abs().min(value.residual.unsigned_abs())
+        } else if (away > 0) == self.is_rise {
+            away.unsigned_abs()
+        } else {
+            0
+        };
+        departure > half && self.values < TIMEOUT
     }
 }
 
 impl Thresholds {
-    fn percent(self, before: Residual, now: Residual) -> u16 {
+    /// The arm's, of the IMUs against the bend sensors.
+    pub fn of_bend(config: &ContactConfig) -> Self {
+        let change = config.bend.bits() as u32;
+        Self { change, excess_shift: HYSTERESIS_SHIFT, ..Self::of_coupling(config) }
+    }
+
+    /// The arm's, of a segment against the coupled one.
+    pub fn of_coupling(config: &ContactConfig) -> Self {
+        Self {
+            change: config.coupling.bits() as u32,
+            motion: 0,
+            excess_shift: 31,
+            hold_shift: 0,
+            window: SHORT_WINDOW,
+            debounce: 1,
+            has_zero: true,
+        }
+    }
+
+    /// Those of a residual in the sweep.
+    pub fn of_limit(limit: &ChangeLimit) -> Self {
+        Self {
+            change: limit.change.bits() as u32,
+            motion: limit.motion.bits() as u32,
+            excess_shift: EXCESS_SHIFT,
+            hold_shift: HOLD_SHIFT,
+            window: LONGEST_WINDOW as u8,
+            debounce: DEBOUNCE,
+            has_zero: false,
+        }
+    }
+
+    fn percent(self, before: Residual, now: Residual, motion: u32) -> u16 {
         let change = now.residual.wrapping_sub(before.residual).unsigned_abs();
-        let motion = now.angle.wrapping_sub(before.angle).unsigned_abs();
-        let rest = change.saturating_sub(motion >> self.hysteresis_shift);
+        let rest = change.saturating_sub(motion.saturating_sub(self.motion) >> self.excess_shift);
         // 2²⁴ steps are a 256th of a turn, and times 100 in range.
         ((rest >> 8) * 100 / ((self.change >> 8) | 1)).min(u32::from(u16::MAX)) as u16
     }
@@ -168,14 +241,35 @@ mod tests {
 
     use std::vec::Vec;
 
-    use super::{ChangeDetector, CoupledSegment, Residual, TIMEOUT, Thresholds};
+    use super::{
+        ChangeDetector, CoupledSegment, DEBOUNCE, EXCESS_SHIFT, HOLD_SHIFT, LONGEST_WINDOW, Residual, SHORT_WINDOW,
+        TIMEOUT, Thresholds,
+    };
 
     /// 4° and 1°, in units of 2⁻³² turns.
     const LIMIT: u32 = 47_721_859;
     const DEGREE: i32 = 11_930_465;
 
-    const COUPLING: Thresholds = Thresholds { change: LIMIT, hysteresis_shift: 31 };
-    const BEND: Thresholds = Thresholds { change: LIMIT, hysteresis_shift: 2 };
+    const COUPLING: Thresholds = Thresholds {
+        change: LIMIT,
+        motion: 0,
+        excess_shift: 31,
+        hold_shift: 0,
+        window: SHORT_WINDOW,
+        debounce: 1,
+        has_zero: true,
+    };
+    const BEND: Thresholds = Thresholds { excess_shift: 2, ..COUPLING };
+    /// By the sweep, which has moved by 10° in half a second.
+    const SWEPT: Thresholds = Thresholds {
+        motion: 5 * DEGREE as u32,
+        excess_shift: EXCESS_SHIFT,
+        hold_shift: HOLD_SHIFT,
+        window: LONGEST_WINDOW as u8,
+        debounce: DEBOUNCE,
+        has_zero: false,
+        ..COUPLING
+    };
 
     /// Whether each of the residuals, in degrees, is seen as contact; the segment moves as they do, tenfold.
     fn touched(limits: Thresholds, degrees: impl IntoIterator<Item = i32>) -> Vec<bool> {
@@ -230,5 +324,45 @@ mod tests {
         let coupled = CoupledSegment { segment: 0, ratio: (-0.75 * CoupledSegment::ONE) as i32 };
         assert_eq!(coupled.residual(-3 * DEGREE, 4 * DEGREE), 0);
         assert_eq!(coupled.residual(5 * DEGREE, -4 * DEGREE), 2 * DEGREE);
+    }
+
+    /// Whether each residual is seen as contact by [`SWEPT`], with the motion of the segment beside it, degrees.
+    fn touched_in_motion(values: impl IntoIterator<Item = [i32; 2]>) -> Vec<bool> {
+        let mut detector = ChangeDetector::new();
+        let step = |[residual, angle]: [i32; 2]| {
+            detector.update(SWEPT, Some(Residual { residual: residual * DEGREE, angle: angle * DEGREE }));
+            detector.contact.in_contact
+        };
+        values.into_iter().map(step).collect()
+    }
+
+    #[test]
+    fn a_single_wild_value_is_no_contact() {
+        let wild = (0..40).map(|k| [if k == 20 { 30 } else { 0 }, 0]);
+        assert!(!touched_in_motion(wild).contains(&true));
+    }
+
+    #[test]
+    fn contact_by_the_sweep_lasts_until_the_residual_returns_from_either_side() {
+        for sign in [1, -1] {
+            let seen = touched_in_motion((0..60).map(|k| [if (20..40).contains(&k) { 10 * sign } else { -sign }, 0]));
+            assert_eq!(seen.iter().position(|seen| *seen), Some(21));
+            assert_eq!(seen.iter().rposition(|seen| *seen), Some(39));
+        }
+    }
+
+    #[test]
+    fn motion_beyond_that_of_the_sweep_is_taken_off_the_change() {
+        let swing = |speed: i32| (0..40).map(move |k| [k * 3 / 4, speed * k]);
+        assert!(touched_in_motion(swing(1)).contains(&true), "7.5° within a second, as the sweep has moved");
+        assert!(!touched_in_motion(swing(3)).contains(&true), "the same at three times the sweep's motion");
+    }
+
+    #[test]
+    fn fast_motion_is_held_over_the_turning_point() {
+        let residual = |k: i32| if k < 25 { 0 } else { 6 };
+        let turning = |k: i32| [residual(k), if k < 20 { 4 * k } else { 80 }];
+        assert!(!touched_in_motion((0..30).map(turning)).contains(&true), "right after 20° within half a second");
+        assert!(touched_in_motion((0..40).map(|k| [residual(k), 60])).contains(&true), "at rest");
     }
 }

@@ -1,4 +1,5 @@
 //! Contact detection.
 
+pub(crate) mod coupling;
 pub mod detector;
 pub mod monitor;

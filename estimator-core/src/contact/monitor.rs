@@ -3,11 +3,13 @@
 //! The values of all segments are complete at once, but each segment is worked on in its own turn, so that no sample costs
 //! much more than another.
 
-use crate::config::{ArmConfig, ContactConfig, SegmentConfig};
-use crate::contact::detector::ContactDetector;
+use crate::config::{ArmConfig, ContactConfig, CoupledSegment, SegmentConfig};
+use crate::contact::coupling::CouplingModel;
+use crate::contact::detector::{ContactDetector, Residual, Thresholds};
+use crate::drift::MeasuredAngles;
 use crate::drift::decimator::{Decimated, Decimator};
 use crate::numeric::phase::Turns;
-use crate::types::{Contact, Contacts};
+use crate::types::{Condition, Contact, Contacts};
 
 /// Contact detectors of up to `N` segments.
 #[derive(Debug, Clone)]
@@ -21,54 +23,77 @@ pub struct ContactMonitor<const N: usize> {
 struct SegmentMonitor {
     accumulating: Sums,
     latest: Sums,
+    /// Steps of θ_c in the newest sample of the latest value, in units of 2⁻³² turns.
+    steps: i32,
+    /// θ by the IMUs in the segment's newest turn.
+    imu: Option<i32>,
+    coupling: CouplingModel,
     detector: ContactDetector,
 }
 
-/// θ_c and θ_bend over the samples of a value that have both.
+/// Angles over the samples of a value.
 #[derive(Debug, Clone, Copy)]
 struct Sums {
-    corrected: Turns,
-    bend: Turns,
+    imu: Sum,
+    bend: Sum,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Sum {
+    sum: Turns,
     count: u16,
 }
 
 impl Sums {
-    const EMPTY: Self = Self { corrected: Turns::ZERO, bend: Turns::ZERO, count: 0 };
+    const EMPTY: Self = Self { imu: Sum::EMPTY, bend: Sum::EMPTY };
+}
 
-    fn add(&mut self, corrected: Turns, bend: Turns) {
-        self.corrected = self.corrected + corrected;
-        self.bend = self.bend + bend;
-        self.count = self.count.saturating_add(1);
+impl Sum {
+    const EMPTY: Self = Self { sum: Turns::ZERO, count: 0 };
+
+    fn add(&mut self, angle: Option<Turns>) {
+        if let Some(angle) = angle {
+            self.sum = self.sum + angle;
+            self.count = self.count.saturating_add(1);
+        }
     }
 
-    fn means(&self) -> Option<(Turns, Turns)> {
-        (self.count > 0).then(|| (self.corrected.mean_of(self.count), self.bend.mean_of(self.count)))
+    /// The mean, in units of 2⁻³² turns.
+    fn mean(&self) -> Option<i32> {
+        (self.count > 0).then(|| self.sum.mean_of(self.count).bits() as i32)
     }
 }
 
 impl<const N: usize> ContactMonitor<N> {
     /// At the start of a session.
     pub const fn new() -> Self {
-        let segment =
-            SegmentMonitor { accumulating: Sums::EMPTY, latest: Sums::EMPTY, detector: ContactDetector::new() };
-        Self { segments: [segment; N], has_value: false }
+        Self { segments: [SegmentMonitor::new(); N], has_value: false }
     }
 
-    /// Takes one sample's θ_c and θ_bend of each segment, where both are known.
+    /// Forgets everything: in parts, as a whole new one would not fit a small stack.
+    pub fn start(&mut self) {
+        for segment in &mut self.segments {
+            *segment = SegmentMonitor::new();
+        }
+        self.has_value = false;
+    }
+
+    /// Takes one sample's angles. `condition` of a segment leaves out sensors that are not trusted.
     pub fn update<S>(
         &mut self,
         config: &ArmConfig<S>,
         thresholds: &ContactConfig,
         decimator: Decimator,
         decimated: Decimated,
-        angles: &[Option<(Turns, Turns)>; N],
+        angles: &[MeasuredAngles; N],
+        condition: impl Fn(usize) -> Condition,
     ) {
         for (segment, angles) in self.segments.iter_mut().zip(angles) {
-            if let Some((corrected, bend)) = angles {
-                segment.accumulating.add(*corrected, *bend);
-            }
+            segment.accumulating.imu.add(angles.imu);
+            segment.accumulating.bend.add(angles.bend);
             if decimated.is_complete() {
                 segment.latest = core::mem::replace(&mut segment.accumulating, Sums::EMPTY);
+                segment.steps = angles.steps.bits() as i32;
             }
         }
         self.has_value |= decimated.is_complete();
@@ -79,20 +104,41 @@ impl<const N: usize> ContactMonitor<N> {
         let share = config.anchor.sample_rate_millihertz / (config.segments.len() as u32).max(1);
         for (i, segment) in config.segments.iter().enumerate().take(N) {
             if phases.contains(&(share * i as u32)) {
-                self.detect(i, segment, thresholds);
+                self.detect(i, segment, thresholds, &condition);
             }
         }
     }
 
     /// The turn of segment `i`, which comes after that of the segment that it is coupled to.
-    fn detect<S>(&mut self, i: usize, segment: &SegmentConfig<S>, thresholds: &ContactConfig) {
-        let other = segment.coupled_to.and_then(|coupled| self.segments.get(usize::from(coupled.segment)));
-        let other = other.and_then(|other| other.detector.theta);
-        let Some(SegmentMonitor { latest, detector, .. }) = self.segments.get_mut(i) else { return };
-        detector.update(thresholds, latest.means());
-        if let Some(coupled) = segment.coupled_to {
-            let residual = detector.theta.zip(other).map(|(theta, other)| coupled.residual(theta, other));
-            detector.update_pair(thresholds, residual);
+    fn detect<S>(
+        &mut self,
+        i: usize,
+        segment: &SegmentConfig<S>,
+        thresholds: &ContactConfig,
+        condition: &impl Fn(usize) -> Condition,
+    ) {
+        let own = condition(i);
+        let below_restarted = i.checked_sub(1).is_some_and(|below| condition(below).imu_restarted);
+        let coupled = segment.coupled_to.and_then(|coupled| {
+            let other = self.segments.get(usize::from(coupled.segment))?;
+            Some((coupled, other.imu, other.steps))
+        });
+        let Some(monitor) = self.segments.get_mut(i) else { return };
+        monitor.imu = monitor.latest.imu.mean().filter(|_| !own.imu_restarted && !below_restarted);
+        let (imu, bend) = (monitor.imu, monitor.latest.bend.mean().filter(|_| !own.bend_distrusted));
+        let by_bend = imu.zip(bend).map(|(imu, bend)| (imu.wrapping_sub(bend), bend));
+        let by_bend = by_bend.map(|(residual, angle)| Residual { residual, angle });
+        let Some(limits) = &segment.contact else {
+            monitor.detect_by_thresholds(thresholds, by_bend, coupled);
+            return;
+        };
+        if let Some(limit) = &limits.bend {
+            monitor.detector.update_bend(Thresholds::of_limit(limit), by_bend);
+        }
+        if let Some(((coupled, lead, steps), coupling)) = coupled.zip(limits.coupling.as_ref()) {
+            let model = &mut monitor.coupling;
+            let value = imu.zip(lead).map(|(own, lead)| model.update(coupled, coupling, own, lead, steps));
+            monitor.detector.update_coupling(Thresholds::of_limit(&coupling.limit), value);
         }
     }
 
@@ -127,5 +173,35 @@ impl<const N: usize> ContactMonitor<N> {
             }
         }
         contacts
+    }
+}
+
+impl SegmentMonitor {
+    const fn new() -> Self {
+        Self {
+            accumulating: Sums::EMPTY,
+            latest: Sums::EMPTY,
+            steps: 0,
+            imu: None,
+            coupling: CouplingModel::new(),
+            detector: ContactDetector::new(),
+        }
+    }
+
+    /// The turn of a segment without limits of its own: θ_c against the bend sensors, and against the coupled segment's.
+    fn detect_by_thresholds(
+        &mut self,
+        thresholds: &ContactConfig,
+        by_bend: Option<Residual>,
+        coupled: Option<(CoupledSegment, Option<i32>, i32)>,
+    ) {
+        let by_bend = by_bend.map(|value| Residual { residual: value.residual.wrapping_add(self.steps), ..value });
+        self.detector.update_bend(Thresholds::of_bend(thresholds), by_bend);
+        if let Some((coupled, lead, lead_steps)) = coupled {
+            let both =
+                self.imu.zip(lead).map(|(own, lead)| [own.wrapping_add(self.steps), lead.wrapping_add(lead_steps)]);
+            let value = both.map(|[own, lead]| Residual { residual: coupled.residual(own, lead), angle: 0 });
+            self.detector.update_coupling(Thresholds::of_coupling(thresholds), value);
+        }
     }
 }

@@ -16,7 +16,7 @@ use crate::drift::bias_filter::tare::TareStatistics;
 use crate::drift::bias_state::BiasState;
 use crate::drift::heading_gate::HeadingGate;
 use crate::drift::rest::RestDetector;
-use crate::drift::{CorrectedArm, DriftCorrection, SensedArm};
+use crate::drift::{CorrectedArm, DriftCorrection, MeasuredAngles, SensedArm};
 use crate::numeric::phase::Turns;
 use crate::numeric::scalar::{Constant, Scalar};
 use crate::numeric::variance::{smaller, variance_deg};
@@ -81,6 +81,8 @@ struct SegmentTrack<F> {
     heading: Turns,
     /// Bias that it is corrected by.
     bias: Turns,
+    /// Sum of the steps of the heading with the biases that updates have changed.
+    bias_steps: Turns,
     /// θ of the last sample, and of the last turn, rad.
     theta: F,
     turn_theta: F,
@@ -125,6 +127,7 @@ impl<F: Scalar> SegmentTrack<F> {
             sensors: 0,
             heading: Turns::ZERO,
             bias: Turns::ZERO,
+            bias_steps: Turns::ZERO,
             theta: zero,
             turn_theta: zero,
             turned_at_us: None,
@@ -227,14 +230,17 @@ impl<F: Scalar, const N: usize> BiasFilter<F, N> {
     /// θ of all segments, from their headings.
     fn angles<S>(&mut self, segments: &[SegmentConfig<S>]) -> CorrectedArm<N> {
         let mut corrected = CorrectedArm::UNKNOWN;
-        let (mut below, mut is_below_read) = (Turns::ZERO, true);
-        let angles = corrected.fused.iter_mut().zip(&mut corrected.imu);
-        for (track, (fused, imu)) in self.segments.iter_mut().zip(angles).take(segments.len()) {
+        let (mut below, mut is_below_read, mut steps_below) = (Turns::ZERO, true, Turns::ZERO);
+        let angles = corrected.fused.iter_mut().zip(&mut corrected.imu).zip(&mut corrected.measured);
+        for (track, ((fused, imu), measured)) in self.segments.iter_mut().zip(angles).take(segments.len()) {
             let theta = Turns::from((track.heading - below).phase());
             track.theta = F::from_phase(theta.phase());
             *fused = Some(theta);
             *imu = (track.is_heading_read && is_below_read).then_some(theta);
-            (below, is_below_read) = (track.heading, track.is_heading_read);
+            let steps = track.bias_steps - steps_below;
+            let bend = track.bend.map(|bend| bend.theta.to_turns());
+            *measured = MeasuredAngles { imu: imu.map(|theta| theta - steps), steps, bend };
+            (below, is_below_read, steps_below) = (track.heading, track.is_heading_read, track.bias_steps);
         }
         corrected
     }

@@ -34,11 +34,29 @@ pub struct CorrectedArm<const N: usize> {
     pub imu: [Option<Turns>; N],
     /// θ_i of all sensors; `None` where the correction leaves fusion to KF_orient and KF_coord.
     pub fused: [Option<Turns>; N],
+    /// Angles for the contact detector.
+    pub measured: [MeasuredAngles; N],
+}
+
+/// Bend angles of one segment for the contact detector.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct MeasuredAngles {
+    /// θ_c,i without `steps`; `None` where one of the two IMUs was not read, or is not trusted.
+    pub imu: Option<Turns>,
+    /// Sum of the steps that updates of the bias have made in θ_c,i: no motion of the segment.
+    pub steps: Turns,
+    /// θ_bend of the trusted sensors; `None` where there are none.
+    pub bend: Option<Turns>,
+}
+
+impl MeasuredAngles {
+    /// No angle is known.
+    pub const UNKNOWN: Self = Self { imu: None, steps: Turns::ZERO, bend: None };
 }
 
 impl<const N: usize> CorrectedArm<N> {
     /// No angle is known.
-    pub const UNKNOWN: Self = Self { imu: [None; N], fused: [None; N] };
+    pub const UNKNOWN: Self = Self { imu: [None; N], fused: [None; N], measured: [MeasuredAngles::UNKNOWN; N] };
 }
 
 /// Removes the drift from the IMUs' bend angles.

@@ -2,7 +2,7 @@
 
 use crate::config::{AnchorConfig, ArmConfig};
 use crate::drift::decimator::Decimated;
-use crate::drift::{CorrectedArm, DriftCorrection, SensedArm};
+use crate::drift::{CorrectedArm, DriftCorrection, MeasuredAngles, SensedArm};
 use crate::numeric::phase::Turns;
 use crate::numeric::scalar::Scalar;
 use crate::sensing::heading::SegmentHeading;
@@ -136,12 +136,16 @@ impl<S: Scalar, const N: usize, const W: usize> DriftCorrection<S, N> for Moving
     fn correct(&mut self, config: &ArmConfig<S>, sensed: &SensedArm<S, N>) -> CorrectedArm<N> {
         let mut corrected = CorrectedArm::UNKNOWN;
         let mut below = &SegmentHeading::BASE;
-        let segments = self.anchors.iter_mut().zip(&sensed.headings).zip(&sensed.bend).zip(&mut corrected.imu);
-        for (((anchor, heading), bend), theta) in segments.take(config.segments.len()) {
+        let angles = corrected.imu.iter_mut().zip(&mut corrected.measured);
+        let segments = self.anchors.iter_mut().zip(&sensed.headings).zip(&sensed.bend).zip(angles);
+        for (((anchor, heading), bend), (theta, measured)) in segments.take(config.segments.len()) {
             let [difference, zero] = heading.relative_to(below);
             below = heading;
             anchor.push(sensed.decimated, difference.zip(bend.mean).map(|(imu, bend)| imu - bend.to_turns()));
             *theta = difference.zip(zero).map(|(imu, zero)| imu - anchor.zero(&config.anchor, zero));
+            if let Some((imu, bend)) = theta.zip(bend.mean) {
+                *measured = MeasuredAngles { imu: Some(imu), steps: Turns::ZERO, bend: Some(bend.to_turns()) };
+            }
         }
         corrected
     }

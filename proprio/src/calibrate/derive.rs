@@ -10,7 +10,8 @@ use super::maps::MapMode;
 use super::sensors::{self, Sensor};
 use super::sweep::Sweep;
 use super::{
-    CalibrationOptions, MISFIT_PERCENT, SegmentReport, bend_error, extensions, hysteresis, imu_scale, residuals,
+    CalibrationOptions, MISFIT_PERCENT, SegmentReport, bend_error, contact, extensions, hysteresis, imu_scale,
+    residuals,
 };
 use crate::error::Error;
 use crate::replay::NamedTable;
@@ -56,6 +57,7 @@ pub(super) fn table(
         table = named.file;
     }
     extensions::set(sweep, &mut table);
+    set_contact(sweep, &sensors, &mut table);
     Ok(Derived { table, sensors })
 }
 
@@ -84,6 +86,15 @@ fn set_errors(sweep: &Sweep, sensors: &[Sensor], table: &mut ArmFile) {
     if let Some(drift) = table.drift.as_mut().filter(|_| !offsets.is_empty()) {
         drift.offset_deg = bend_error::offset_deg(&offsets);
     }
+}
+
+/// Sets the limits of contact detection, unless the arm description has thresholds.
+fn set_contact(sweep: &Sweep, sensors: &[Sensor], table: &mut ArmFile) {
+    let of_segment = |i: usize| sensors.iter().filter(move |sensor| sensor.segment == i).map(|sensor| &sensor.fitted);
+    let sensors: Vec<Vec<_>> = (0..table.segments.len()).map(|i| of_segment(i).collect()).collect();
+    let has_limits = table.contact.is_none();
+    table.contact.get_or_insert_default();
+    contact::set(sweep, &sensors, has_limits, table);
 }
 
 impl Derived {

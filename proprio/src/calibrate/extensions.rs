@@ -1,9 +1,9 @@
-//! Error sources of the estimates, contact detection and coupled segments.
+//! Error sources of the estimates.
 //!
-//! Their parameters are those of the reference arm, but for what a sweep shows of its own: coupled segments, the errors of
-//! the bend sensors, and the error of constant curvature.
+//! Their parameters are those of the reference arm, but for what a sweep shows of its own: the errors of the bend sensors,
+//! and the error of constant curvature.
 
-use calibration_tables::{ArmFile, CoupledKeys, RATIO_RANGE, SegmentKeys, UncertaintyKeys};
+use calibration_tables::{ArmFile, SegmentKeys, UncertaintyKeys};
 use serde::de::IgnoredAny;
 
 use super::quantile;
@@ -18,7 +18,7 @@ const CONTACT_DEG: f64 = 1.0;
 /// Share of the tip's error of constant curvature that the angles' deviations do not cover, behind the anchor.
 const END_SHARE: f64 = 0.9;
 
-/// Sets `[uncertainty]`, `[contact]` and `coupled_to` of a table whose maps and filters are set.
+/// Sets `[uncertainty]` of a table whose maps and filters are set.
 pub(super) fn set(sweep: &Sweep, table: &mut ArmFile) {
     let bend_deg = bend_deg(&table.segments);
     let is_filtered = table.bias_filter().is_some();
@@ -33,14 +33,6 @@ pub(super) fn set(sweep: &Sweep, table: &mut ArmFile) {
     };
     // As far as the format goes.
     table.uncertainty = Some(deviations.scaled(1.0));
-    table.contact.get_or_insert_default();
-    for segment in &mut table.segments {
-        segment.coupled_to = None;
-    }
-    for pair in sweep.coupled().iter().filter(|pair| RATIO_RANGE.contains(&pair.ratio)) {
-        let coupled = &mut table.segments[pair.second - 1].coupled_to;
-        coupled.get_or_insert(CoupledKeys { segment: pair.first, ratio: pair.ratio });
-    }
 }
 
 /// Error of constant curvature at a segment's end in its own frame, mm: the median segment's, of both coordinates together.

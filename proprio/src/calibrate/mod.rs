@@ -13,6 +13,7 @@
 //! the errors that bend sensors and anchored IMUs make in a replay of the sweep.
 
 mod bend_error;
+mod contact;
 mod curvature;
 mod derive;
 mod error;

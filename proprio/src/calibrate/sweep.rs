@@ -71,8 +71,6 @@ pub(super) struct Coupling {
     pub first: usize,
     /// Number of the later.
     pub second: usize,
-    /// θ of the later over that of the earlier.
-    pub ratio: f64,
 }
 
 /// Headings come within one turn, from cameras as from IMUs.
@@ -225,7 +223,7 @@ impl Sweep {
             for (a, b) in both {
                 (aa, ab, bb) = (aa + a * a, ab + a * b, bb + b * b);
             }
-            (ab * ab > COUPLED * aa * bb).then(|| Coupling { first: i + 1, second: j + 1, ratio: ab / aa })
+            (ab * ab > COUPLED * aa * bb).then(|| Coupling { first: i + 1, second: j + 1 })
         };
         pairs.filter_map(coupling).collect()
     }

@@ -91,6 +91,7 @@ impl<F: Scalar, const N: usize> BiasFilter<F, N> {
         for (track, (bias, before)) in self.segments.iter_mut().zip(self.state.bias.iter().zip(before)) {
             let moved = *before - *bias;
             track.heading = track.heading + moved;
+            track.bias_steps = track.bias_steps + moved;
             track.theta = F::from_phase((track.heading - below).phase());
             let turned: F = F::from_phase((moved - below_moved).phase());
             track.counted_theta += turned;

@@ -49,6 +49,7 @@ const SEGMENT: SegmentConfig<Q> = SegmentConfig {
     bend_error: BendErrorConfig::PAPER,
     imu_scale_error: 0,
     coupled_to: None,
+    contact: None,
     reference: Turns::ZERO,
     orient: FILTER,
     coord: FILTER,

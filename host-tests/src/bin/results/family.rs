@@ -94,7 +94,7 @@ impl Family {
         Ok(&self.arm(seed).ok_or_else(|| format!("arm {seed} was not measured"))?.tables)
     }
 
-    fn of<'f>(&'f self, seeds: &[u64]) -> Vec<&'f ArmFigures> {
+    pub fn of<'f>(&'f self, seeds: &[u64]) -> Vec<&'f ArmFigures> {
         seeds.iter().filter_map(|seed| self.arm(*seed)).collect()
     }
 
@@ -118,8 +118,7 @@ impl Family {
             write_summary(page, &format!("{name} | all"), &all)?;
         }
         self.write_arms(page)?;
-        self.write_maps(page)?;
-        self.write_contact(page)
+        self.write_maps(page)
     }
 
     fn write_arms(&self, page: &mut String) -> fmt::Result {
@@ -152,28 +151,6 @@ impl Family {
         };
         row(page, "as `calibrate` chooses them", &|arm, k| arm.scenarios[k].fusion_mm)?;
         row(page, "quadratic, no memory", &|arm, k| arm.quadratic_mm[k])?;
-        writeln!(page)
-    }
-
-    fn write_contact(&self, page: &mut String) -> fmt::Result {
-        writeln!(page, "{CONTACT}")?;
-        writeln!(page, "| arms | false alarms | pushes found | encounters found |\n|---|---|---|---|")?;
-        let groups: [(&str, &[u64]); 3] = [("test", &TEST), ("development", &DEVELOPMENT), ("reference", &[REFERENCE])];
-        for (name, seeds) in groups {
-            let mut sum = Contact::default();
-            for arm in self.of(seeds) {
-                sum.false_alarms += arm.contact.false_alarms;
-                sum.pushes += arm.contact.pushes;
-                sum.encounters += arm.contact.encounters;
-            }
-            let minutes = seeds.len() as f64 * SESSION_S / 60.0;
-            let Contact { false_alarms, pushes, encounters } = sum;
-            writeln!(
-                page,
-                "| {name} | {false_alarms} in {minutes} min | {} of {} | {} of {} |",
-                pushes.found, pushes.all, encounters.found, encounters.all
-            )?;
-        }
         writeln!(page)
     }
 }
@@ -221,11 +198,4 @@ const MAPS: &str = "\
 ### Maps
 
 Mean tip RMSE of fusion over the test arms, mm.
-";
-
-const CONTACT: &str = "\
-### Contact
-
-False alarms: contacts of the free arm (scenario I). Pushes over 10° that are detected on their segment within 0.5 s of the first touch
-(scenario II). Times that the obstacle comes to bend a segment by over 10°, detected on any segment within 0.5 s (scenario III).
 ";

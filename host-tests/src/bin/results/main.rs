@@ -2,6 +2,7 @@
 //! `docs/FAULTS-OF-SESSIONS.md`.
 
 mod arm;
+mod contact;
 mod day;
 mod evaluation;
 mod family;

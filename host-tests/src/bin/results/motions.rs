@@ -2,6 +2,7 @@
 
 use std::fmt::{self, Write};
 
+use host_tests::contact::alarms;
 use host_tests::parallel::in_parallel;
 use host_tests::twin::TwinSession;
 use rig_twin::{Motion, Scenario};
@@ -29,6 +30,8 @@ const MOTIONS: [(&str, Motion, Scenario, f64); 9] = [
 /// Figures of each motion by arm.
 pub struct Motions {
     rows: Vec<[Figures; ARMS.len()]>,
+    /// Contacts of each motion, over all arms.
+    contacts: Vec<usize>,
 }
 
 impl Motions {
@@ -41,8 +44,18 @@ impl Motions {
             measure(family.tables(*seed)?, *seed, (motion, scenario), seconds)
         });
         let figures = figures.into_iter().collect::<Result<Vec<_>, _>>()?;
-        let rows = figures.chunks_exact(ARMS.len()).map(|row| std::array::from_fn(|arm| row[arm])).collect();
-        Ok(Self { rows })
+        let rows = figures.chunks_exact(ARMS.len());
+        Ok(Self {
+            contacts: rows.clone().map(|row| row.iter().map(|(_, contacts)| contacts).sum()).collect(),
+            rows: rows.map(|row| std::array::from_fn(|arm| row[arm].0)).collect(),
+        })
+    }
+
+    /// Free motions: name, false alarms over all arms, seconds.
+    pub fn false_alarms(&self) -> impl Iterator<Item = (&'static str, usize, f64)> {
+        let motions = MOTIONS.iter().zip(&self.contacts);
+        let free = motions.filter(|((_, _, scenario, _), _)| *scenario == Scenario::One);
+        free.map(|((name, _, _, seconds), contacts)| (*name, *contacts, ARMS.len() as f64 * seconds))
     }
 
     /// The table.
@@ -68,9 +81,10 @@ fn measure(
     seed: u64,
     (motion, scenario): (Motion, Scenario),
     seconds: f64,
-) -> Result<Figures, Problem> {
+) -> Result<(Figures, usize), Problem> {
     let session = TwinSession::new(&setup(seed, scenario, motion), seconds, RATE_HZ)?;
-    Ok(Evaluation::of_twin(tables, &session)?.figures())
+    let evaluation = Evaluation::of_twin(tables, &session)?;
+    Ok((evaluation.figures(), alarms(&evaluation.contact)))
 }
 
 const MOTIONS_TEXT: &str = "\

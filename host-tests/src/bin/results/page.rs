@@ -8,6 +8,7 @@ use proprio::replay::{NamedTable, replay};
 use proprio::score::Score;
 
 use crate::arm::{Problem, planar};
+use crate::contact;
 use crate::day::Day;
 use crate::family::{DEVELOPMENT, Family, REFERENCE, TEST};
 use crate::motions::Motions;
@@ -50,6 +51,7 @@ impl Results {
         writeln!(page, "{INTRODUCTION}")?;
         write_seeds(&mut page)?;
         self.family.write(&mut page)?;
+        contact::write(&mut page, &self.family, &self.motions, self.rigs.as_ref())?;
         self.motions.write(&mut page)?;
         RealDrift::write(self.drift.as_ref(), &self.family, &mut page)?;
         Rigs::write(self.rigs.as_ref(), &mut page)?;

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 
 use calibration_tables::ArmFile;
 use flate2::read::GzDecoder;
+use host_tests::contact::alarms;
 use host_tests::parallel::in_parallel;
 use proprio::replay::NamedTable;
 use proprio::session::{Row, SessionReader};
@@ -19,12 +20,18 @@ const SESSIONS: [&str; 3] = ["s1", "s2", "s3"];
 /// A session with long rests, of one rig.
 const RESTS: &str = "rests";
 
+/// Sessions in which nothing touches the arm.
+const FREE: [&str; 2] = ["s1", RESTS];
+
 /// Figures of one rig.
 struct Rig {
     name: String,
     maps_rmse_deg: f64,
     sessions: Vec<Figures>,
     rests: Option<Figures>,
+    /// False alarms in the free session and the rests, and their seconds.
+    false_alarms: usize,
+    free_s: f64,
 }
 
 /// Figures of all rigs.
@@ -45,6 +52,11 @@ impl Rigs {
         paths.sort();
         let rigs = in_parallel(&paths, |path| Rig::measure(arm, path, folder));
         Ok(Some(Self { rigs: rigs.into_iter().collect::<Result<_, _>>()? }))
+    }
+
+    /// Of each rig: name, false alarms in its free sessions, and their seconds.
+    pub fn false_alarms(&self) -> impl Iterator<Item = (&str, usize, f64)> {
+        self.rigs.iter().map(|rig| (rig.name.as_str(), rig.false_alarms, rig.free_s))
     }
 
     /// The table, or why there is none.
@@ -84,13 +96,19 @@ impl Rig {
         let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
         eprintln!("{name}");
         let tables = Tables::of_sweep(&unpacked(path, "sweep", folder)?, arm)?;
-        let figures = |session: &str| -> Result<Figures, Problem> {
+        let (mut false_alarms, mut free_s) = (0, 0.0);
+        let mut figures = |session: &str| -> Result<Figures, Problem> {
             let (rate_hz, rows) = rows(&unpacked(path, session, folder)?, &tables)?;
-            Ok(Evaluation::of(&tables, rate_hz, || rows.iter().copied())?.figures())
+            let evaluation = Evaluation::of(&tables, rate_hz, || rows.iter().copied())?;
+            if FREE.contains(&session) {
+                false_alarms += alarms(&evaluation.contact);
+                free_s += rows.len() as f64 / rate_hz;
+            }
+            Ok(evaluation.figures())
         };
         let sessions = SESSIONS.iter().map(|session| figures(session)).collect::<Result<_, _>>()?;
         let rests = path.join(format!("{RESTS}.csv.gz")).exists().then(|| figures(RESTS)).transpose()?;
-        Ok(Self { name, maps_rmse_deg: tables.maps_rmse_deg, sessions, rests })
+        Ok(Self { name, maps_rmse_deg: tables.maps_rmse_deg, sessions, rests, false_alarms, free_s })
     }
 }
 
