@@ -16,7 +16,7 @@ const COUPLED: f64 = 0.98;
 /// Plays and lags that are tried, as multiples of their steps.
 const PLAY_STEPS: i32 = 6;
 const PLAY_STEP_DEG: f64 = 0.5;
-const LAG_STEPS: i32 = 5;
+const LAG_STEPS: i32 = 3;
 const LAG_STEP_S: f64 = 0.1;
 /// Share of the fitted lag that is used: what the ratios and the play do not explain of a slow sweep looks like lag. Chosen on
 /// fast motion of development arms.
@@ -31,6 +31,8 @@ const USUAL: f64 = 0.99;
 /// Limits in root mean squares of the change; chosen on development arms, for no false alarm but in motion much faster than
 /// the sweep's.
 const FACTOR: f64 = 8.0;
+/// Limits in largest changes of the sweep: friction that sticks and slips has heavy tails.
+const LARGEST_FACTOR: f64 = 1.5;
 /// Smallest limit that a sweep of a quarter of an hour can show, and the largest that detects anything, degrees.
 const LIMITS_DEG: [f64; 2] = [2.0, 10.0];
 
@@ -148,7 +150,9 @@ impl Values {
         let (_, model, residuals) = trials.filter_map(trial).min_by(|(a, ..), (b, ..)| a.total_cmp(b))?;
         let left = variance(residuals.iter().flatten().map(|[residual, _]| *residual));
         let all = variance(self.theta[j].iter().flatten().copied());
-        (left < (1.0 - COUPLED) * all).then_some(Model { lag_s: LAG_SHARE * model.lag_s, ..model })
+        // A lag at the bound is none: friction looks like it at the sweep's pace, and does not at another.
+        let is_lag = model.lag_s.abs() < (f64::from(LAG_STEPS) - 0.5) * LAG_STEP_S;
+        (is_lag && left < (1.0 - COUPLED) * all).then_some(Model { lag_s: LAG_SHARE * model.lag_s, ..model })
     }
 
     /// Angles of segments `i` and `j` behind the response, and the motion of that of `i`.
@@ -186,8 +190,10 @@ impl Values {
         });
         let mut motions: Vec<f64> = motions.collect();
         motions.sort_unstable_by(f64::total_cmp);
+        let largest = changes(residuals, &self.runs, WINDOW).map(|[change, _]| change.abs()).fold(0.0, f64::max);
+        let change_rad = (FACTOR * scatter).max(LARGEST_FACTOR * largest);
         Some(ChangeKeys {
-            change_deg: rounded((FACTOR * scatter).to_degrees().max(LIMITS_DEG[0])),
+            change_deg: rounded(change_rad.to_degrees().max(LIMITS_DEG[0])),
             motion_deg: rounded(quantile(&motions, USUAL).to_degrees()),
         })
     }
