@@ -1,7 +1,7 @@
 //! Sessions of the twin in memory, and their replay in the board's fixed point.
 
 use calibration_tables::{ArmFile, FileError, MAX_SEGMENTS};
-use estimator_core::{ArmConfig, Estimator, ImuReading, Method, Q, Sample};
+use estimator_core::{ArmConfig, Estimator, ImuReading, Q, Sample};
 use proprio::error::Error;
 use proprio::replay::{HostEstimator, Outcome};
 use proprio::session::{Row, Truth};
@@ -97,14 +97,7 @@ impl<'t> Replayer<'t> {
     /// # Panics
     /// As [`Self::new`].
     pub fn step(&mut self, row: &Row) -> Outcome<Q> {
-        let estimator = &mut self.estimator;
-        if row.starts {
-            estimator.start().expect("the file was checked");
-        }
-        let estimate = estimator.update_full(&row.sample);
-        let shapes = Method::ALL.map(|method| estimator.shape(&estimate, method));
-        let (uncertainties, contacts) = (estimator.uncertainties(), estimator.contacts());
-        Outcome { estimate, shapes, uncertainties, contacts, conditions: estimator.conditions() }
+        Outcome::of_row(&mut self.estimator, row)
     }
 }
 
