@@ -24,6 +24,8 @@ mod forward;
 mod headings;
 mod shape;
 mod step;
+#[cfg(test)]
+mod tests;
 
 use std::path::Path;
 
