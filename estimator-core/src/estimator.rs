@@ -17,9 +17,7 @@ use crate::numeric::q::Q;
 use crate::segment::SegmentState;
 use crate::sensing::bend_sensors::BendAngles;
 use crate::sensing::heading::SegmentHeading;
-use crate::types::{
-    Condition, Conditions, Contacts, Estimate, Method, Sample, SegmentShape, Shape, Uncertainties,
-};
+use crate::types::{Condition, Conditions, Contacts, Estimate, Method, Sample, SegmentShape, Shape, Uncertainties};
 
 /// State of the pipeline for an arm of up to `N` segments and an anchor of up to `W` values.
 ///

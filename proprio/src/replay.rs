@@ -3,9 +3,7 @@
 use std::path::Path;
 
 use calibration_tables::{ArmFile, Baked, FileError, MAX_SEGMENTS, MAX_WINDOW};
-use estimator_core::{
-    BiasTrace, Conditions, Contacts, Estimate, Estimator, FusedOps, Method, Q, Shape, Uncertainties,
-};
+use estimator_core::{BiasTrace, Conditions, Contacts, Estimate, Estimator, FusedOps, Method, Q, Shape, Uncertainties};
 use telemetry::{Hello, TICK_HZ};
 
 use crate::error::Error;

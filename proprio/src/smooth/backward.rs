@@ -64,11 +64,7 @@ impl<'t, S: FusedOps> SmoothingPass<'t, S> {
     ///
     /// # Errors
     /// Those of `visit`.
-    pub fn add<E>(
-        &mut self,
-        row: &Row,
-        visit: &mut impl FnMut(&Row, &Outcome<S>) -> Result<(), E>,
-    ) -> Result<(), E> {
+    pub fn add<E>(&mut self, row: &Row, visit: &mut impl FnMut(&Row, &Outcome<S>) -> Result<(), E>) -> Result<(), E> {
         let outcome = Outcome::of_row(&mut self.estimator, row);
         let absence = self.estimator.absence_variances();
         let operations = std::mem::take(&mut self.estimator.trace_mut().0);

@@ -33,8 +33,7 @@ impl RowCovariance {
             Some(dt) => p[(bias(j), k)] + dt * p[(rate(j), k)],
             None => p[(offset(j - n), k)],
         });
-        let biases =
-            DMatrix::from_fn(n, n, |j, k| with_states[(j, bias(k))] + elapsed[k] * with_states[(j, rate(k))]);
+        let biases = DMatrix::from_fn(n, n, |j, k| with_states[(j, bias(k))] + elapsed[k] * with_states[(j, rate(k))]);
         Self { with_states, biases }
     }
 
