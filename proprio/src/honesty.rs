@@ -1,9 +1,10 @@
 //! How honest the estimates' covariances are: errors against truth, as the covariances would have them.
 
 use calibration_tables::MAX_SEGMENTS;
-use estimator_core::{FusedOps, Shape, Uncertainties, VARIANCE_SCALE};
+use estimator_core::{FusedOps, Method, Shape, Uncertainties, VARIANCE_SCALE};
 use serde::Serialize;
 
+use crate::replay::Outcome;
 use crate::session::Row;
 
 /// χ² of two degrees of freedom that 95 % are within.
@@ -88,8 +89,13 @@ pub struct HonestyFigures {
 }
 
 impl Honesty {
-    /// Adds one row, as far as it has truth and covariances.
-    pub fn add<S: FusedOps>(
+    /// Adds the fused shape of one row, as far as it has truth and covariances.
+    pub fn add<S: FusedOps>(&mut self, row: &Row, outcome: &Outcome<S>) {
+        self.add_shape(row, &outcome.shapes[Method::Fusion as usize], &outcome.uncertainties);
+    }
+
+    /// Adds a shape, as far as there are truth and covariances.
+    pub fn add_shape<S: FusedOps>(
         &mut self,
         row: &Row,
         shape: &Shape<S, MAX_SEGMENTS>,

@@ -120,10 +120,10 @@ impl Score {
         for (errors, shape) in self.errors.iter_mut().zip(&outcome.shapes) {
             errors.add(row, shape);
         }
-        self.honesty.add(row, &outcome.shapes[Method::Fusion as usize], &outcome.uncertainties);
+        self.honesty.add(row, outcome);
         if let Some(Smoothed { shape, uncertainties }) = &outcome.smoothed {
             self.smoothed.add(row, shape);
-            self.smoothed_honesty.add(row, shape, uncertainties);
+            self.smoothed_honesty.add_shape(row, shape, uncertainties);
         }
     }
 

@@ -27,7 +27,6 @@ use calibration_tables::{ArmFile, DriftKeys, DriftTuningKeys, Stopped, TuningKey
 
 pub use dual::Dual;
 pub use error::TuningError;
-use estimator_core::Method;
 
 use crate::error::Error;
 use crate::honesty::Honesty;
@@ -196,7 +195,7 @@ impl<'t> Tuner<'t> {
             let mut rows = 0..session.seen();
             replay::<f64>(&session.path, &named, |row, outcome| {
                 if rows.next().is_some() {
-                    honesty.add(row, &outcome.shapes[Method::Fusion as usize], &outcome.uncertainties);
+                    honesty.add(row, outcome);
                 }
                 Ok(())
             })?;
