@@ -56,3 +56,29 @@ fn on_arms_of_the_twin_smoothed_tips_are_nearer_to_the_truth_and_their_ellipses_
     assert!(smoothed < 0.85 * fusion, "mean of {smoothed} mm, {fusion} mm by fusion: {all:?}");
     assert!(inside >= 88.0, "mean of {inside} % inside: {all:?}");
 }
+
+/// The covariance in floats is computed from the estimator's operations alone; at the end of a session nothing smooths it.
+#[test]
+fn the_last_estimate_of_a_session_is_that_of_the_estimator_with_its_covariance() {
+    let table = Path::new(env!("CARGO_MANIFEST_DIR")).join("../calibration-tables/planar-6.toml");
+    let table = ArmFile::load(&table).expect("the reference table");
+    let session = TwinSession::new(&setup(0, Scenario::Two, 2), 900.0, 10.0).expect("a rate and a duration");
+    for length in [300, 2048, 2049, 4000, 6500, 9000] {
+        let mut last = None;
+        let rows = || session.rows().take(length);
+        replay_smoothed(&table, 10.0, rows, |_, outcome| last = Some(outcome.clone())).expect("a table");
+        let last = last.expect("there are rows");
+        let smoothed = last.smoothed.expect("it was smoothed");
+        let [fusion, smoothed_tip] = [&last.shapes[3], &smoothed.shape]
+            .map(|shape| shape.last().and_then(|segment| segment.end).expect("all readings are there"));
+        let apart_m = (fusion.x.to_f64() - smoothed_tip.x.to_f64()).hypot(fusion.y.to_f64() - smoothed_tip.y.to_f64());
+        let [expected, found] = [&last.uncertainties, &smoothed.uncertainties].map(|uncertainties| {
+            let tip = uncertainties.last().and_then(|uncertainty| uncertainty.end).expect("the table has error sources");
+            let [xx, _, yy] = tip.square_metres();
+            (xx + yy).sqrt()
+        });
+        // The last row's own update is not in the estimator's shape, but in its covariance.
+        assert!(apart_m < 0.2 * expected, "{} mm after {length} rows", apart_m * 1e3);
+        assert!((found / expected - 1.0).abs() < 0.03, "{found} m for {expected} m after {length} rows");
+    }
+}

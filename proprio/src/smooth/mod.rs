@@ -5,7 +5,7 @@
 //! has the equations. A session that starts anew in between is smoothed piece by piece.
 //!
 //! The session is read twice. Blocks of 2048 rows are composed into one step back each, so that memory does not hold
-//! the session but one block of rows, and 5 kB for each block of an arm of six segments: 25 MB for a day at 100 Hz.
+//! the session but one block of rows, and 5 kB for each block of an arm of six segments: 22 MB for a day at 100 Hz.
 //!
 //! | file | |
 //! |---|---|
