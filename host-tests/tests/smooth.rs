@@ -73,7 +73,8 @@ fn the_last_estimate_of_a_session_is_that_of_the_estimator_with_its_covariance()
             .map(|shape| shape.last().and_then(|segment| segment.end).expect("all readings are there"));
         let apart_m = (fusion.x.to_f64() - smoothed_tip.x.to_f64()).hypot(fusion.y.to_f64() - smoothed_tip.y.to_f64());
         let [expected, found] = [&last.uncertainties, &smoothed.uncertainties].map(|uncertainties| {
-            let tip = uncertainties.last().and_then(|uncertainty| uncertainty.end).expect("the table has error sources");
+            let tip =
+                uncertainties.last().and_then(|uncertainty| uncertainty.end).expect("the table has error sources");
             let [xx, _, yy] = tip.square_metres();
             (xx + yy).sqrt()
         });
