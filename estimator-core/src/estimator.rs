@@ -1,15 +1,15 @@
 //! The pipeline: one [`Sample`] in, one [`Estimate`] or [`Shape`] out.
 
 use heapless::Vec;
-use nalgebra::Vector2;
 
 use crate::config::{ArmConfig, ConfigError, UncertaintyConfig};
 use crate::contact::monitor::ContactMonitor;
 use crate::drift::bias_filter::BiasFilter;
+use crate::drift::bias_trace::BiasTrace;
 use crate::drift::decimator::Decimator;
 use crate::drift::moving_average::MovingAverage;
 use crate::drift::{CorrectedArm, DriftCorrection, SensedArm};
-use crate::kinematics::covariance::{CovariancePropagation, lever_arm};
+use crate::kinematics::covariance::shape_uncertainties;
 use crate::kinematics::forward::forward_kinematics;
 use crate::numeric::fused::FusedOps;
 use crate::numeric::phase::Angle;
@@ -17,22 +17,22 @@ use crate::numeric::q::Q;
 use crate::segment::SegmentState;
 use crate::sensing::bend_sensors::BendAngles;
 use crate::sensing::heading::SegmentHeading;
-use crate::types::{
-    Condition, Conditions, Contacts, Estimate, Method, Sample, SegmentShape, Shape, Uncertainties, Uncertainty,
-};
+use crate::types::{Condition, Conditions, Contacts, Estimate, Method, Sample, SegmentShape, Shape, Uncertainties};
 
 /// State of the pipeline for an arm of up to `N` segments and an anchor of up to `W` values.
 ///
 /// A method that cannot estimate anything yet, or not from this sample, gives `None`: imu_o and imu_c until the tare is
 /// complete, every method but fusion where a reading is missing. A table without any bend sensor has neither drift
 /// correction nor fusion, but imu_o alone. See the [crate's example](crate).
+///
+/// `T` is the [trace](BiasTrace) of the bias filter's operations: none, unless a host smooths a recording.
 #[derive(Debug, Clone)]
-pub struct Estimator<'t, S, const N: usize, const W: usize> {
+pub struct Estimator<'t, S, const N: usize, const W: usize, T = ()> {
     config: &'t ArmConfig<'t, S>,
     has_bend_sensors: bool,
     decimator: Decimator,
     segments: Vec<SegmentState<S>, N>,
-    drift: Drift<N, W>,
+    drift: Drift<N, W, T>,
     contact: ContactMonitor<N>,
     /// Whether θ_c and θ_bend of each segment were known in the newest sample.
     measured: [Measured; N],
@@ -42,9 +42,9 @@ pub struct Estimator<'t, S, const N: usize, const W: usize> {
 /// Both drift corrections, of which the configuration selects one: a static has room for both, and a small stack for
 /// neither. The bias filter works in fixed point for every `S`, so that every number type takes the same decisions.
 #[derive(Debug, Clone)]
-struct Drift<const N: usize, const W: usize> {
+struct Drift<const N: usize, const W: usize, T> {
     moving_average: MovingAverage<N, W>,
-    bias_filter: BiasFilter<Q, N>,
+    bias_filter: BiasFilter<Q, N, T>,
     has_bias_filter: bool,
 }
 
@@ -61,10 +61,10 @@ struct Processed<S, const N: usize> {
     corrected: CorrectedArm<N>,
 }
 
-impl<const N: usize, const W: usize> Drift<N, W> {
-    const fn new() -> Self {
-        let zero = Q::from_bits(0);
-        Self { moving_average: MovingAverage::new(), bias_filter: BiasFilter::new(zero), has_bias_filter: false }
+impl<const N: usize, const W: usize, T: BiasTrace<Q>> Drift<N, W, T> {
+    const fn new(trace: T) -> Self {
+        let bias_filter = BiasFilter::new(Q::from_bits(0), trace);
+        Self { moving_average: MovingAverage::new(), bias_filter, has_bias_filter: false }
     }
 
     fn start(&mut self, has_bias_filter: bool) {
@@ -74,7 +74,7 @@ impl<const N: usize, const W: usize> Drift<N, W> {
     }
 
     /// The bias filter, if it corrects the drift.
-    fn bias_filter(&self) -> Option<&BiasFilter<Q, N>> {
+    fn bias_filter(&self) -> Option<&BiasFilter<Q, N, T>> {
         self.has_bias_filter.then_some(&self.bias_filter)
     }
 
@@ -93,25 +93,44 @@ impl<'t, S: FusedOps, const N: usize, const W: usize> Estimator<'t, S, N, W> {
     /// # Errors
     /// [`ConfigError`] where the arm has more segments or a longer window than there is room for, or none at all.
     pub fn new(config: &'t ArmConfig<'t, S>) -> Result<Self, ConfigError> {
-        let mut estimator = Self::const_new(config);
-        estimator.start()?;
-        Ok(estimator)
+        Self::with_trace(config, ())
     }
 
     /// An estimator without segments until it is [started](Self::start): the value of a static, where several kilobytes are
     /// better made in place than moved over a small stack.
     #[must_use]
     pub const fn const_new(config: &'t ArmConfig<'t, S>) -> Self {
+        Self::unstarted(config, ())
+    }
+}
+
+impl<'t, S: FusedOps, const N: usize, const W: usize, T: BiasTrace<Q>> Estimator<'t, S, N, W, T> {
+    /// As [`Self::new`], with a trace of the bias filter's operations.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn with_trace(config: &'t ArmConfig<'t, S>, trace: T) -> Result<Self, ConfigError> {
+        let mut estimator = Self::unstarted(config, trace);
+        estimator.start()?;
+        Ok(estimator)
+    }
+
+    const fn unstarted(config: &'t ArmConfig<'t, S>, trace: T) -> Self {
         Self {
             config,
             has_bend_sensors: false,
             decimator: Decimator::new(),
             segments: Vec::new(),
-            drift: Drift::new(),
+            drift: Drift::new(trace),
             contact: ContactMonitor::new(),
             measured: [Measured { imu: false, bend: false }; N],
             fused: Vec::new(),
         }
+    }
+
+    /// The trace of the bias filter's operations.
+    pub fn trace_mut(&mut self) -> &mut T {
+        self.drift.bias_filter.trace_mut()
     }
 
     /// Begins a session, and forgets the one before.
@@ -252,22 +271,20 @@ impl<'t, S: FusedOps, const N: usize, const W: usize> Estimator<'t, S, N, W> {
     pub fn uncertainties(&self) -> Uncertainties<N> {
         let Some(sources) = &self.config.uncertainty else { return Vec::new() };
         let headings = self.heading_covariance(sources);
-        let mut propagation = CovariancePropagation::new(headings, sources.end);
-        let zero = Q::from_f64(0.0);
-        let (mut before, mut is_known) = (Vector2::new(zero, zero), true);
-        let mut uncertainties = Vec::new();
-        for (i, (shape, config)) in self.fused.iter().zip(self.config.segments).enumerate() {
-            let theta = shape.theta.map(|_| theta_variance(&headings, i)).filter(|_| self.is_measured(i));
-            let end = theta.zip(shape.end).filter(|_| is_known).map(|(_, end)| {
-                let end = Vector2::new(end.x.to_q(), end.y.to_q());
-                propagation.step(end - before, lever_arm(config));
-                before = end;
-                propagation.end()
-            });
-            is_known = end.is_some();
-            let _ = uncertainties.push(Uncertainty { theta, end });
+        shape_uncertainties(self.config.segments, sources.end, headings, &self.fused, |i| self.is_measured(i))
+    }
+
+    /// Variance of each heading that was not read, in addition to that of its bias, rad² times
+    /// [`VARIANCE_SCALE`](crate::VARIANCE_SCALE); zero for all others, and behind the moving-average anchor.
+    #[must_use]
+    pub fn absence_variances(&self) -> [Q; N] {
+        let mut variances = [Q::from_f64(0.0); N];
+        if let Some(filter) = self.drift.bias_filter() {
+            for (i, (variance, config)) in variances.iter_mut().zip(self.config.segments).enumerate() {
+                *variance = filter.absence_variance(&config.bend_error, i);
+            }
         }
-        uncertainties
+        variances
     }
 
     fn is_measured(&self, i: usize) -> bool {
@@ -305,13 +322,13 @@ impl<'t, S: FusedOps, const N: usize, const W: usize> Estimator<'t, S, N, W> {
     }
 
     /// The bias filter's covariance, and what absent headings add.
-    fn filtered_covariance(&self, sources: &UncertaintyConfig, filter: &BiasFilter<Q, N>) -> [[Q; N]; N] {
+    fn filtered_covariance(&self, sources: &UncertaintyConfig, filter: &BiasFilter<Q, N, T>) -> [[Q; N]; N] {
         let mut headings =
             core::array::from_fn(|i| core::array::from_fn(|j| sources.bias_share * filter.heading_covariance(i, j)));
-        for (i, (row, config)) in headings.iter_mut().zip(self.config.segments).enumerate() {
+        for (i, (row, absence)) in headings.iter_mut().zip(self.absence_variances()).enumerate() {
             let row: &mut [Q; N] = row;
             if let Some(diagonal) = row.get_mut(i) {
-                *diagonal += filter.absence_variance(&config.bend_error, i);
+                *diagonal += absence;
             }
         }
         headings
@@ -331,14 +348,5 @@ impl<'t, S: FusedOps, const N: usize, const W: usize> Estimator<'t, S, N, W> {
             let _ = shape.push(segment); // There is room: `start` has checked.
         }
         shape
-    }
-}
-
-/// Variance of θ_i = Θ_i − Θ_{i−1}.
-fn theta_variance<const N: usize>(headings: &[[Q; N]; N], i: usize) -> Q {
-    let at = |i: usize, j: usize| headings.get(i).and_then(|row| row.get(j)).copied().unwrap_or(Q::from_f64(0.0));
-    match i.checked_sub(1) {
-        Some(below) => (at(i, i) - at(i, below)) + (at(below, below) - at(i, below)),
-        None => at(i, i),
     }
 }

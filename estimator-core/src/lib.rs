@@ -62,12 +62,13 @@ pub use config::{
     PLAYS, Play, QuadraticMap, Response, SENSORS_PER_SEGMENT, SegmentConfig, UncertaintyConfig, VARIANCE_SCALE,
 };
 pub use drift::bias_state::{BiasState, Innovation, Row};
+pub use drift::bias_trace::{BiasMeasurement, BiasOperation, BiasTrace};
 pub use drift::decimator::{Decimated, Decimator};
 pub use drift::moving_average::MovingAverageAnchor;
 pub use drift::{CorrectedArm, DriftCorrection, MeasuredAngles, SensedArm};
 pub use estimator::Estimator;
 pub use fusion::kalman::{COVARIANCE_LIMIT, H_LIMIT, KalmanFilter, KalmanGains};
-pub use kinematics::covariance::{CovariancePropagation, lever_arm};
+pub use kinematics::covariance::{CovariancePropagation, lever_arm, shape_uncertainties};
 pub use kinematics::forward::forward_kinematics;
 pub use kinematics::pcc::{Link, Pcc, UnitArc};
 pub use numeric::fused::{FusedOps, plain};

@@ -1,11 +1,14 @@
 //! Sessions of the twin in memory, and their replay in the board's fixed point.
 
+use std::convert::Infallible;
+
 use calibration_tables::{ArmFile, FileError, MAX_SEGMENTS};
-use estimator_core::{ArmConfig, Estimator, ImuReading, Method, Q, Sample};
+use estimator_core::{ArmConfig, Estimator, ImuReading, Q, Sample};
 use proprio::error::Error;
 use proprio::replay::{HostEstimator, Outcome};
 use proprio::session::{Row, Truth};
 use proprio::simulate::{Recorded, Simulation};
+use proprio::smooth::{ForwardPass, SmoothingPass};
 use rig_twin::{Push, SEGMENTS, Setup};
 
 /// A session of the twin.
@@ -97,14 +100,7 @@ impl<'t> Replayer<'t> {
     /// # Panics
     /// As [`Self::new`].
     pub fn step(&mut self, row: &Row) -> Outcome<Q> {
-        let estimator = &mut self.estimator;
-        if row.starts {
-            estimator.start().expect("the file was checked");
-        }
-        let estimate = estimator.update_full(&row.sample);
-        let shapes = Method::ALL.map(|method| estimator.shape(&estimate, method));
-        let (uncertainties, contacts) = (estimator.uncertainties(), estimator.contacts());
-        Outcome { estimate, shapes, uncertainties, contacts, conditions: estimator.conditions() }
+        Outcome::of_row(&mut self.estimator, row)
     }
 }
 
@@ -124,5 +120,31 @@ pub fn replay(
     for row in rows {
         visit(&row, &replayer.step(&row));
     }
+    Ok(())
+}
+
+/// Replays rows sampled at `rate_hz` and smooths them; `visit` receives every row with its outcome.
+///
+/// # Errors
+/// [`FileError`] where the file is no table.
+pub fn replay_smoothed<R: Iterator<Item = Row>>(
+    table: &ArmFile,
+    rate_hz: f64,
+    rows: impl Fn() -> R,
+    mut visit: impl FnMut(&Row, &Outcome<Q>),
+) -> Result<(), FileError> {
+    let baked = table.bake::<Q>(rate_hz)?;
+    let config = baked.config();
+    let mut forward = ForwardPass::new(&config);
+    rows().for_each(|row| forward.add(&row));
+    let mut smoothing = SmoothingPass::new(&config, forward.finish());
+    let mut visit = |row: &Row, outcome: &Outcome<Q>| -> Result<(), Infallible> {
+        visit(row, outcome);
+        Ok(())
+    };
+    for row in rows() {
+        let Ok(()) = smoothing.add(&row, &mut visit);
+    }
+    let Ok(()) = smoothing.finish(&mut visit);
     Ok(())
 }

@@ -46,7 +46,7 @@ fn outcomes<S: FusedOps>(session: &Path) -> Vec<Outcome<S>> {
 fn check_expected(name: &str) {
     let outcomes = outcomes::<Q>(&session(name));
     let mut found = Vec::new();
-    write_header(&mut found, 6).expect("memory takes all");
+    write_header(&mut found, 6, false).expect("memory takes all");
     for outcome in outcomes.iter().step_by(KEPT_ROWS) {
         write_row(&mut found, outcome).expect("memory takes all");
     }

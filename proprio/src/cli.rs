@@ -117,6 +117,9 @@ pub struct Replay {
     /// Write the estimates of the session: bend angles and world points of all methods
     #[arg(long, value_name = "EST.csv")]
     pub out: Option<PathBuf>,
+    /// Smooth: estimate every sample by the readings after it, too; takes a table with the bias filter
+    #[arg(long)]
+    pub smooth: bool,
     /// Print the figures as JSON
     #[arg(long)]
     pub json: bool,

@@ -101,6 +101,9 @@ pub enum Error {
     /// The monitor is given a session and no table.
     #[error("a session is shown by what the estimator makes of it, and that takes a table")]
     SessionWithoutTable,
+    /// A table whose estimates cannot be smoothed.
+    #[error("{}: corrects the drift by the anchor, whose estimates cannot be smoothed", .0.display())]
+    NotSmoothed(PathBuf),
     /// `--out` with several sessions.
     #[error("--out takes the estimates of one session, found {0} sessions")]
     OneSession(usize),
@@ -147,6 +150,9 @@ impl Error {
             Self::Listen { .. } => "give another with --listen; is a monitor running already?".to_owned(),
             Self::Random(_) => "watch without --allow-control".to_owned(),
             Self::SessionWithoutTable => "give the arm's table with --table".to_owned(),
+            Self::NotSmoothed(_) => {
+                "calibrate a table with the bias filter, `[drift] kind = \"kalman\"`, or leave out --smooth".to_owned()
+            }
             Self::OneSession(_) => "replay the sessions one by one".to_owned(),
             Self::Rate(_) | Self::Seconds(_) | Self::Pressure(_) | Self::Ramp(_) => {
                 "give a value in this range".to_owned()

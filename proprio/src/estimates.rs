@@ -1,4 +1,4 @@
-//! The estimate CSV: θ and world points of all methods, a row a sample.
+//! The estimate CSV: θ and world points of all methods, and of the smoothed shape, a row a sample.
 
 use std::io::{self, Write};
 
@@ -15,12 +15,12 @@ pub struct EstimateWriter {
 }
 
 impl EstimateWriter {
-    /// Begins `file` with the header for the table's segments.
+    /// Begins `file` with the header for the table's segments, and for smoothed estimates where there are any.
     ///
     /// # Errors
     /// [`Error::Output`].
-    pub fn new(mut file: OutputFile, table: &ArmFile) -> Result<Self, Error> {
-        write_header(&mut file, table.segments.len()).map_err(|error| file.error(error))?;
+    pub fn new(mut file: OutputFile, table: &ArmFile, is_smoothed: bool) -> Result<Self, Error> {
+        write_header(&mut file, table.segments.len(), is_smoothed).map_err(|error| file.error(error))?;
         Ok(Self { file })
     }
 
@@ -45,9 +45,9 @@ impl EstimateWriter {
 ///
 /// # Errors
 /// Those of `sink`.
-pub fn write_header(sink: &mut impl Write, segments: usize) -> io::Result<()> {
+pub fn write_header(sink: &mut impl Write, segments: usize, is_smoothed: bool) -> io::Result<()> {
     write!(sink, "time_s")?;
-    for method in Method::ALL.map(Method::name) {
+    for method in Method::ALL.map(Method::name).into_iter().chain(is_smoothed.then_some("smoothed")) {
         for i in 1..=segments {
             write!(sink, ",{method}{i}_theta_deg,{method}{i}_x_mm,{method}{i}_y_mm")?;
         }
@@ -61,7 +61,8 @@ pub fn write_header(sink: &mut impl Write, segments: usize) -> io::Result<()> {
 /// Those of `sink`.
 pub fn write_row<S: FusedOps>(sink: &mut impl Write, outcome: &Outcome<S>) -> io::Result<()> {
     write!(sink, "{}", outcome.estimate.time_us as f64 / 1e6)?;
-    for SegmentShape { theta, end } in outcome.shapes.iter().flatten() {
+    let smoothed = outcome.smoothed.as_ref().map(|smoothed| &smoothed.shape);
+    for SegmentShape { theta, end } in outcome.shapes.iter().chain(smoothed).flatten() {
         match theta {
             Some(theta) => write!(sink, ",{:.6}", theta.rad().to_degrees())?,
             None => write!(sink, ",")?,

@@ -6,7 +6,7 @@ use serde::ser::{SerializeMap, Serializer};
 
 use crate::honesty::HonestyFigures;
 use crate::recording::Comparison;
-use crate::score::{Figures, Score};
+use crate::score::{Figures, Score, SmoothedFigures};
 
 /// The figures of one or more sessions, in the form of `replay --json`.
 #[derive(Debug, Serialize)]
@@ -46,11 +46,14 @@ pub struct ByMethod {
     /// How honest the covariances of fusion are, where there are any.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub uncertainty: Option<HonestyFigures>,
+    /// Those of the smoothed shape, where the session was smoothed.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub smoothed: Option<SmoothedFigures>,
 }
 
 impl From<&Score> for ByMethod {
     fn from(score: &Score) -> Self {
-        Self { methods: score.figures(), uncertainty: score.honesty() }
+        Self { methods: score.figures(), uncertainty: score.honesty(), smoothed: score.smoothed() }
     }
 }
 

@@ -1,6 +1,7 @@
 //! How honest the estimates' covariances are: errors against truth, as the covariances would have them.
 
-use estimator_core::{FusedOps, Method, VARIANCE_SCALE};
+use calibration_tables::MAX_SEGMENTS;
+use estimator_core::{FusedOps, Method, Shape, Uncertainties, VARIANCE_SCALE};
 use serde::Serialize;
 
 use crate::replay::Outcome;
@@ -64,7 +65,7 @@ impl Normalised {
     }
 }
 
-/// Normalised errors of the fused shape, gathered over one or more sessions.
+/// Normalised errors of the fused or smoothed shape, gathered over one or more sessions.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Honesty {
     tips: Normalised,
@@ -88,11 +89,20 @@ pub struct HonestyFigures {
 }
 
 impl Honesty {
-    /// Adds one row, as far as it has truth and covariances.
+    /// Adds the fused shape of one row, as far as it has truth and covariances.
     pub fn add<S: FusedOps>(&mut self, row: &Row, outcome: &Outcome<S>) {
-        let shape = &outcome.shapes[Method::Fusion as usize];
+        self.add_shape(row, &outcome.shapes[Method::Fusion as usize], &outcome.uncertainties);
+    }
+
+    /// Adds a shape, as far as there are truth and covariances.
+    pub fn add_shape<S: FusedOps>(
+        &mut self,
+        row: &Row,
+        shape: &Shape<S, MAX_SEGMENTS>,
+        uncertainties: &Uncertainties<MAX_SEGMENTS>,
+    ) {
         let count = shape.len();
-        for (i, (segment, uncertainty)) in shape.iter().zip(&outcome.uncertainties).enumerate() {
+        for (i, (segment, uncertainty)) in shape.iter().zip(uncertainties).enumerate() {
             let theta = segment.theta.zip(row.true_theta(i)).zip(uncertainty.theta);
             if let Some(((theta, truth), variance)) = theta {
                 self.thetas.add((theta.rad() - truth).powi(2) * VARIANCE_SCALE / variance.to_f64());

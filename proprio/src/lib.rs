@@ -40,5 +40,6 @@ pub mod report;
 pub mod score;
 pub mod session;
 pub mod simulate;
+pub mod smooth;
 pub mod status;
 pub mod tune;

@@ -3,13 +3,14 @@
 use std::path::Path;
 
 use calibration_tables::{ArmFile, Baked, FileError, MAX_SEGMENTS, MAX_WINDOW};
-use estimator_core::{Conditions, Contacts, Estimate, Estimator, FusedOps, Method, Q, Shape, Uncertainties};
+use estimator_core::{BiasTrace, Conditions, Contacts, Estimate, Estimator, FusedOps, Method, Q, Shape, Uncertainties};
 use telemetry::{Hello, TICK_HZ};
 
 use crate::error::Error;
 use crate::progress::Progress;
 use crate::recording::{RecordedBy, is_version_0_1};
 use crate::session::{Kind, Needs, Row, SessionReader};
+use crate::smooth::Smoothed;
 
 /// The estimator with room for every arm.
 pub type HostEstimator<'t, S> = Estimator<'t, S, MAX_SEGMENTS, { MAX_WINDOW as usize }>;
@@ -57,6 +58,12 @@ impl<'p> NamedTable<'p> {
         self.file.bake(rate_hz).map_err(|source| self.error(source))
     }
 
+    /// Whether the bias filter corrects the drift.
+    #[must_use]
+    pub fn has_bias_filter(&self) -> bool {
+        self.file.bias_filter().is_some()
+    }
+
     fn error(&self, source: FileError) -> Error {
         Error::Table { path: self.path.to_owned(), source }
     }
@@ -75,6 +82,27 @@ pub struct Outcome<S> {
     pub contacts: Contacts<MAX_SEGMENTS>,
     /// Conditions that make the estimate less certain, by segment.
     pub conditions: Conditions<MAX_SEGMENTS>,
+    /// The fused shape by the readings after the row too, where the session is [smoothed](crate::smooth).
+    pub smoothed: Option<Smoothed<S>>,
+}
+
+impl<S: FusedOps> Outcome<S> {
+    /// Runs the estimator for one row.
+    ///
+    /// # Panics
+    /// If the estimator has no room for its own table.
+    pub fn of_row<T: BiasTrace<Q>>(
+        estimator: &mut Estimator<'_, S, MAX_SEGMENTS, { MAX_WINDOW as usize }, T>,
+        row: &Row,
+    ) -> Self {
+        if row.starts {
+            estimator.start().expect("the estimator has room for its table");
+        }
+        let estimate = estimator.update_full(&row.sample);
+        let shapes = Method::ALL.map(|method| estimator.shape(&estimate, method));
+        let (uncertainties, contacts) = (estimator.uncertainties(), estimator.contacts());
+        Self { estimate, shapes, uncertainties, contacts, conditions: estimator.conditions(), smoothed: None }
+    }
 }
 
 /// The extent of a session.
@@ -129,28 +157,55 @@ pub fn replay<S: FusedOps>(
     table: &NamedTable,
     mut visit: impl FnMut(&Row, &Outcome<S>) -> Result<(), Error>,
 ) -> Result<Extent, Error> {
-    let mut reader = SessionReader::open(session, &table.needs()?)?;
-    let baked = table.bake::<S>(reader.rate_hz(table.file.rate_hz))?;
+    let mut rows = SessionRows::open(session, table, "replaying")?;
+    let baked = table.bake::<S>(rows.rate_hz(table))?;
     let baked = baked.config();
     let mut estimator: Box<HostEstimator<S>> = Box::new(Estimator::new(&baked).expect("the file was checked"));
-
-    let mut progress = Progress::new(format!("replaying {}", session.display()), reader.progress().1);
-    let (mut samples, mut first_us, mut last_us) = (0, None, 0);
-    while let Some(row) = reader.next_row()? {
-        if row.starts {
-            estimator.start().expect("the file was checked");
-        }
-        let estimate = estimator.update_full(&row.sample);
-        let shapes = Method::ALL.map(|method| estimator.shape(&estimate, method));
-        let (uncertainties, contacts) = (estimator.uncertainties(), estimator.contacts());
-        let conditions = estimator.conditions();
-        visit(&row, &Outcome { estimate, shapes, uncertainties, contacts, conditions })?;
-        last_us = row.sample.time_us;
-        first_us.get_or_insert(last_us);
-        samples += 1;
-        progress.set(reader.progress().0);
+    while let Some(row) = rows.next_row()? {
+        visit(&row, &Outcome::of_row(&mut estimator, &row))?;
     }
-    let recording = if reader.kind() == Kind::Csv { None } else { Some(Recording::new(reader.hello(), table)?) };
-    let seconds = (last_us - first_us.unwrap_or(last_us)) as f64 / 1e6;
-    Ok(Extent { samples, seconds, ends_with_line: reader.ends_with_line(), recording })
+    rows.extent(table)
+}
+
+/// Rows of a session, with their progress and extent.
+pub(crate) struct SessionRows {
+    reader: SessionReader,
+    progress: Progress,
+    samples: u64,
+    first_us: Option<u64>,
+    last_us: u64,
+}
+
+impl SessionRows {
+    /// Opens a session; `work` names what is done with it.
+    pub fn open(session: &Path, table: &NamedTable, work: &str) -> Result<Self, Error> {
+        let reader = SessionReader::open(session, &table.needs()?)?;
+        let progress = Progress::new(format!("{work} {}", session.display()), reader.progress().1);
+        Ok(Self { reader, progress, samples: 0, first_us: None, last_us: 0 })
+    }
+
+    /// Rate of the rows; that of the table where there are too few.
+    pub fn rate_hz(&self, table: &NamedTable) -> f64 {
+        self.reader.rate_hz(table.file.rate_hz)
+    }
+
+    /// The next row.
+    pub fn next_row(&mut self) -> Result<Option<Row>, Error> {
+        let row = self.reader.next_row()?;
+        if let Some(row) = &row {
+            self.last_us = row.sample.time_us;
+            self.first_us.get_or_insert(self.last_us);
+            self.samples += 1;
+            self.progress.set(self.reader.progress().0);
+        }
+        Ok(row)
+    }
+
+    /// The extent, after the last row.
+    pub fn extent(self, table: &NamedTable) -> Result<Extent, Error> {
+        let Self { reader, samples, first_us, last_us, .. } = self;
+        let recording = if reader.kind() == Kind::Csv { None } else { Some(Recording::new(reader.hello(), table)?) };
+        let seconds = (last_us - first_us.unwrap_or(last_us)) as f64 / 1e6;
+        Ok(Extent { samples, seconds, ends_with_line: reader.ends_with_line(), recording })
+    }
 }

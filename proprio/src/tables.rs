@@ -8,6 +8,7 @@ use comfy_table::{CellAlignment, Table};
 use estimator_core::Method;
 use proprio::calibrate::{HeldOut, MapKind, SegmentReport, SensorReport};
 use proprio::figures::{AllFigures, ByMethod};
+use proprio::honesty::HonestyFigures;
 use proprio::link::Port;
 use proprio::score::Figures;
 
@@ -117,7 +118,7 @@ fn variances(record: &TuningKeys) -> String {
 /// Picks one figure of a method.
 type Pick = fn(&Figures) -> Option<f64>;
 
-/// A table for each figure: a line a session, a column a method.
+/// A table for each figure: a line a session, a column a method, and one of the smoothed estimates where there are any.
 pub fn replay(all: &AllFigures) -> String {
     let length = all.length_mm;
     let parts: [(String, Pick); 4] = [
@@ -127,19 +128,21 @@ pub fn replay(all: &AllFigures) -> String {
         ("Bend angles, RMSE in deg".to_owned(), |figures| figures.theta_rmse_deg),
     ];
     let figures = parts.map(|(title, figure)| format!("{title}\n{}\n", figures(all, figure))).join("\n");
-    figures + &honesty(all)
+    figures
+        + &honesty(all, "fusion", |figures| figures.uncertainty)
+        + &honesty(all, "the smoothed estimates", |figures| figures.smoothed.and_then(|smoothed| smoothed.uncertainty))
 }
 
 /// How honest the covariances are: a line a session; nothing where there are none.
-fn honesty(all: &AllFigures) -> String {
-    if all.all.uncertainty.is_none() {
+fn honesty(all: &AllFigures, of_what: &str, pick: fn(&ByMethod) -> Option<HonestyFigures>) -> String {
+    if pick(&all.all).is_none() {
         return String::new();
     }
     let mut table =
         table(&["session", "tip, NEES", "in 95 % ellipse", "all ends, NEES", "in 95 % ellipse", "angles, NEES"]);
     let sessions = all.sessions.iter().map(|session| (session.path.as_str(), &session.figures));
     for (name, figures) in sessions.chain([("all", &all.all)]) {
-        let Some(of) = &figures.uncertainty else { continue };
+        let Some(of) = pick(figures) else { continue };
         let nees = |value: Option<f64>| value.map_or("–".to_owned(), |value| format!("{value:.2}"));
         let inside = |value: Option<f64>| value.map_or("–".to_owned(), |value| format!("{value:.1} %"));
         table.add_row([
@@ -151,15 +154,19 @@ fn honesty(all: &AllFigures) -> String {
             nees(of.theta_nees),
         ]);
     }
-    format!("\nErrors of fusion over what its covariances expect\n{}\n", text(&mut table))
+    format!("\nErrors of {of_what} over what the covariances expect\n{}\n", text(&mut table))
 }
 
 fn figures(all: &AllFigures, figure: Pick) -> String {
     let mut heads = vec!["session", "samples", "seconds"];
     heads.extend(Method::ALL.map(Method::name));
+    let is_smoothed = all.all.smoothed.is_some();
+    heads.extend(is_smoothed.then_some("smoothed"));
     let mut table = table(&heads);
     let mut add = |name: String, samples: u64, seconds: f64, of: &ByMethod| {
-        let cells = of.methods.iter().map(|of| figure(of).map_or("–".to_owned(), |value| format!("{value:.2}")));
+        let smoothed = is_smoothed.then(|| of.smoothed.and_then(|of| figure(&of.figures)));
+        let cells = of.methods.iter().map(figure).chain(smoothed);
+        let cells = cells.map(|value| value.map_or("–".to_owned(), |value| format!("{value:.2}")));
         table.add_row([name, samples.to_string(), format!("{seconds:.1}")].into_iter().chain(cells));
     };
     for session in &all.sessions {

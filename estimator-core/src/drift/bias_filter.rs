@@ -14,6 +14,7 @@ use crate::config::{ArmConfig, BendErrorConfig, SENSORS_PER_SEGMENT, SegmentConf
 use crate::drift::bend_monitor::{BendMonitor, TrustedBend};
 use crate::drift::bias_filter::tare::TareStatistics;
 use crate::drift::bias_state::BiasState;
+use crate::drift::bias_trace::{BiasOperation, BiasTrace};
 use crate::drift::heading_gate::HeadingGate;
 use crate::drift::rest::RestDetector;
 use crate::drift::{CorrectedArm, DriftCorrection, MeasuredAngles, SensedArm};
@@ -50,8 +51,8 @@ const MAX_RATIO: i32 = 15;
 /// # Ok::<(), estimator_core::ConfigError>(())
 /// ```
 #[derive(Debug, Clone)]
-pub struct BiasFilter<F, const N: usize> {
-    state: BiasState<F, N>,
+pub struct BiasFilter<F, const N: usize, T = ()> {
+    state: BiasState<F, N, T>,
     tare: TareStatistics<F, N>,
     segments: [SegmentTrack<F>; N],
     rest: RestDetector<F, N>,
@@ -166,11 +167,11 @@ impl<F: Scalar> SegmentTrack<F> {
     }
 }
 
-impl<F: Scalar, const N: usize> BiasFilter<F, N> {
-    /// At the start of a session. The number's `zero` is a parameter, so that a static can hold the filter.
-    pub const fn new(zero: F) -> Self {
+impl<F: Scalar, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
+    /// At the start of a session. The number's `zero` and the trace are parameters, so that a static can hold the filter.
+    pub const fn new(zero: F, trace: T) -> Self {
         Self {
-            state: BiasState::new(zero),
+            state: BiasState::with_trace(zero, trace),
             tare: TareStatistics::new(zero),
             segments: [SegmentTrack::new(zero); N],
             rest: RestDetector::new(zero),
@@ -184,13 +185,18 @@ impl<F: Scalar, const N: usize> BiasFilter<F, N> {
     /// Forgets everything, at the start of a session: in parts, as a whole new one would not fit a small stack.
     pub fn start(&mut self) {
         let zero = F::zero();
-        self.state = BiasState::new(zero);
+        self.state.clear();
         self.tare = TareStatistics::new(zero);
         for track in &mut self.segments {
             *track = SegmentTrack::new(zero);
         }
         self.rest = RestDetector::new(zero);
         (self.is_started, self.is_tare_bad, self.last_us, self.turn) = (false, false, None, 0);
+    }
+
+    /// The trace of the operations on the states.
+    pub fn trace_mut(&mut self) -> &mut T {
+        self.state.trace_mut()
     }
 
     /// Covariance of two headings, [`VARIANCE_SCALE`](crate::VARIANCE_SCALE) times rad².
@@ -246,7 +252,7 @@ impl<F: Scalar, const N: usize> BiasFilter<F, N> {
     }
 }
 
-impl<S: Scalar, F: Scalar, const N: usize> DriftCorrection<S, N> for BiasFilter<F, N> {
+impl<S: Scalar, F: Scalar, const N: usize, T: BiasTrace<F>> DriftCorrection<S, N> for BiasFilter<F, N, T> {
     fn correct(&mut self, config: &ArmConfig<S>, sensed: &SensedArm<S, N>) -> CorrectedArm<N> {
         let Some(filter) = &config.bias_filter else { return CorrectedArm::UNKNOWN };
         let dt = since(self.last_us.unwrap_or(sensed.time_us), sensed.time_us);
@@ -264,6 +270,7 @@ impl<S: Scalar, F: Scalar, const N: usize> DriftCorrection<S, N> for BiasFilter<
         self.track_headings(config, sensed);
         self.fill_absent_headings(config.segments.len(), dt);
         let corrected = self.angles(config.segments);
+        self.state.trace_mut().record(BiasOperation::Output);
         for _ in 0..turns(config) {
             if !self.take_turn(config.segments, filter, sensed, &angles) {
                 break;

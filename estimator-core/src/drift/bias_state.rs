@@ -14,6 +14,7 @@
 //! Each IMU and its segment are predicted when it is their turn, one in a sample, so that a sample costs a share of the whole.
 
 use crate::config::BiasFilterConfig;
+use crate::drift::bias_trace::{BiasMeasurement, BiasOperation, BiasTrace};
 use crate::numeric::phase::Turns;
 use crate::numeric::scalar::{Constant, Scalar};
 
@@ -42,9 +43,9 @@ const SHORT: Constant = Constant::new(0.25);
 /// Smallest variance, 0.004° or 0.004° per time unit: rounding must not bring one to zero.
 const SMALLEST: Constant = Constant::new(3e-7);
 
-/// States and covariance.
+/// States and covariance, and a [trace](BiasTrace) of the operations on them.
 #[derive(Debug, Clone, Copy)]
-pub struct BiasState<S, const N: usize> {
+pub struct BiasState<S, const N: usize, T = ()> {
     /// β, from the tare's zero.
     pub bias: [Turns; N],
     /// v, rad per time unit.
@@ -54,6 +55,7 @@ pub struct BiasState<S, const N: usize> {
     /// P, [`VARIANCE_SCALE`](crate::VARIANCE_SCALE) times as large.
     covariance: [[Row<S, N>; 3]; N],
     predicted_at_us: [u64; N],
+    trace: T,
 }
 
 /// Innovation of a scalar measurement: P⁻Hᵀ, and the variance S = H P⁻ Hᵀ without the measurement noise.
@@ -63,6 +65,7 @@ pub struct Innovation<S, const N: usize> {
     pub variance: S,
     /// An eighth of it, which fits in any case.
     eighth: S,
+    measurement: BiasMeasurement,
 }
 
 fn eighth<S: Scalar>(value: S) -> S {
@@ -78,19 +81,40 @@ impl<S: Scalar, const N: usize> Default for BiasState<S, N> {
 impl<S: Scalar, const N: usize> BiasState<S, N> {
     /// Nothing known: states of `zero` without variance.
     pub const fn new(zero: S) -> Self {
+        Self::with_trace(zero, ())
+    }
+}
+
+impl<S: Scalar, const N: usize, T: BiasTrace<S>> BiasState<S, N, T> {
+    /// As [`Self::new`], with a trace.
+    pub const fn with_trace(zero: S, trace: T) -> Self {
         Self {
             bias: [Turns::ZERO; N],
             rate: [zero; N],
             offset: [zero; N],
             covariance: [[[[zero; 3]; N]; 3]; N],
             predicted_at_us: [0; N],
+            trace,
         }
+    }
+
+    /// Forgets all states, but not the trace.
+    pub fn clear(&mut self) {
+        let trace = core::mem::take(&mut self.trace);
+        *self = Self::with_trace(S::zero(), trace);
+    }
+
+    /// The trace.
+    pub fn trace_mut(&mut self) -> &mut T {
+        &mut self.trace
     }
 
     /// The prior at the end of a tare. Each IMU's zero and each segment's straightness have an error of their own; those of
     /// the segments add up along the arm.
     pub fn initialise(&mut self, config: &BiasFilterConfig, straightness: S, offsets: &[S; N], time_us: u64) {
-        *self = Self { predicted_at_us: [time_us; N], ..Self::new(S::zero()) };
+        self.clear();
+        self.predicted_at_us = [time_us; N];
+        self.trace.record(BiasOperation::Start { straightness });
         for (i, ([biases, rates, own_offsets], offset)) in self.covariance.iter_mut().zip(offsets).enumerate() {
             for (j, [bias, ..]) in biases.iter_mut().enumerate() {
                 *bias = S::from_int(1 + i.min(j) as i32) * straightness;
@@ -101,6 +125,8 @@ impl<S: Scalar, const N: usize> BiasState<S, N> {
                 *bias += S::from_q(config.initial_bias);
                 *rate = S::from_q(config.initial_rate);
                 *own = *offset;
+                let noise = [S::from_q(config.initial_bias), S::from_q(config.initial_rate), *offset];
+                self.trace.record(BiasOperation::Noise { segment: i, noise });
             }
         }
     }
@@ -111,10 +137,15 @@ impl<S: Scalar, const N: usize> BiasState<S, N> {
         let Some(dt) = self.elapsed(i, time_us) else { return };
         self.follow_rate(i, dt);
         let decay = self.decay_offset(i, config, dt);
+        let is_known = self.diagonal(i, BIAS) < S::constant(LARGEST);
         self.propagate(i, dt, decay);
-        self.grow(i, BIAS, S::from_q(config.bias_noise) * dt, S::constant(LARGEST));
-        self.grow(i, RATE, S::from_q(config.rate_noise) * dt, S::constant(LARGEST_RATE));
-        self.grow(i, OFFSET, offset * (S::one() - decay * decay), S::constant(LARGEST));
+        let noise = [
+            self.grow(i, BIAS, S::from_q(config.bias_noise) * dt, S::constant(LARGEST)),
+            self.grow(i, RATE, S::from_q(config.rate_noise) * dt, S::constant(LARGEST_RATE)),
+            self.grow(i, OFFSET, offset * (S::one() - decay * decay), S::constant(LARGEST)),
+        ];
+        let dt = if is_known { dt } else { S::zero() };
+        self.trace.record(BiasOperation::Predict { segment: i, dt, decay, noise });
     }
 
     /// Predicts IMU and segment `i` while the arm rests: the bias follows the measured heading, not the rate, and its
@@ -122,8 +153,12 @@ impl<S: Scalar, const N: usize> BiasState<S, N> {
     pub fn predict_at_rest(&mut self, i: usize, config: &BiasFilterConfig, creep: S, time_us: u64) {
         let Some(dt) = self.elapsed(i, time_us) else { return };
         self.follow_rate(i, dt);
-        self.grow(i, BIAS, creep * dt, S::constant(LARGEST));
-        self.grow(i, RATE, S::from_q(config.rate_noise) * dt, S::constant(LARGEST_RATE));
+        let noise = [
+            self.grow(i, BIAS, creep * dt, S::constant(LARGEST)),
+            self.grow(i, RATE, S::from_q(config.rate_noise) * dt, S::constant(LARGEST_RATE)),
+            S::zero(),
+        ];
+        self.trace.record(BiasOperation::Predict { segment: i, dt: S::zero(), decay: S::one(), noise });
     }
 
     /// Time since the last prediction, time units; `None` where no time has passed.
@@ -216,12 +251,14 @@ impl<S: Scalar, const N: usize> BiasState<S, N> {
         }
     }
 
-    /// Adds process noise to one state, up to a variance of `limit`.
-    pub fn grow(&mut self, i: usize, state: usize, variance: S, limit: S) {
-        if let Some(diagonal) = self.diagonal_mut(i, state)
-            && *diagonal < limit
-        {
-            *diagonal += variance;
+    /// Adds process noise to one state, up to a variance of `limit`; gives what it has added.
+    fn grow(&mut self, i: usize, state: usize, variance: S, limit: S) -> S {
+        match self.diagonal_mut(i, state) {
+            Some(diagonal) if *diagonal < limit => {
+                *diagonal += variance;
+                variance
+            }
+            _ => S::zero(),
         }
     }
 
@@ -237,7 +274,12 @@ impl<S: Scalar, const N: usize> BiasState<S, N> {
     /// Adds to the variance of a state that has become doubtful.
     pub fn doubt(&mut self, i: usize, state: usize, variance: S) {
         let limit = if state == RATE { LARGEST_RATE } else { LARGEST };
-        self.grow(i, state, variance, S::constant(limit));
+        let added = self.grow(i, state, variance, S::constant(limit));
+        let mut noise = [S::zero(); 3];
+        if let Some(noise) = noise.get_mut(state) {
+            *noise = added;
+        }
+        self.trace.record(BiasOperation::Noise { segment: i, noise });
     }
 
     /// β_i, predicted to `time_us`; the states stay.
@@ -307,19 +349,25 @@ impl<S: Scalar, const N: usize> BiasState<S, N> {
         let [bias, _, offset] = cross.get(i).copied().unwrap_or([S::zero(); 3]);
         let of_below = below.and_then(|below| cross.get(below)).map_or(S::zero(), |[bias, ..]| *bias);
         let eighth = eighth(bias) - eighth(offset) - eighth(of_below);
-        Innovation { cross, variance: bias - offset - of_below, eighth }
+        Innovation {
+            cross,
+            variance: bias - offset - of_below,
+            eighth,
+            measurement: BiasMeasurement::BendAngle { segment: i },
+        }
     }
 
     /// Innovation of heading `j`'s rate while the arm rests, H = (v_j: 1).
     pub fn innovation_at_rest(&self, j: usize) -> Innovation<S, N> {
         let cross = self.covariance.get(j).map_or([[S::zero(); 3]; N], |[_, rate, _]| *rate);
         let variance = cross.get(j).map_or(S::zero(), |[_, rate, _]| *rate);
-        Innovation { cross, variance, eighth: eighth(variance) }
+        Innovation { cross, variance, eighth: eighth(variance), measurement: BiasMeasurement::Rate { segment: j } }
     }
 
     /// K = P⁻Hᵀ/S, x = x⁻ + K ν, P = P⁻ − K (P⁻Hᵀ)ᵀ, for the innovation ν and measurement noise R.
     pub fn update(&mut self, innovation: &Innovation<S, N>, nu: S, r: S) {
-        let Innovation { cross, variance, eighth: variance_eighth } = innovation;
+        let Innovation { cross, variance, eighth: variance_eighth, measurement } = innovation;
+        self.trace.record(BiasOperation::Update { measurement: *measurement, nu, r });
         let mut gain = *cross;
         let half = S::constant(HALF_OF_RANGE);
         if *variance < half && r < half {

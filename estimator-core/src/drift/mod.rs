@@ -3,6 +3,7 @@
 pub mod bend_monitor;
 pub mod bias_filter;
 pub mod bias_state;
+pub mod bias_trace;
 pub mod decimator;
 pub mod heading_gate;
 pub mod moving_average;

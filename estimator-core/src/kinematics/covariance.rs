@@ -4,13 +4,14 @@
 //! with the segment's own heading and the rest with the heading before: λ = ½ for an arc, 1 for a connector behind it. The
 //! Jacobian of point m by heading j is the chord, turned by a quarter and levered; C_m = Σ J_j P_jk J_kᵀ.
 
+use heapless::Vec;
 use nalgebra::Vector2;
 
 use crate::config::{OffsetAt, SegmentConfig};
 use crate::numeric::fused::FusedOps;
 use crate::numeric::q::Q;
 use crate::numeric::scalar::Scalar;
-use crate::types::Covariance;
+use crate::types::{Covariance, Shape, Uncertainties, Uncertainty};
 
 /// Share of a segment's chord that turns with its own heading, λ.
 pub fn lever_arm<S: Scalar>(segment: &SegmentConfig<S>) -> Q {
@@ -95,5 +96,42 @@ impl<const N: usize> CovariancePropagation<N> {
     #[must_use]
     pub fn end(&self) -> Covariance {
         self.point
+    }
+}
+
+/// Uncertainty of a shape by the covariance of its `headings` and the variance of each segment's `end`, segment by segment;
+/// the bend angles that nothing has measured have none.
+#[must_use]
+pub fn shape_uncertainties<S: Scalar, const N: usize>(
+    segments: &[SegmentConfig<S>],
+    end: Q,
+    headings: [[Q; N]; N],
+    shape: &Shape<S, N>,
+    is_measured: impl Fn(usize) -> bool,
+) -> Uncertainties<N> {
+    let mut propagation = CovariancePropagation::new(headings, end);
+    let zero = Q::from_f64(0.0);
+    let (mut before, mut is_known) = (Vector2::new(zero, zero), true);
+    let mut uncertainties = Vec::new();
+    for (i, (shape, config)) in shape.iter().zip(segments).enumerate() {
+        let theta = shape.theta.map(|_| theta_variance(&propagation.headings, i)).filter(|_| is_measured(i));
+        let end = theta.zip(shape.end).filter(|_| is_known).map(|(_, end)| {
+            let end = Vector2::new(end.x.to_q(), end.y.to_q());
+            propagation.step(end - before, lever_arm(config));
+            before = end;
+            propagation.end()
+        });
+        is_known = end.is_some();
+        let _ = uncertainties.push(Uncertainty { theta, end });
+    }
+    uncertainties
+}
+
+/// Variance of θ_i = Θ_i − Θ_{i−1}.
+fn theta_variance<const N: usize>(headings: &[[Q; N]; N], i: usize) -> Q {
+    let at = |i: usize, j: usize| headings.get(i).and_then(|row| row.get(j)).copied().unwrap_or(Q::from_f64(0.0));
+    match i.checked_sub(1) {
+        Some(below) => (at(i, i) - at(i, below)) + (at(below, below) - at(i, below)),
+        None => at(i, i),
     }
 }

@@ -11,6 +11,7 @@ use proprio::recording::Comparison;
 use proprio::replay::{Extent, NamedTable, Outcome, replay};
 use proprio::score::Score;
 use proprio::session::{LAST_LINE, Row};
+use proprio::smooth;
 
 use crate::cli::Replay;
 use crate::tables;
@@ -22,12 +23,12 @@ pub fn run(args: &Replay) -> Result<(), Error> {
     let table = NamedTable::load(&args.table)?;
     let inputs: Vec<&Path> = args.sessions.iter().map(PathBuf::as_path).chain([table.path]).collect();
     let out = args.out.as_deref().map(|out| OutputFile::create(out, &inputs)).transpose()?;
-    let mut out = out.map(|file| EstimateWriter::new(file, &table.file)).transpose()?;
+    let mut out = out.map(|file| EstimateWriter::new(file, &table.file, args.smooth)).transpose()?;
     let figures = if args.float {
         // The board's fixed point says nothing of floats.
-        replay_all::<f64>(&args.sessions, &table, out.as_mut(), None)?
+        replay_all::<f64>(args, &table, out.as_mut(), None)?
     } else {
-        replay_all::<Q>(&args.sessions, &table, out.as_mut(), Some(Comparison::add))?
+        replay_all::<Q>(args, &table, out.as_mut(), Some(Comparison::add))?
     };
     match saturations() {
         0 => {}
@@ -56,7 +57,7 @@ fn tell(path: &Path, recorded: &Comparison, firmware: Option<&str>) {
 type Compare<S> = fn(&mut Comparison, &Row, &Outcome<S>);
 
 fn replay_all<S: FusedOps>(
-    sessions: &[PathBuf],
+    args: &Replay,
     table: &NamedTable,
     mut out: Option<&mut EstimateWriter>,
     compare: Option<Compare<S>>,
@@ -64,16 +65,18 @@ fn replay_all<S: FusedOps>(
     let length_mm = table.file.length_mm();
     let mut all = Score::new(length_mm);
     let mut each = Vec::new();
-    for path in sessions {
+    for path in &args.sessions {
         let mut score = Score::new(length_mm);
         let mut comparison = Comparison::default();
-        let Extent { samples, seconds, ends_with_line, recording } = replay::<S>(path, table, |row, outcome| {
+        let visit = |row: &Row, outcome: &Outcome<S>| {
             score.add(row, outcome);
             if let Some(compare) = compare {
                 compare(&mut comparison, row, outcome);
             }
             out.as_mut().map_or(Ok(()), |out| out.write(outcome))
-        })?;
+        };
+        let extent = if args.smooth { smooth::replay(path, table, visit) } else { replay(path, table, visit) };
+        let Extent { samples, seconds, ends_with_line, recording } = extent?;
         if !ends_with_line {
             super::warn(&format_args!("{}: {LAST_LINE}", path.display()));
         }

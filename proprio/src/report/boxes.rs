@@ -2,11 +2,12 @@
 
 use estimator_core::Method;
 
-use super::plot::{Axis, Colour, Figure, Marks, Panel, Series, Size, extent, rounded};
+use super::plot::{Axis, ESTIMATES, Figure, Marks, Panel, SMOOTHED, Series, Size, extent, rounded};
+use crate::distances::Distances;
 use crate::score::Score;
 
 /// Names below the boxes.
-const NAMES: [&str; Method::ALL.len()] = ["bend", "imu_o", "imu_c", "fusion"];
+const NAMES: [&str; ESTIMATES.len()] = ["bend", "imu_o", "imu_c", "fusion", SMOOTHED];
 
 /// From the scores of the sessions with their names, and of all together.
 pub fn figure<'s>(sessions: impl Iterator<Item = (&'s str, &'s Score)>, all: &Score) -> Figure {
@@ -17,7 +18,7 @@ pub fn figure<'s>(sessions: impl Iterator<Item = (&'s str, &'s Score)>, all: &Sc
     for panel in &mut panels {
         panel.y.range = [0.0, 1.05 * largest];
     }
-    let samples: Vec<String> = Method::ALL.iter().map(|m| format!("{} {}", m.name(), all.tips(*m).count())).collect();
+    let samples: Vec<String> = tips(all).zip(NAMES).map(|(tips, name)| format!("{name} {}", tips.count())).collect();
     Figure {
         name: "boxes",
         title: "Tip error by method",
@@ -31,9 +32,14 @@ pub fn figure<'s>(sessions: impl Iterator<Item = (&'s str, &'s Score)>, all: &Sc
     }
 }
 
+/// Tip errors of all methods, and of the smoothed shape where there are any.
+fn tips(score: &Score) -> impl Iterator<Item = &Distances> {
+    let smoothed = Some(score.smoothed_tips()).filter(|tips| tips.count() > 0);
+    Method::ALL.into_iter().map(|method| score.tips(method)).chain(smoothed)
+}
+
 fn panel(session: Option<String>, score: &Score) -> Panel {
-    let series = Method::ALL.iter().enumerate().filter_map(|(place, method)| {
-        let tips = score.tips(*method);
+    let series = tips(score).zip(ESTIMATES).enumerate().filter_map(|(place, (tips, (name, colour)))| {
         let (spread, rmse_m) = tips.spread().zip(tips.rms_m())?;
         let mm = |m: f64| rounded(m * 1e3);
         let [quartile1_mm, median_mm, quartile3_mm] = spread.quartiles_m.map(mm);
@@ -41,9 +47,10 @@ fn panel(session: Option<String>, score: &Score) -> Panel {
         let (place, samples, rmse_mm) = (place as f64, tips.count(), mm(rmse_m));
         let marks =
             Marks::Box { place, samples, low_mm, quartile1_mm, median_mm, quartile3_mm, high_mm, largest_mm, rmse_mm };
-        Some(Series { name: method.name().to_owned(), colour: Colour::Of(*method), marks })
+        Some(Series { name: name.to_owned(), colour, marks })
     });
-    let x = Axis { title: "method", range: [-0.6, 3.6], names: &NAMES };
+    let count = tips(score).count();
+    let x = Axis { title: "method", range: [-0.6, count as f64 - 0.4], names: &NAMES[..count] };
     Panel {
         name: String::new(),
         title: session.clone().unwrap_or_else(|| "all sessions together".to_owned()),

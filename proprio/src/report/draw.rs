@@ -57,11 +57,12 @@ impl Size {
 
 impl Colour {
     /// Those that differ in their [`Colour::rgb`].
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 7] = [
         Self::Of(Method::Bend),
         Self::Of(Method::ImuO),
         Self::Of(Method::ImuC),
         Self::Of(Method::Fusion),
+        Self::Smoothed,
         Self::Ink,
         Self::Grid,
     ];
@@ -73,6 +74,7 @@ impl Colour {
             Self::Of(Method::ImuO) => [0xD5, 0x5E, 0x00],
             Self::Of(Method::ImuC) => [0x00, 0x9E, 0x73],
             Self::Of(Method::Fusion) => [0x00, 0x72, 0xB2],
+            Self::Smoothed => [0xCC, 0x79, 0xA7],
             Self::Truth | Self::Ink => [0x1A, 0x1A, 0x1A],
             Self::Grid => [0xDD, 0xDD, 0xDD],
         }

@@ -55,7 +55,7 @@ impl Drift {
                 Colour::Of(method) => {
                     outcome.shapes[method as usize].get(i)?.theta.map(|theta| theta.rad().to_degrees())
                 }
-                Colour::Truth | Colour::Ink | Colour::Grid => row.true_theta(i).map(f64::to_degrees),
+                Colour::Truth | Colour::Smoothed | Colour::Ink | Colour::Grid => row.true_theta(i).map(f64::to_degrees),
             });
             let mut values = angles.iter();
             let averages = segment.averages.each_mut();
@@ -124,7 +124,7 @@ fn series(y: &'static str, points: impl Fn(usize) -> Vec<(f64, Option<f64>)>) ->
     let curves = CURVES.into_iter().enumerate().map(|(channel, colour)| {
         let name = match colour {
             Colour::Of(method) => method.name(),
-            Colour::Truth | Colour::Ink | Colour::Grid => "truth",
+            Colour::Truth | Colour::Smoothed | Colour::Ink | Colour::Grid => "truth",
         };
         (name, colour, points(channel))
     });

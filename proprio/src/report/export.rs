@@ -4,8 +4,9 @@ use csv::Writer;
 use estimator_core::Method;
 
 use super::Report;
-use super::plot::{Figure, Marks, Panel};
+use super::plot::{Figure, Marks, Panel, SMOOTHED};
 use crate::figures::ByMethod;
+use crate::score::Figures;
 
 /// The CSV's columns.
 const COLUMNS: [&str; 8] = ["figure", "session", "panel", "series", "x_quantity", "x", "y_quantity", "y"];
@@ -62,17 +63,30 @@ impl Rows {
 
     fn figures(&mut self, session: &str, figures: &ByMethod) {
         for (method, of) in Method::ALL.iter().zip(&figures.methods) {
-            let place = ["table", session, "", method.name()];
-            let numbers = [
-                ("tip_rmse_mm", of.tip_rmse_mm),
-                ("tip_rmse_percent", of.tip_rmse_percent),
-                ("tip_p75_mm", of.tip_p75_mm),
-                ("theta_rmse_deg", of.theta_rmse_deg),
-            ];
-            for (name, value) in numbers {
-                if let Some(value) = value {
-                    self.number(place, name, value);
-                }
+            self.errors(["table", session, "", method.name()], of);
+        }
+        if let Some(smoothed) = &figures.smoothed {
+            let place = ["table", session, "", SMOOTHED];
+            self.errors(place, &smoothed.figures);
+            if let Some(inside_percent) = smoothed.uncertainty.and_then(|uncertainty| uncertainty.tip_inside_percent) {
+                self.number(place, "tip_inside_percent", inside_percent);
+            }
+        }
+        if let Some(inside_percent) = figures.uncertainty.and_then(|uncertainty| uncertainty.tip_inside_percent) {
+            self.number(["table", session, "", Method::Fusion.name()], "tip_inside_percent", inside_percent);
+        }
+    }
+
+    fn errors(&mut self, place: Place, of: &Figures) {
+        let numbers = [
+            ("tip_rmse_mm", of.tip_rmse_mm),
+            ("tip_rmse_percent", of.tip_rmse_percent),
+            ("tip_p75_mm", of.tip_p75_mm),
+            ("theta_rmse_deg", of.theta_rmse_deg),
+        ];
+        for (name, value) in numbers {
+            if let Some(value) = value {
+                self.number(place, name, value);
             }
         }
     }

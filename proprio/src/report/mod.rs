@@ -33,8 +33,10 @@ use self::tip_error::TipErrors;
 use self::v_orient::Readings;
 use crate::error::Error;
 use crate::figures::{AllFigures, ByMethod, SessionFigures};
-use crate::replay::{Extent, NamedTable, replay};
+use crate::replay::{Extent, NamedTable, Outcome, replay};
 use crate::score::Score;
+use crate::session::Row;
+use crate::smooth;
 
 /// A report that is being gathered, session by session. Its memory grows with their number and not with their length.
 pub struct Gathering<'t> {
@@ -86,7 +88,7 @@ impl<'t> Gathering<'t> {
         Self { table, sessions: Vec::new(), all, readings }
     }
 
-    /// Replays a session in fixed point.
+    /// Replays a session in fixed point, and smooths it where the table has the bias filter.
     ///
     /// # Errors
     /// As [`replay`].
@@ -95,14 +97,19 @@ impl<'t> Gathering<'t> {
         let mut score = Score::new(table.length_mm());
         let (mut drift, mut tip_errors, mut shapes) = (Drift::new(table), TipErrors::new(), Shapes::new(table));
         let readings = &mut self.readings;
-        let extent = replay::<Q>(path, self.table, |row, outcome| {
+        let visit = |row: &Row, outcome: &Outcome<Q>| {
             score.add(row, outcome);
             drift.add(row, outcome);
             tip_errors.add(row, outcome);
             shapes.add(row, outcome);
             readings.add(row);
             Ok(())
-        })?;
+        };
+        let extent = if self.table.has_bias_filter() {
+            smooth::replay(path, self.table, visit)?
+        } else {
+            replay(path, self.table, visit)?
+        };
         self.all.append(&score);
         let name = path.display().to_string();
         self.sessions.push(Session { name, extent: extent.clone(), score, drift, tip_errors, shapes });

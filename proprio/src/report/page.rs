@@ -3,9 +3,10 @@
 use estimator_core::Method;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
-use super::plot::{Colour, Figure, Panel, Size};
+use super::plot::{Colour, ESTIMATES, Figure, Panel, SMOOTHED, Size};
 use super::{Report, draw};
 use crate::figures::ByMethod;
+use crate::honesty::HonestyFigures;
 use crate::score::Figures;
 
 const STYLE: &str = include_str!("style.css");
@@ -31,6 +32,7 @@ impl Report {
                     (self.header(&title))
                     main {
                         (self.table())
+                        (self.covariances())
                         @for (number, figure) in (1..).zip(&self.figures) { (section(number, figure)) }
                     }
                     footer { "proprio " (self.proprio) }
@@ -69,7 +71,7 @@ impl Report {
         }
     }
 
-    /// The table of the paper: a row a session, a column a method.
+    /// The table of the paper: a row a session, a column a method, and one of the smoothed shape where there is any.
     fn table(&self) -> Markup {
         let groups: [Group; 4] = [
             ("tip RMSE, mm".to_owned(), |figures| figures.tip_rmse_mm),
@@ -78,39 +80,91 @@ impl Report {
             ("bend angle RMSE, deg".to_owned(), |figures| figures.theta_rmse_deg),
         ];
         let samples = self.numbers.sessions.iter().map(|session| session.samples).sum();
+        let count = if self.numbers.all.smoothed.is_some() { ESTIMATES.len() } else { Method::ALL.len() };
+        let row = |name: &str, figures: &ByMethod| table_row(name, figures, &groups, count);
         html! {
             section #table {
-                h2 { "Table 1. Errors of the four methods" }
+                h2 { "Table 1. Errors by method" }
                 div.wide {
                     table {
                         thead {
-                            tr { th rowspan="2" scope="col" { "session" } @for (head, _) in &groups { th colspan="4" scope="colgroup" { (head) } } }
-                            tr { @for _ in &groups { @for method in Method::ALL { th.(method.name()) scope="col" { (method.name()) } } } }
+                            tr { th rowspan="2" scope="col" { "session" } @for (head, _) in &groups { th colspan=(count) scope="colgroup" { (head) } } }
+                            tr { @for _ in &groups { @for (k, (name, _)) in ESTIMATES[..count].iter().enumerate() { th.(*name).first[k == 0] scope="col" { (name) } } } }
                         }
                         tbody {
-                            @for session in &self.numbers.sessions { (table_row(&session.path, &session.figures, &groups)) }
+                            @for session in &self.numbers.sessions { (row(&session.path, &session.figures)) }
                         }
-                        tfoot { (table_row("all together", &self.numbers.all, &groups)) }
+                        tfoot { (row("all together", &self.numbers.all)) }
                     }
                 }
                 p.caption {
                     "Against the truth, as far as it is known, over " (counted(samples, "sample")) ". bend: bend sensors alone; imu_o: raw IMUs; imu_c: IMUs whose drift bend \
-                     sensors correct; fusion: Kalman filters over both. The best method is bold; a dash is what is not known."
+                     sensors correct; fusion: Kalman filters over both"
+                    @if count > Method::ALL.len() { "; smoothed: fusion by the readings after each sample, too" }
+                    ". The best one is bold; a dash is what is not known."
+                }
+            }
+        }
+    }
+
+    /// How honest the covariances are, where there are any.
+    fn covariances(&self) -> Markup {
+        let of = |figures: &ByMethod| [figures.uncertainty, figures.smoothed.and_then(|smoothed| smoothed.uncertainty)];
+        let heads: Vec<&str> = ["fusion", SMOOTHED]
+            .into_iter()
+            .zip(of(&self.numbers.all))
+            .filter_map(|(head, all)| all.map(|_| head))
+            .collect();
+        let row = |name: &str, figures: &ByMethod| {
+            html! {
+                tr {
+                    th scope="row" { (name) }
+                    @for honesty in of(figures).iter().take(heads.len()) { (honesty_cells(honesty.as_ref())) }
+                }
+            }
+        };
+        html! {
+            @if !heads.is_empty() {
+                section #covariances {
+                    h2 { "Table 2. Errors of the tip over what its covariances expect" }
+                    div.wide {
+                        table {
+                            thead {
+                                tr { th rowspan="2" scope="col" { "session" } @for head in &heads { th colspan="2" scope="colgroup" { (head) } } }
+                                tr { @for _ in &heads { th.first scope="col" { "in 95 % ellipse" } th scope="col" { "NEES" } } }
+                            }
+                            tbody { @for session in &self.numbers.sessions { (row(&session.path, &session.figures)) } }
+                            tfoot { (row("all together", &self.numbers.all)) }
+                        }
+                    }
+                    p.caption {
+                        "Share of true tips inside the 95 % ellipse of their estimates, and mean normalised square error for each coordinate: \
+                         1 is consistent, more is overconfident."
+                    }
                 }
             }
         }
     }
 }
 
-fn table_row(name: &str, figures: &ByMethod, groups: &[Group]) -> Markup {
+fn honesty_cells(honesty: Option<&HonestyFigures>) -> Markup {
+    let inside = honesty
+        .and_then(|honesty| honesty.tip_inside_percent)
+        .map_or("–".to_owned(), |share| format!("{share:.1} %"));
+    let nees = honesty.and_then(|honesty| honesty.tip_nees).map_or("–".to_owned(), |nees| format!("{nees:.2}"));
+    html! { td.first { (inside) } td { (nees) } }
+}
+
+fn table_row(name: &str, figures: &ByMethod, groups: &[Group], count: usize) -> Markup {
     html! {
         tr {
             th scope="row" { (name) }
             @for (_, figure) in groups {
-                @let values = figures.methods.each_ref().map(figure);
+                @let smoothed = figures.smoothed.and_then(|smoothed| figure(&smoothed.figures));
+                @let values: Vec<Option<f64>> = figures.methods.iter().map(figure).chain([smoothed]).take(count).collect();
                 @let best = values.iter().flatten().copied().reduce(f64::min);
-                @for value in values {
-                    td.best[value.is_some() && value == best] { (value.map_or("–".to_owned(), |value| format!("{value:.2}"))) }
+                @for (k, value) in values.iter().copied().enumerate() {
+                    td.first[k == 0].best[value.is_some() && value == best] { (value.map_or("–".to_owned(), |value| format!("{value:.2}"))) }
                 }
             }
         }
@@ -158,6 +212,7 @@ fn colours() -> String {
         let hex = format!("#{r:02X}{g:02X}{b:02X}");
         let name = match colour {
             Colour::Of(method) => method.name(),
+            Colour::Smoothed => SMOOTHED,
             Colour::Truth | Colour::Ink => "ink",
             Colour::Grid => "grid",
         };

@@ -99,10 +99,22 @@ pub enum Marks {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Colour {
     Of(Method),
+    Smoothed,
     Truth,
     Ink,
     Grid,
 }
+
+/// Estimates whose tip errors are shown: all methods, and the smoothed shape.
+pub const ESTIMATES: [(&str, Colour); Method::ALL.len() + 1] = [
+    (Method::Bend.name(), Colour::Of(Method::Bend)),
+    (Method::ImuO.name(), Colour::Of(Method::ImuO)),
+    (Method::ImuC.name(), Colour::Of(Method::ImuC)),
+    (Method::Fusion.name(), Colour::Of(Method::Fusion)),
+    (SMOOTHED, Colour::Smoothed),
+];
+/// Name of the smoothed shape.
+pub const SMOOTHED: &str = "smoothed";
 
 impl Axis {
     /// Numbers over `range`.

@@ -1,19 +1,19 @@
 //! The tip's error against time.
 
-use estimator_core::{FusedOps, Method};
+use estimator_core::FusedOps;
 
-use super::plot::{Axis, Colour, Figure, Marks, Panel, Series, Size, extent, rounded};
+use super::plot::{Axis, ESTIMATES, Figure, Marks, Panel, Series, Size, extent, rounded};
 use super::thin::Timeline;
 use crate::replay::Outcome;
-use crate::score::tip_errors_m;
+use crate::score::{smoothed_tip_error_m, tip_errors_m};
 use crate::session::Row;
 
-/// Bins of a session at least: few enough for four areas to be told apart.
+/// Bins of a session at least: few enough for five areas to be told apart.
 const BINS: usize = 100;
-const METHODS: usize = Method::ALL.len();
+const CHANNELS: usize = ESTIMATES.len();
 
 /// Tip errors of one session, mm.
-pub struct TipErrors(Timeline<METHODS>);
+pub struct TipErrors(Timeline<CHANNELS>);
 
 impl TipErrors {
     pub fn new() -> Self {
@@ -21,16 +21,20 @@ impl TipErrors {
     }
 
     pub fn add<S: FusedOps>(&mut self, row: &Row, outcome: &Outcome<S>) {
-        self.0.add(row.sample.time_us, tip_errors_m(row, outcome).map(|error| error.map(|m| m * 1e3)));
+        let [bend, imu_o, imu_c, fusion] = tip_errors_m(row, outcome);
+        let errors_m = [bend, imu_o, imu_c, fusion, smoothed_tip_error_m(row, outcome)];
+        self.0.add(row.sample.time_us, errors_m.map(|error| error.map(|m| m * 1e3)));
     }
 
     fn panel(&self, session: &str) -> Option<Panel> {
-        let spoken = |(channel, _): &(usize, &Method)| self.0.bins().iter().any(|bin| bin.mean(*channel).is_some());
-        let said: Vec<(usize, &Method)> = Method::ALL.iter().enumerate().filter(spoken).collect();
-        let series =
-            |marks, method: &Method| Series { name: method.name().to_owned(), colour: Colour::Of(*method), marks };
-        let bands = said.iter().map(|(channel, method)| series(self.band(*channel), method));
-        let means = said.iter().map(|(channel, method)| series(self.mean(*channel), method));
+        let is_known = |channel: &usize| self.0.bins().iter().any(|bin| bin.mean(*channel).is_some());
+        let known: Vec<usize> = (0..CHANNELS).filter(is_known).collect();
+        let series = |channel: usize, marks| {
+            let (name, colour) = ESTIMATES[channel];
+            Series { name: name.to_owned(), colour, marks }
+        };
+        let bands = known.iter().map(|channel| series(*channel, self.band(*channel)));
+        let means = known.iter().map(|channel| series(*channel, self.mean(*channel)));
         let all: Vec<Series> = bands.chain(means).collect();
         let [x, [_, largest]] = extent(&all);
         let x = Axis::new("time, s", x);

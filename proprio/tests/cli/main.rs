@@ -31,6 +31,7 @@ mod report;
 mod report_numbers;
 mod restarts;
 mod simulate;
+mod smooth;
 mod streams;
 mod tune;
 mod tune_bias_filter;

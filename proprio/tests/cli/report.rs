@@ -324,7 +324,7 @@ fn two_outputs_need_two_names() {
 fn the_table_has_the_figures_of_replay() {
     let folder = two_sessions();
     let page = page_of(&folder, &["one.csv", "two.csv"], table());
-    let replay = json(&folder.done(&["replay", "one.csv", "two.csv", "--table", table(), "--json"]));
+    let replay = json(&folder.done(&["replay", "one.csv", "two.csv", "--table", table(), "--smooth", "--json"]));
     let section = between(&page, "<section id=\"table\">", "</section>")[0];
     let rows: Vec<Vec<&str>> = between(section, "<tr><th scope=\"row\">", "</tr>")
         .into_iter()
@@ -341,6 +341,8 @@ fn the_table_has_the_figures_of_replay() {
                 let value = of["methods"][method][figure].as_f64().expect("a number");
                 assert_eq!(cells.next(), Some(&format!("{value:.2}").as_str()), "{method} {figure}");
             }
+            let value = of["smoothed"][figure].as_f64().expect("a number");
+            assert_eq!(cells.next(), Some(&format!("{value:.2}").as_str()), "smoothed {figure}");
         }
         assert_eq!(cells.next(), None);
     }

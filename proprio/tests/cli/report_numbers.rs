@@ -51,7 +51,7 @@ fn series<'j>(panel: &'j Value, name: &str, kind: &str) -> &'j Value {
 #[test]
 fn the_json_has_what_replay_prints() {
     let Numbers { folder, json: found, .. } = numbers();
-    let replay = json(&folder.done(&["replay", "one.csv", "two.csv", "--table", table(), "--json"]));
+    let replay = json(&folder.done(&["replay", "one.csv", "two.csv", "--table", table(), "--smooth", "--json"]));
     assert_eq!(found["sessions"], replay["sessions"]);
     assert_eq!(found["all"], replay["all"]);
     assert_eq!(found["table"]["arm"], "planar-6");

@@ -4,6 +4,7 @@ use crate::config::{ArmConfig, BendErrorConfig};
 use crate::drift::SensedArm;
 use crate::drift::bias_filter::{BiasFilter, SegmentTrack};
 use crate::drift::bias_state::{BIAS, BiasState, RATE};
+use crate::drift::bias_trace::BiasTrace;
 use crate::drift::heading_gate::{Expected, Verdict};
 use crate::numeric::phase::Turns;
 use crate::numeric::scalar::{Constant, Scalar, TIME_UNIT_S};
@@ -24,7 +25,7 @@ const ABSENT_TIME: Constant = Constant::new(20.0 / TIME_UNIT_S);
 const FROZEN_MOTION: Constant = degrees(8.0);
 const FROZEN_DEVIATIONS: Constant = Constant::new(1.0 / 4.0);
 
-impl<F: Scalar, const N: usize> BiasFilter<F, N> {
+impl<F: Scalar, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
     /// Headings that are read and plausible, from the base to the tip.
     pub(super) fn track_headings<S: Scalar>(&mut self, config: &ArmConfig<S>, sensed: &SensedArm<S, N>) {
         let (mut below, mut excess) = (Turns::ZERO, F::zero());
@@ -126,8 +127,8 @@ impl<F: Scalar> SegmentTrack<F> {
 }
 
 /// Doubts the bias of a heading that may have a new zero.
-fn doubt<F: Scalar, const N: usize>(
-    state: &mut BiasState<F, N>,
+fn doubt<F: Scalar, const N: usize, T: BiasTrace<F>>(
+    state: &mut BiasState<F, N, T>,
     i: usize,
     verdict: Verdict<F>,
     expected: &Expected<F>,

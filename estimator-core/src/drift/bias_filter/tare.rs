@@ -3,6 +3,7 @@
 use crate::config::{ArmConfig, BiasFilterConfig, SegmentConfig};
 use crate::drift::SensedArm;
 use crate::drift::bias_filter::{BiasFilter, SegmentTrack};
+use crate::drift::bias_trace::BiasTrace;
 use crate::numeric::phase::Turns;
 use crate::numeric::scalar::{Constant, Scalar};
 use crate::numeric::variance::{degrees, magnitude, scaled_square, smaller, variance_deg};
@@ -117,7 +118,7 @@ impl<F: Scalar, const N: usize> TareStatistics<F, N> {
     }
 }
 
-impl<F: Scalar, const N: usize> BiasFilter<F, N> {
+impl<F: Scalar, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
     /// Gathers the tare, and starts at its end; `false` until then.
     pub(super) fn tare<S: Scalar>(
         &mut self,

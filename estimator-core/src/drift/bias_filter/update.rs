@@ -5,6 +5,7 @@ use crate::drift::SensedArm;
 use crate::drift::bend_monitor::TrustedBend;
 use crate::drift::bias_filter::{BiasFilter, MAX_RATIO, RestChange, SegmentTrack, bounded_ratio, since};
 use crate::drift::bias_state::{BIAS, OFFSET};
+use crate::drift::bias_trace::BiasTrace;
 use crate::drift::rest::RestWindow;
 use crate::numeric::phase::Turns;
 use crate::numeric::scalar::{Constant, Scalar};
@@ -44,7 +45,7 @@ const REST_READING: Constant = variance_deg(0.064);
 /// Gate of a heading change at rest: one over three predicted standard deviations.
 const REST_GATE: Constant = Constant::new(1.0 / 3.0);
 
-impl<F: Scalar, const N: usize> BiasFilter<F, N> {
+impl<F: Scalar, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
     /// The turn of one segment: its bend sensors are held against the IMUs, its states predicted and updated. `false` where the
     /// turn must be repeated in the next sample.
     pub(super) fn take_turn<S: Scalar>(

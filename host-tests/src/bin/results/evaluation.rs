@@ -3,7 +3,7 @@
 use calibration_tables::{ArmFile, FileError};
 use estimator_core::{Method, Q};
 use host_tests::contact::in_contact;
-use host_tests::twin::{TwinSession, replay};
+use host_tests::twin::{TwinSession, replay, replay_smoothed};
 use proprio::replay::Outcome;
 use proprio::score::Score;
 use proprio::session::Row;
@@ -30,6 +30,10 @@ pub struct Figures {
     pub inside_percent: f64,
     /// Mean normalised estimation error squared, for each coordinate: 1 is consistent.
     pub nees: f64,
+    /// RMSE of the smoothed estimates, mm.
+    pub smoothed_mm: f64,
+    /// Share of true tips inside the 95 % ellipse of the smoothed estimates.
+    pub smoothed_inside_percent: f64,
     /// RMSE of fusion by the paper's method, mm.
     pub paper_mm: f64,
     /// RMSE of the better of bend sensors and raw IMUs, mm.
@@ -43,7 +47,7 @@ impl Evaluation {
     pub fn of<R: Iterator<Item = Row>>(tables: &Tables, rate_hz: f64, rows: impl Fn() -> R) -> Result<Self, FileError> {
         let score = || Score::new(tables.own.length_mm());
         let mut evaluation = Self { own: score(), paper: score(), contact: Vec::new(), flagged: 0 };
-        replay(&tables.own, rate_hz, rows(), |row, outcome| evaluation.add(row, outcome))?;
+        replay_smoothed(&tables.own, rate_hz, &rows, |row, outcome| evaluation.add(row, outcome))?;
         replay(&tables.paper, rate_hz, rows(), |row, outcome| evaluation.paper.add(row, outcome))?;
         Ok(evaluation)
     }
@@ -64,11 +68,15 @@ impl Evaluation {
         let tip_mm =
             |score: &Score, method: Method| score.figures()[method as usize].tip_rmse_mm.unwrap_or(f64::INFINITY);
         let honesty = self.own.honesty();
+        let smoothed = self.own.smoothed();
+        let smoothed_inside = smoothed.and_then(|smoothed| smoothed.uncertainty?.tip_inside_percent);
         let raw = [&self.own, &self.paper].map(|score| tip_mm(score, Method::Bend).min(tip_mm(score, Method::ImuO)));
         Figures {
             fusion_mm: tip_mm(&self.own, Method::Fusion),
             inside_percent: honesty.and_then(|figures| figures.tip_inside_percent).unwrap_or(f64::NAN),
             nees: honesty.and_then(|figures| figures.tip_nees).unwrap_or(f64::NAN),
+            smoothed_mm: smoothed.and_then(|smoothed| smoothed.figures.tip_rmse_mm).unwrap_or(f64::INFINITY),
+            smoothed_inside_percent: smoothed_inside.unwrap_or(f64::NAN),
             paper_mm: tip_mm(&self.paper, Method::Fusion),
             raw_mm: raw[0].min(raw[1]),
             flagged_percent: 100.0 * self.flagged as f64 / self.contact.len().max(1) as f64,

@@ -65,11 +65,15 @@ impl Rigs {
         let Some(Self { rigs }) = rigs else {
             return writeln!(page, "The sessions were not there when this page was made.\n");
         };
-        writeln!(page, "| rig | map RMSE | I | II | III | paper's method: I | II | III | best raw: I | II | III |")?;
-        writeln!(page, "|---|---|---|---|---|---|---|---|---|---|---|")?;
+        writeln!(
+            page,
+            "| rig | map RMSE | I | II | III | smoothed: I | II | III | paper's method: I | II | III | best raw: I | II | III |"
+        )?;
+        writeln!(page, "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|")?;
         for rig in rigs {
             write!(page, "| {} | {:.1}° |", rig.name, rig.maps_rmse_deg)?;
             rig.sessions.iter().try_for_each(|figures| write!(page, " {} |", figures.fusion_and_inside()))?;
+            rig.sessions.iter().try_for_each(|figures| write!(page, " {} |", figures.smoothed_and_inside()))?;
             rig.sessions.iter().try_for_each(|figures| write!(page, " {:.1} |", figures.paper_mm))?;
             rig.sessions.iter().try_for_each(|figures| write!(page, " {:.1} |", figures.raw_mm))?;
             writeln!(page)?;
@@ -78,13 +82,17 @@ impl Rigs {
             let Figures { paper_mm, raw_mm, .. } = rests;
             writeln!(
                 page,
-                "| {}, rests | | {} | | | {paper_mm:.1} | | | {raw_mm:.1} | | |",
+                "| {}, rests | | {} | | | {} | | | {paper_mm:.1} | | | {raw_mm:.1} | | |",
                 rig.name,
-                rests.fusion_and_inside()
+                rests.fusion_and_inside(),
+                rests.smoothed_and_inside()
             )?;
         }
-        writeln!(page, "\n| | fusion | worst | inside | lowest | NEES | flagged | paper's method | best raw |")?;
-        writeln!(page, "|---|---|---|---|---|---|---|---|---|")?;
+        writeln!(
+            page,
+            "\n| | fusion | worst | inside | lowest | NEES | flagged | smoothed | worst | inside | lowest | paper's method | best raw |"
+        )?;
+        writeln!(page, "|---|---|---|---|---|---|---|---|---|---|---|---|---|")?;
         let all: Vec<Figures> = rigs.iter().flat_map(|rig| rig.sessions.iter().copied()).collect();
         write_summary(page, &format!("all {}", all.len()), &all)?;
         writeln!(page)
@@ -138,6 +146,6 @@ const RIGS: &str = "\
 
 Two programs that share nothing with `rig-twin`: four elastic rods of 60 hinges with friction, post and stick, whose strips are nonlinear,
 hysteretic, creep and drift with temperature, and two arms by formula. As calibrated on their sweeps. Tip RMSE of fusion in mm (share of
-true tips inside the 95 % ellipse); beside it the paper's method on the same sweep and the better of bend sensors and raw IMUs. No
+true tips inside the 95 % ellipse); beside it that of the [smoothed](METHOD.md#smoothing) estimates, the paper's method on the same sweep and the better of bend sensors and raw IMUs. No
 constant was chosen on them.
 ";

@@ -1,0 +1,67 @@
+//! Corrections of the headings: a heading that was read by its bias, an absent one by its neighbours.
+
+use super::correction::Correction;
+
+/// An absent heading is drawn to its bend sensors with this time constant, s: that of the bias filter.
+const ABSENT_S: f64 = 20.0;
+
+/// What a segment's sensors gave in a row.
+#[derive(Debug, Clone, Copy)]
+pub struct Present {
+    /// Whether the filter has used the heading.
+    pub heading: bool,
+    /// Whether there was a bend angle.
+    pub bend: bool,
+}
+
+/// Corrections of the bend angles, row after row.
+///
+/// The filter takes an absent heading from below and above by the motion of the bend sensors, and draws it to
+/// θ_bend − o. The correction of such a heading follows the same rule, from that which it had when it was last read.
+#[derive(Debug, Clone)]
+pub struct HeadingCorrections {
+    /// Of θ_i, rad.
+    angles: Vec<f64>,
+}
+
+impl HeadingCorrections {
+    /// At the start of a session.
+    pub fn new(segments: usize) -> Self {
+        Self { angles: vec![0.0; segments] }
+    }
+
+    /// Corrections of the bend angles in a row, rad, `elapsed_s` after the last one.
+    pub fn advance(&mut self, correction: &Correction, present: &[Present], elapsed_s: f64) -> &[f64] {
+        let mut below = 0.0;
+        for i in 0..self.angles.len() {
+            let heading = if present[i].heading {
+                -correction.biases[i]
+            } else {
+                self.absent(i, below, correction, present, elapsed_s)
+            };
+            self.angles[i] = heading - below;
+            below = heading;
+        }
+        &self.angles
+    }
+
+    fn absent(&self, i: usize, below: f64, correction: &Correction, present: &[Present], elapsed_s: f64) -> f64 {
+        let share = if present[i].bend { (elapsed_s / ABSENT_S).min(1.0) } else { 0.0 };
+        let own = below + self.angles[i] + share * (-correction.offsets[i] - self.angles[i]);
+        if present.get(i + 1).is_some_and(|above| above.heading) {
+            f64::midpoint(own, -correction.biases[i + 1] - self.angles[i + 1])
+        } else {
+            own
+        }
+    }
+
+    /// Follows an update, which has turned the filter's headings by its change of the `biases`, rad. Smoothed headings do
+    /// not depend on when the filter learned what.
+    pub fn follow_update(&mut self, biases: impl Iterator<Item = f64>) {
+        let mut below = 0.0;
+        for (angle, bias) in self.angles.iter_mut().zip(biases) {
+            *angle += bias - below;
+            below = bias;
+        }
+    }
+}
