@@ -1,6 +1,6 @@
 //! The bias filter's model against the dense Kalman filter of the textbooks, in floats and in fixed point.
 
-use estimator_core::{BiasFilterConfig, BiasState, Q, Scalar, TIME_UNIT_S, Turns};
+use estimator_core::{BiasFilterConfig, BiasState, FusedOps, Q, Scalar, TIME_UNIT_S, Turns};
 use nalgebra::{SMatrix, SVector};
 
 /// IMUs and segments, and their states.
@@ -85,7 +85,7 @@ struct Driven<S> {
     state: BiasState<S, N>,
 }
 
-impl<S: Scalar> Driven<S> {
+impl<S: FusedOps> Driven<S> {
     fn new() -> Self {
         let mut state = BiasState::new(S::zero());
         state.initialise(&config(), S::from_f64(STRAIGHTNESS), &[S::from_f64(OFFSET); N], 0);
@@ -118,7 +118,7 @@ fn measurement(i: usize, k: u64) -> f64 {
 }
 
 /// Runs both for so many samples, one segment in its turn; `check` compares them after each update.
-fn run<S: Scalar>(samples: u64, mut check: impl FnMut(u64, &Driven<S>, &Textbook)) {
+fn run<S: FusedOps>(samples: u64, mut check: impl FnMut(u64, &Driven<S>, &Textbook)) {
     let (mut driven, mut book) = (Driven::<S>::new(), Textbook::new());
     let mut predicted = [0; N];
     for k in 1..=samples {

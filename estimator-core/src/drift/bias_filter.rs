@@ -17,6 +17,7 @@ use crate::drift::bias_state::BiasState;
 use crate::drift::heading_gate::HeadingGate;
 use crate::drift::rest::RestDetector;
 use crate::drift::{CorrectedArm, DriftCorrection, MeasuredAngles, SensedArm};
+use crate::numeric::fused::FusedOps;
 use crate::numeric::phase::Turns;
 use crate::numeric::scalar::{Constant, Scalar};
 use crate::numeric::variance::{smaller, variance_deg};
@@ -246,7 +247,7 @@ impl<F: Scalar, const N: usize> BiasFilter<F, N> {
     }
 }
 
-impl<S: Scalar, F: Scalar, const N: usize> DriftCorrection<S, N> for BiasFilter<F, N> {
+impl<S: Scalar, F: FusedOps, const N: usize> DriftCorrection<S, N> for BiasFilter<F, N> {
     fn correct(&mut self, config: &ArmConfig<S>, sensed: &SensedArm<S, N>) -> CorrectedArm<N> {
         let Some(filter) = &config.bias_filter else { return CorrectedArm::UNKNOWN };
         let dt = since(self.last_us.unwrap_or(sensed.time_us), sensed.time_us);

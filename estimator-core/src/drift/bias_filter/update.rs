@@ -6,6 +6,7 @@ use crate::drift::bend_monitor::TrustedBend;
 use crate::drift::bias_filter::{BiasFilter, MAX_RATIO, RestChange, SegmentTrack, bounded_ratio, since};
 use crate::drift::bias_state::{BIAS, OFFSET};
 use crate::drift::rest::RestWindow;
+use crate::numeric::fused::FusedOps;
 use crate::numeric::phase::Turns;
 use crate::numeric::scalar::{Constant, Scalar};
 use crate::numeric::variance::{degrees, is_beyond, larger, magnitude, scaled_square, smaller, variance_deg};
@@ -44,7 +45,7 @@ const REST_READING: Constant = variance_deg(0.064);
 /// Gate of a heading change at rest: one over three predicted standard deviations.
 const REST_GATE: Constant = Constant::new(1.0 / 3.0);
 
-impl<F: Scalar, const N: usize> BiasFilter<F, N> {
+impl<F: FusedOps, const N: usize> BiasFilter<F, N> {
     /// The turn of one segment: its bend sensors are held against the IMUs, its states predicted and updated. `false` where the
     /// turn must be repeated in the next sample.
     pub(super) fn take_turn<S: Scalar>(
