@@ -1,15 +1,14 @@
 //! The pipeline: one [`Sample`] in, one [`Estimate`] or [`Shape`] out.
 
 use heapless::Vec;
-use nalgebra::Vector2;
 
 use crate::config::{ArmConfig, ConfigError, UncertaintyConfig};
 use crate::contact::monitor::ContactMonitor;
 use crate::drift::bias_filter::BiasFilter;
 use crate::drift::decimator::Decimator;
 use crate::drift::moving_average::MovingAverage;
+use crate::drift::share::{Share, ShareCounter};
 use crate::drift::{CorrectedArm, DriftCorrection, SensedArm};
-use crate::kinematics::covariance::{CovariancePropagation, lever_arm};
 use crate::kinematics::forward::forward_kinematics;
 use crate::numeric::fused::FusedOps;
 use crate::numeric::phase::Angle;
@@ -20,6 +19,7 @@ use crate::sensing::heading::SegmentHeading;
 use crate::types::{
     Condition, Conditions, Contacts, Estimate, Method, Sample, SegmentShape, Shape, Uncertainties, Uncertainty,
 };
+use crate::uncertainty::ShapeUncertainty;
 
 /// State of the pipeline for an arm of up to `N` segments and an anchor of up to `W` values.
 ///
@@ -37,6 +37,7 @@ pub struct Estimator<'t, S, const N: usize, const W: usize> {
     /// Whether θ_c and θ_bend of each segment were known in the newest sample.
     measured: [Measured; N],
     fused: Shape<S, N>,
+    uncertainty: ShapeUncertainty<N>,
 }
 
 /// Both drift corrections, of which the configuration selects one: a static has room for both, and a small stack for
@@ -46,6 +47,7 @@ struct Drift<const N: usize, const W: usize> {
     moving_average: MovingAverage<N, W>,
     bias_filter: BiasFilter<Q, N>,
     has_bias_filter: bool,
+    shares: ShareCounter<N>,
 }
 
 /// Which of a segment's two angles a sample has.
@@ -64,13 +66,19 @@ struct Processed<S, const N: usize> {
 impl<const N: usize, const W: usize> Drift<N, W> {
     const fn new() -> Self {
         let zero = Q::from_bits(0);
-        Self { moving_average: MovingAverage::new(), bias_filter: BiasFilter::new(zero), has_bias_filter: false }
+        Self {
+            moving_average: MovingAverage::new(),
+            bias_filter: BiasFilter::new(zero),
+            has_bias_filter: false,
+            shares: ShareCounter::new(),
+        }
     }
 
     fn start(&mut self, has_bias_filter: bool) {
         self.moving_average.start();
         self.bias_filter.start();
         self.has_bias_filter = has_bias_filter;
+        self.shares = ShareCounter::new();
     }
 
     /// The bias filter, if it corrects the drift.
@@ -83,6 +91,16 @@ impl<const N: usize, const W: usize> Drift<N, W> {
             self.bias_filter.correct(config, sensed)
         } else {
             self.moving_average.correct(config, sensed)
+        }
+    }
+
+    /// Ends a sample, after all that reads the covariance.
+    fn finish(&mut self, share: Share) {
+        if let Share::Row(_) = share {
+            self.bias_filter.reduce_covariance();
+        }
+        if !self.has_bias_filter || share != Share::Update || self.bias_filter.is_updating() {
+            self.shares.advance();
         }
     }
 }
@@ -111,6 +129,7 @@ impl<'t, S: FusedOps, const N: usize, const W: usize> Estimator<'t, S, N, W> {
             contact: ContactMonitor::new(),
             measured: [Measured { imu: false, bend: false }; N],
             fused: Vec::new(),
+            uncertainty: ShapeUncertainty::new(),
         }
     }
 
@@ -125,6 +144,7 @@ impl<'t, S: FusedOps, const N: usize, const W: usize> Estimator<'t, S, N, W> {
         self.decimator = Decimator::new();
         self.contact.start();
         self.measured = [Measured::default(); N];
+        self.uncertainty = ShapeUncertainty::new();
         let window = config.anchor.window;
         if window == 0 || usize::from(window) > W {
             return Err(ConfigError::Window { found: window, room: W });
@@ -175,6 +195,8 @@ impl<'t, S: FusedOps, const N: usize, const W: usize> Estimator<'t, S, N, W> {
         }
         self.fuse(&sensed, &corrected);
         self.detect_contact(&sensed, &corrected);
+        self.follow_uncertainty(sensed.share);
+        self.drift.finish(sensed.share);
         Processed { sensed, corrected }
     }
 
@@ -184,6 +206,7 @@ impl<'t, S: FusedOps, const N: usize, const W: usize> Estimator<'t, S, N, W> {
         let mut sensed = SensedArm {
             time_us: sample.time_us,
             decimated: self.decimator.tick(&self.config.anchor),
+            share: self.drift.shares.share(&self.config.anchor),
             bend: [unread; N],
             headings: [SegmentHeading::BASE; N],
         };
@@ -248,26 +271,46 @@ impl<'t, S: FusedOps, const N: usize, const W: usize> Estimator<'t, S, N, W> {
     }
 
     /// Uncertainty of the newest fused shape; empty where the configuration has no error sources.
+    ///
+    /// Above 50 Hz it is worked out a segment in a sample, and so by up to N samples older than the shape.
     #[must_use]
     pub fn uncertainties(&self) -> Uncertainties<N> {
-        let Some(sources) = &self.config.uncertainty else { return Vec::new() };
-        let headings = self.heading_covariance(sources);
-        let mut propagation = CovariancePropagation::new(headings, sources.end);
-        let zero = Q::from_f64(0.0);
-        let (mut before, mut is_known) = (Vector2::new(zero, zero), true);
         let mut uncertainties = Vec::new();
-        for (i, (shape, config)) in self.fused.iter().zip(self.config.segments).enumerate() {
-            let theta = shape.theta.map(|_| theta_variance(&headings, i)).filter(|_| self.is_measured(i));
-            let end = theta.zip(shape.end).filter(|_| is_known).map(|(_, end)| {
-                let end = Vector2::new(end.x.to_q(), end.y.to_q());
-                propagation.step(end - before, lever_arm(config));
-                before = end;
-                propagation.end()
-            });
-            is_known = end.is_some();
-            let _ = uncertainties.push(Uncertainty { theta, end });
+        if self.config.uncertainty.is_some() {
+            for (i, shape) in self.fused.iter().enumerate() {
+                let newest = self.uncertainty.of(i).copied().unwrap_or(Uncertainty { theta: None, end: None });
+                let theta = newest.theta.filter(|_| shape.theta.is_some());
+                let end = newest.end.filter(|_| shape.end.is_some());
+                let _ = uncertainties.push(Uncertainty { theta, end });
+            }
         }
         uncertainties
+    }
+
+    /// This sample's share of the uncertainties.
+    fn follow_uncertainty(&mut self, share: Share) {
+        let Some(sources) = &self.config.uncertainty else { return };
+        match share {
+            Share::Whole => (0..self.segments.len()).for_each(|i| self.propagate(sources, i)),
+            Share::Row(i) => self.propagate(sources, i),
+            Share::Update => {}
+        }
+    }
+
+    /// Propagates the covariance of the headings over segment `i`.
+    fn propagate(&mut self, sources: &UncertaintyConfig, i: usize) {
+        let (Some(shape), Some(config)) = (self.fused.get(i), self.config.segments.get(i)) else { return };
+        let mut headings = match self.drift.bias_filter() {
+            Some(filter) => filter.heading_covariance(i).map(|covariance| sources.bias_share * covariance),
+            None => self.anchored_covariance(sources, i),
+        };
+        let absence =
+            self.drift.bias_filter().map_or(Q::from_f64(0.0), |filter| filter.absence_variance(&config.bend_error, i));
+        if let Some(own) = headings.get_mut(i) {
+            *own += absence + sources.heading;
+        }
+        let shape = SegmentShape { theta: shape.theta.filter(|_| self.is_measured(i)), end: shape.end };
+        self.uncertainty.step(i, config, sources, &shape, &headings);
     }
 
     fn is_measured(&self, i: usize) -> bool {
@@ -275,46 +318,21 @@ impl<'t, S: FusedOps, const N: usize, const W: usize> Estimator<'t, S, N, W> {
         self.drift.bias_filter().map_or(measured, BiasFilter::is_started)
     }
 
-    /// Covariance of all headings.
-    fn heading_covariance(&self, sources: &UncertaintyConfig) -> [[Q; N]; N] {
-        let mut headings = match self.drift.bias_filter() {
-            Some(filter) => self.filtered_covariance(sources, filter),
-            None => self.anchored_covariance(sources),
-        };
-        for (i, row) in headings.iter_mut().enumerate() {
-            if let Some(diagonal) = row.get_mut(i) {
-                *diagonal += sources.heading;
-            }
-        }
-        headings
-    }
-
     /// Behind the anchors the errors of the bend angles are independent, and add up along the arm.
-    fn anchored_covariance(&self, sources: &UncertaintyConfig) -> [[Q; N]; N] {
+    fn anchored_covariance(&self, sources: &UncertaintyConfig, i: usize) -> [Q; N] {
         let mask = self.contact_mask();
         let mut sums = [Q::from_f64(0.0); N];
         let mut sum = Q::from_f64(0.0);
-        for (i, (total, measured)) in sums.iter_mut().zip(&self.measured).enumerate() {
-            sum += if measured.imu { sources.theta } else { sources.bend };
-            if mask >> i & 1 != 0 {
-                sum += sources.contact;
+        for (j, (total, measured)) in sums.iter_mut().zip(&self.measured).enumerate() {
+            if j <= i {
+                sum += if measured.imu { sources.theta } else { sources.bend };
+                if mask >> j & 1 != 0 {
+                    sum += sources.contact;
+                }
             }
             *total = sum;
         }
-        core::array::from_fn(|i| core::array::from_fn(|j| sums.get(i.min(j)).copied().unwrap_or(sum)))
-    }
-
-    /// The bias filter's covariance, and what absent headings add.
-    fn filtered_covariance(&self, sources: &UncertaintyConfig, filter: &BiasFilter<Q, N>) -> [[Q; N]; N] {
-        let mut headings =
-            core::array::from_fn(|i| core::array::from_fn(|j| sources.bias_share * filter.heading_covariance(i, j)));
-        for (i, (row, config)) in headings.iter_mut().zip(self.config.segments).enumerate() {
-            let row: &mut [Q; N] = row;
-            if let Some(diagonal) = row.get_mut(i) {
-                *diagonal += filter.absence_variance(&config.bend_error, i);
-            }
-        }
-        headings
+        sums
     }
 
     /// The arm's shape by `method` at one of this estimator's estimates: bend angles, and the chain of the segments.
@@ -331,14 +349,5 @@ impl<'t, S: FusedOps, const N: usize, const W: usize> Estimator<'t, S, N, W> {
             let _ = shape.push(segment); // There is room: `start` has checked.
         }
         shape
-    }
-}
-
-/// Variance of θ_i = Θ_i − Θ_{i−1}.
-fn theta_variance<const N: usize>(headings: &[[Q; N]; N], i: usize) -> Q {
-    let at = |i: usize, j: usize| headings.get(i).and_then(|row| row.get(j)).copied().unwrap_or(Q::from_f64(0.0));
-    match i.checked_sub(1) {
-        Some(below) => (at(i, i) - at(i, below)) + (at(below, below) - at(i, below)),
-        None => at(i, i),
     }
 }

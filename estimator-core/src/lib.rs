@@ -55,6 +55,7 @@ mod numeric;
 mod segment;
 mod sensing;
 mod types;
+mod uncertainty;
 
 pub use config::{
     AnchorConfig, ArmConfig, BendErrorConfig, BendMap, BendSensorConfig, BiasFilterConfig, ChangeLimit, ConfigError,
@@ -64,6 +65,7 @@ pub use config::{
 pub use drift::bias_state::{BiasState, Innovation, Row};
 pub use drift::decimator::{Decimated, Decimator};
 pub use drift::moving_average::MovingAverageAnchor;
+pub use drift::share::Share;
 pub use drift::{CorrectedArm, DriftCorrection, MeasuredAngles, SensedArm};
 pub use estimator::Estimator;
 pub use fusion::kalman::{COVARIANCE_LIMIT, H_LIMIT, KalmanFilter, KalmanGains};

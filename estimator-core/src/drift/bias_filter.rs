@@ -16,6 +16,7 @@ use crate::drift::bias_filter::tare::TareStatistics;
 use crate::drift::bias_state::BiasState;
 use crate::drift::heading_gate::HeadingGate;
 use crate::drift::rest::RestDetector;
+use crate::drift::share::Share;
 use crate::drift::{CorrectedArm, DriftCorrection, MeasuredAngles, SensedArm};
 use crate::numeric::fused::FusedOps;
 use crate::numeric::phase::Turns;
@@ -59,8 +60,9 @@ pub struct BiasFilter<F, const N: usize> {
     is_started: bool,
     is_tare_bad: bool,
     last_us: Option<u64>,
-    /// The segment whose turn it is.
+    /// The segment whose turn it is, and the one whose update is next.
     turn: usize,
+    next_update: usize,
 }
 
 /// Changes of one heading and bend angle over a window of rest.
@@ -179,6 +181,7 @@ impl<F: Scalar, const N: usize> BiasFilter<F, N> {
             is_tare_bad: false,
             last_us: None,
             turn: 0,
+            next_update: 0,
         }
     }
 
@@ -191,12 +194,13 @@ impl<F: Scalar, const N: usize> BiasFilter<F, N> {
             *track = SegmentTrack::new(zero);
         }
         self.rest = RestDetector::new(zero);
-        (self.is_started, self.is_tare_bad, self.last_us, self.turn) = (false, false, None, 0);
+        (self.is_started, self.is_tare_bad, self.last_us) = (false, false, None);
+        (self.turn, self.next_update) = (0, 0);
     }
 
-    /// Covariance of two headings, [`VARIANCE_SCALE`](crate::VARIANCE_SCALE) times rad².
-    pub fn heading_covariance(&self, i: usize, j: usize) -> F {
-        self.state.bias_covariance(i, j)
+    /// Covariance of heading `i` with all headings, [`VARIANCE_SCALE`](crate::VARIANCE_SCALE) times rad².
+    pub fn heading_covariance(&self, i: usize) -> [F; N] {
+        self.state.bias_covariance(i)
     }
 
     /// Variance of heading `i` in addition to its bias: that of the bend sensors for an absent heading, else zero.
@@ -247,6 +251,18 @@ impl<F: Scalar, const N: usize> BiasFilter<F, N> {
     }
 }
 
+impl<F: FusedOps, const N: usize> BiasFilter<F, N> {
+    /// Whether the covariance is not up to date yet.
+    pub fn is_updating(&self) -> bool {
+        self.state.is_updating()
+    }
+
+    /// Brings the next block row of the covariance up to date.
+    pub fn reduce_covariance(&mut self) {
+        self.state.reduce_row();
+    }
+}
+
 impl<S: Scalar, F: FusedOps, const N: usize> DriftCorrection<S, N> for BiasFilter<F, N> {
     fn correct(&mut self, config: &ArmConfig<S>, sensed: &SensedArm<S, N>) -> CorrectedArm<N> {
         let Some(filter) = &config.bias_filter else { return CorrectedArm::UNKNOWN };
@@ -265,9 +281,13 @@ impl<S: Scalar, F: FusedOps, const N: usize> DriftCorrection<S, N> for BiasFilte
         self.track_headings(config, sensed);
         self.fill_absent_headings(config.segments.len(), dt);
         let corrected = self.angles(config.segments);
-        for _ in 0..turns(config) {
-            if !self.take_turn(config.segments, filter, sensed, &angles) {
-                break;
+        if sensed.share == Share::Update {
+            self.take_update(config.segments, filter, sensed);
+        } else {
+            for _ in 0..turns(config) {
+                if !self.take_turn(config.segments, filter, sensed, &angles) {
+                    break;
+                }
             }
         }
         self.follow_rest(sensed.time_us);

@@ -249,9 +249,8 @@ impl<S: Scalar, const N: usize> BiasState<S, N> {
         self.covariance.get(i).map_or([[S::zero(); 3]; 3], block)
     }
 
-    /// P of two biases.
-    pub fn bias_covariance(&self, i: usize, j: usize) -> S {
-        let covariance = || self.covariance.get(i)?.first()?.get(j)?.first().copied();
-        covariance().unwrap_or_else(S::zero)
+    /// P of bias `i` with all biases.
+    pub fn bias_covariance(&self, i: usize) -> [S; N] {
+        self.covariance.get(i).map_or([S::zero(); N], |[row, ..]| row.map(|[bias, ..]| bias))
     }
 }

@@ -7,9 +7,11 @@ pub mod decimator;
 pub mod heading_gate;
 pub mod moving_average;
 pub mod rest;
+pub mod share;
 
 use crate::config::ArmConfig;
 use crate::drift::decimator::Decimated;
+use crate::drift::share::Share;
 use crate::numeric::phase::Turns;
 use crate::sensing::bend_sensors::BendAngles;
 use crate::sensing::heading::SegmentHeading;
@@ -21,6 +23,8 @@ pub struct SensedArm<S, const N: usize> {
     pub time_us: u64,
     /// Position of the sample between two values of the anchor.
     pub decimated: Decimated,
+    /// Share of the work on covariances that the sample does.
+    pub share: Share,
     /// Bend angles.
     pub bend: [BendAngles<S>; N],
     /// Headings of the segments' ends.

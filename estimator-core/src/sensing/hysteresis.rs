@@ -80,8 +80,10 @@ impl<S: Scalar> Memory<S> {
     /// The compensated angle of a reading at `time_us`.
     #[inline(never)]
     pub fn compensate(&mut self, config: &MemoryConfig<S>, theta: S, time_us: u64) -> S {
-        let start = MemoryState { lags: [theta; 2], plays: [theta; 2], read_at_us: time_us };
-        let state = self.state.get_or_insert(start);
+        let Some(state) = &mut self.state else {
+            self.state = Some(MemoryState { lags: [theta; 2], plays: [theta; 2], read_at_us: time_us });
+            return theta;
+        };
         let dt = S::from_micros(time_us.saturating_sub(state.read_at_us).min(u64::from(u32::MAX)) as u32);
         state.read_at_us = time_us;
         let lags = config.lags.iter().zip(&mut state.lags).map(|(lag, output)| lag.update(output, theta, dt));

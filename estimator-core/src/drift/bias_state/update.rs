@@ -12,9 +12,9 @@ const HALF_OF_RANGE: Constant = Constant::new(15.5);
 /// Smallest variance, 0.004° or 0.004° per time unit: rounding must not bring one to zero.
 const SMALLEST: Constant = Constant::new(3e-7);
 
-/// Innovation of a scalar measurement: P⁻Hᵀ, and the variance S = H P⁻ Hᵀ without the measurement noise.
-pub struct Innovation<S, const N: usize> {
-    cross: Row<S, N>,
+/// Variance S = H P⁻ Hᵀ of a scalar measurement's innovation, without the measurement noise.
+#[derive(Debug, Clone, Copy)]
+pub struct Innovation<S> {
     /// H P⁻ Hᵀ; in fixed point no more than it holds.
     pub variance: S,
     /// An eighth of it, which fits in any case.
@@ -24,7 +24,7 @@ pub struct Innovation<S, const N: usize> {
 /// An update of P under way.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Reduction<S, const N: usize> {
-    /// K and P⁻Hᵀ.
+    /// K, and P⁻Hᵀ of the newest innovation.
     gain: Row<S, N>,
     cross: Row<S, N>,
     /// Block rows that are reduced.
@@ -43,11 +43,11 @@ fn eighth<S: Scalar>(value: S) -> S {
 }
 
 impl<S: FusedOps, const N: usize> BiasState<S, N> {
-    /// Innovation of segment `i`'s bend sensors against its IMUs, H = (β_i: 1, β_{i−1}: −1, o_i: −1). P is complete then.
-    pub fn innovation(&mut self, i: usize) -> Innovation<S, N> {
+    /// Innovation of segment `i`'s bend sensors against its IMUs, H = (β_i: 1, β_{i−1}: −1, o_i: −1), for [`Self::update`].
+    pub fn innovation(&mut self, i: usize) -> Innovation<S> {
         self.finish_update();
+        let cross = &mut self.reduction.cross;
         let below = i.checked_sub(1);
-        let mut cross = [[S::zero(); 3]; N];
         if let Some([bias, _, offset]) = self.covariance.get(i) {
             let rows = bias.as_flattened().iter().zip(offset.as_flattened());
             for (cross, (bias, offset)) in cross.as_flattened_mut().iter_mut().zip(rows) {
@@ -62,47 +62,56 @@ impl<S: FusedOps, const N: usize> BiasState<S, N> {
         let [bias, _, offset] = cross.get(i).copied().unwrap_or([S::zero(); 3]);
         let of_below = below.and_then(|below| cross.get(below)).map_or(S::zero(), |[bias, ..]| *bias);
         let eighth = eighth(bias) - eighth(offset) - eighth(of_below);
-        Innovation { cross, variance: bias - offset - of_below, eighth }
+        Innovation { variance: bias - offset - of_below, eighth }
     }
 
-    /// Innovation of heading `j`'s rate while the arm rests, H = (v_j: 1). P is complete then.
-    pub fn innovation_at_rest(&mut self, j: usize) -> Innovation<S, N> {
+    /// Innovation of heading `j`'s rate while the arm rests, H = (v_j: 1), for [`Self::update`].
+    pub fn innovation_at_rest(&mut self, j: usize) -> Innovation<S> {
         self.finish_update();
-        let cross = self.covariance.get(j).map_or([[S::zero(); 3]; N], |[_, rate, _]| *rate);
-        let variance = cross.get(j).map_or(S::zero(), |[_, rate, _]| *rate);
-        Innovation { cross, variance, eighth: eighth(variance) }
+        if let Some([_, rate, _]) = self.covariance.get(j) {
+            self.reduction.cross = *rate;
+        }
+        let variance = self.reduction.cross.get(j).map_or(S::zero(), |[_, rate, _]| *rate);
+        Innovation { variance, eighth: eighth(variance) }
     }
 
-    /// K = P⁻Hᵀ/S, x = x⁻ + K ν, P = P⁻ − K (P⁻Hᵀ)ᵀ, for the innovation ν and measurement noise R.
-    pub fn update(&mut self, innovation: &Innovation<S, N>, nu: S, r: S) {
+    /// K = P⁻Hᵀ/S, x = x⁻ + K ν, P = P⁻ − K (P⁻Hᵀ)ᵀ, for the newest innovation, its ν and measurement noise R.
+    pub fn update(&mut self, innovation: Innovation<S>, nu: S, r: S) {
         self.begin_update(innovation, nu, r);
         self.finish_update();
     }
 
     /// [`Self::update`] but for P, which [`Self::reduce_row`] brings up to date.
-    pub fn begin_update(&mut self, innovation: &Innovation<S, N>, nu: S, r: S) {
-        let Innovation { cross, variance, eighth: variance_eighth } = innovation;
-        let mut gain = *cross;
+    pub fn begin_update(&mut self, innovation: Innovation<S>, nu: S, r: S) {
+        let Reduction { gain, cross, reduced } = &mut self.reduction;
+        *gain = *cross;
+        *reduced = 0;
         let half = S::constant(HALF_OF_RANGE);
-        if *variance < half && r < half {
-            S::divide_all(gain.as_flattened_mut(), *variance + r);
+        let s = if innovation.variance < half && r < half {
+            innovation.variance + r
         } else {
-            gain = gain.map(|gain| gain.map(eighth));
-            S::divide_all(gain.as_flattened_mut(), *variance_eighth + eighth(r));
-        }
+            gain.as_flattened_mut().iter_mut().for_each(|gain| *gain = eighth(*gain));
+            innovation.eighth + eighth(r)
+        };
+        S::divide_all(gain.as_flattened_mut(), s);
         let states = self.bias.iter_mut().zip(&mut self.rate).zip(&mut self.offset);
-        for (((bias, rate), offset), [of_bias, of_rate, of_offset]) in states.zip(gain) {
-            *bias = *bias + (of_bias * nu).to_turns();
-            *rate += of_rate * nu;
-            *offset += of_offset * nu;
+        for (((bias, rate), offset), [of_bias, of_rate, of_offset]) in states.zip(&*gain) {
+            *bias = *bias + (*of_bias * nu).to_turns();
+            *rate += *of_rate * nu;
+            *offset += *of_offset * nu;
         }
-        self.reduction = Reduction { gain, cross: *cross, reduced: 0 };
     }
 
     /// An update that changes nothing, and takes as many block rows of P.
     pub fn begin_no_update(&mut self) {
         self.finish_update();
-        self.reduction = Reduction { reduced: 0, ..Reduction::complete(S::zero()) };
+        self.reduction.gain.as_flattened_mut().fill(S::zero());
+        self.reduction.reduced = 0;
+    }
+
+    /// Whether P is not up to date.
+    pub fn is_updating(&self) -> bool {
+        self.reduction.reduced < N
     }
 
     /// Brings the next block row of P up to date.
@@ -130,7 +139,7 @@ impl<S: FusedOps, const N: usize> BiasState<S, N> {
 
     /// Brings all of P up to date.
     pub fn finish_update(&mut self) {
-        while self.reduction.reduced < N {
+        while self.is_updating() {
             self.reduce_row();
         }
     }
