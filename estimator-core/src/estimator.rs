@@ -14,7 +14,6 @@ use crate::numeric::fused::FusedOps;
 use crate::numeric::phase::Angle;
 use crate::numeric::q::Q;
 use crate::segment::SegmentState;
-use crate::sensing::bend_sensors::BendAngles;
 use crate::sensing::heading::SegmentHeading;
 use crate::types::{
     Condition, Conditions, Contacts, Estimate, Method, Sample, SegmentShape, Shape, Uncertainties, Uncertainty,
@@ -36,6 +35,8 @@ pub struct Estimator<'t, S, const N: usize, const W: usize> {
     contact: ContactMonitor<N>,
     /// Whether θ_c and θ_bend of each segment were known in the newest sample.
     measured: [Measured; N],
+    sensed: SensedArm<S, N>,
+    corrected: CorrectedArm<N>,
     fused: Shape<S, N>,
     uncertainty: ShapeUncertainty<N>,
 }
@@ -55,12 +56,6 @@ struct Drift<const N: usize, const W: usize> {
 struct Measured {
     imu: bool,
     bend: bool,
-}
-
-/// Angles of one sample, sensed and corrected.
-struct Processed<S, const N: usize> {
-    sensed: SensedArm<S, N>,
-    corrected: CorrectedArm<N>,
 }
 
 impl<const N: usize, const W: usize> Drift<N, W> {
@@ -99,7 +94,8 @@ impl<const N: usize, const W: usize> Drift<N, W> {
         if let Share::Row(_) = share {
             self.bias_filter.reduce_covariance();
         }
-        if !self.has_bias_filter || share != Share::Update || self.bias_filter.is_updating() {
+        let waits = share == Share::Update && self.bias_filter.is_started() && !self.bias_filter.is_updating();
+        if !waits {
             self.shares.advance();
         }
     }
@@ -128,6 +124,8 @@ impl<'t, S: FusedOps, const N: usize, const W: usize> Estimator<'t, S, N, W> {
             drift: Drift::new(),
             contact: ContactMonitor::new(),
             measured: [Measured { imu: false, bend: false }; N],
+            sensed: SensedArm::UNKNOWN,
+            corrected: CorrectedArm::UNKNOWN,
             fused: Vec::new(),
             uncertainty: ShapeUncertainty::new(),
         }
@@ -144,6 +142,7 @@ impl<'t, S: FusedOps, const N: usize, const W: usize> Estimator<'t, S, N, W> {
         self.decimator = Decimator::new();
         self.contact.start();
         self.measured = [Measured::default(); N];
+        self.sensed = SensedArm::UNKNOWN;
         self.uncertainty = ShapeUncertainty::new();
         let window = config.anchor.window;
         if window == 0 || usize::from(window) > W {
@@ -173,7 +172,8 @@ impl<'t, S: FusedOps, const N: usize, const W: usize> Estimator<'t, S, N, W> {
 
     /// Takes one sample; gives the estimate by every method.
     pub fn update_full(&mut self, sample: &Sample<N>) -> Estimate<S, N> {
-        let Processed { sensed, corrected } = self.process(sample);
+        self.process(sample);
+        let Self { sensed, corrected, .. } = self;
         let mut segments = Vec::new();
         let mut below = &SegmentHeading::BASE;
         let angles = sensed.bend.iter().zip(&sensed.headings).zip(corrected.imu);
@@ -187,40 +187,36 @@ impl<'t, S: FusedOps, const N: usize, const W: usize> Estimator<'t, S, N, W> {
     }
 
     /// The stages, in the order of the data.
-    fn process(&mut self, sample: &Sample<N>) -> Processed<S, N> {
-        let sensed = self.sense(sample);
-        let mut corrected = self.drift.correct(self.config, &sensed);
+    fn process(&mut self, sample: &Sample<N>) {
+        self.sense(sample);
+        self.corrected = self.drift.correct(self.config, &self.sensed);
         if !self.has_bend_sensors {
-            corrected = CorrectedArm::UNKNOWN;
+            self.corrected = CorrectedArm::UNKNOWN;
         }
-        self.fuse(&sensed, &corrected);
-        self.detect_contact(&sensed, &corrected);
-        self.follow_uncertainty(sensed.share);
-        self.drift.finish(sensed.share);
-        Processed { sensed, corrected }
+        self.fuse();
+        self.detect_contact();
+        self.follow_uncertainty();
+        self.drift.finish(self.sensed.share);
     }
 
     /// Sensing: counts to bend angles, IMU readings to headings.
-    fn sense(&mut self, sample: &Sample<N>) -> SensedArm<S, N> {
-        let unread = BendAngles { sensors: [None; 2], mean: None, is_extrapolated: false };
-        let mut sensed = SensedArm {
-            time_us: sample.time_us,
-            decimated: self.decimator.tick(&self.config.anchor),
-            share: self.drift.shares.share(&self.config.anchor),
-            bend: [unread; N],
-            headings: [SegmentHeading::BASE; N],
-        };
+    fn sense(&mut self, sample: &Sample<N>) {
+        let sensed = &mut self.sensed;
+        sensed.time_us = sample.time_us;
+        sensed.decimated = self.decimator.tick(&self.config.anchor);
+        sensed.share = self.drift.shares.share(&self.config.anchor);
         let readings = sample.bend.iter().zip(&sample.imu);
         let angles = sensed.bend.iter_mut().zip(&mut sensed.headings);
-        let segments = self.segments.iter_mut().zip(self.config.segments);
-        for (((segment, config), (counts, imu)), (bend, heading)) in segments.zip(readings).zip(angles) {
-            (*bend, *heading) = segment.sense(config, *counts, imu.as_ref(), sample.time_us);
+        let segments = self.segments.iter_mut().zip(self.config.segments).enumerate();
+        for (((i, (segment, config)), (counts, imu)), (bend, heading)) in segments.zip(readings).zip(angles) {
+            *heading = segment.sense_heading(imu.as_ref());
+            segment.sense_bend(config, *counts, sample.time_us, sensed.share.has_creep_of(i), bend);
         }
-        sensed
     }
 
     /// Fusion, and forward kinematics of what it gives.
-    fn fuse(&mut self, sensed: &SensedArm<S, N>, corrected: &CorrectedArm<N>) {
+    fn fuse(&mut self) {
+        let Self { sensed, corrected, .. } = self;
         let filters = !self.drift.has_bias_filter;
         let angles = sensed.bend.iter().zip(corrected.imu.iter().zip(corrected.fused)).zip(&mut self.measured);
         for (segment, ((bend, (theta_c, fused)), measured)) in self.segments.iter_mut().zip(angles) {
@@ -237,9 +233,9 @@ impl<'t, S: FusedOps, const N: usize, const W: usize> Estimator<'t, S, N, W> {
         }
     }
 
-    fn detect_contact(&mut self, sensed: &SensedArm<S, N>, corrected: &CorrectedArm<N>) {
+    fn detect_contact(&mut self) {
         let Some(thresholds) = &self.config.contact else { return };
-        let Self { contact, drift, .. } = self;
+        let Self { contact, drift, sensed, corrected, .. } = self;
         let condition = |i| drift.bias_filter().map_or(Condition::default(), |filter| filter.condition(i));
         contact.update(self.config, thresholds, self.decimator, sensed.decimated, &corrected.measured, condition);
     }
@@ -288,12 +284,12 @@ impl<'t, S: FusedOps, const N: usize, const W: usize> Estimator<'t, S, N, W> {
     }
 
     /// This sample's share of the uncertainties.
-    fn follow_uncertainty(&mut self, share: Share) {
+    fn follow_uncertainty(&mut self) {
         let Some(sources) = &self.config.uncertainty else { return };
-        match share {
+        match self.sensed.share {
             Share::Whole => (0..self.segments.len()).for_each(|i| self.propagate(sources, i)),
             Share::Row(i) => self.propagate(sources, i),
-            Share::Update => {}
+            Share::Prediction | Share::Update => {}
         }
     }
 

@@ -282,15 +282,20 @@ impl<S: Scalar, F: FusedOps, const N: usize> DriftCorrection<S, N> for BiasFilte
         self.fill_absent_headings(config.segments.len(), dt);
         let corrected = self.angles(config.segments);
         if sensed.share == Share::Update {
-            self.take_update(config.segments, filter, sensed);
+            self.take_update(config.segments, sensed);
         } else {
+            if sensed.share == Share::Prediction {
+                self.take_prediction(filter, sensed.time_us);
+            }
             for _ in 0..turns(config) {
                 if !self.take_turn(config.segments, filter, sensed, &angles) {
                     break;
                 }
             }
         }
-        self.follow_rest(sensed.time_us);
+        if sensed.share == Share::Whole {
+            self.follow_rest(sensed.time_us);
+        }
         for track in &mut self.segments {
             track.last_bend = track.bend.map(|bend| bend.theta).or(track.last_bend);
         }

@@ -31,6 +31,17 @@ pub struct SensedArm<S, const N: usize> {
     pub headings: [SegmentHeading; N],
 }
 
+impl<S, const N: usize> SensedArm<S, N> {
+    /// Before the first sample.
+    pub const UNKNOWN: Self = Self {
+        time_us: 0,
+        decimated: Decimated { oldest: 0, complete: 0 },
+        share: Share::Whole,
+        bend: [const { BendAngles::UNKNOWN }; N],
+        headings: [SegmentHeading::BASE; N],
+    };
+}
+
 /// Corrected bend angles of one sample, from the base to the tip.
 #[derive(Debug, Clone, Copy)]
 pub struct CorrectedArm<const N: usize> {

@@ -1,7 +1,7 @@
 //! Shares of the work on covariances, which is quadratic in the number of segments.
 //!
-//! Up to 50 Hz a sample does all of it. Above, a sample does one share, which is linear: an update of the bias filter by one
-//! segment, or one block row of what follows from it. So every sample costs the same.
+//! Up to 50 Hz a sample does all of it. Above, a sample does one share, which is linear: the prediction of one segment's states
+//! in the bias filter, the update by that segment, or one block row of what the update takes off the covariance.
 
 use crate::config::AnchorConfig;
 
@@ -13,35 +13,45 @@ const WHOLE_UP_TO_MILLIHERTZ: u32 = 50_000;
 pub enum Share {
     /// All of it.
     Whole,
-    /// An update by one segment.
+    /// The prediction of the segment whose update is next.
+    Prediction,
+    /// The update by that segment.
     Update,
-    /// One block row of the covariance, and one segment of the shape's.
+    /// One block row of the covariance, one segment of the shape's uncertainty, and creep of that segment's sensors.
     Row(usize),
 }
 
-/// Counter of the shares: an update, and then all `N` rows.
+/// Counter of the shares: a prediction, an update, and then all `N` rows.
 #[derive(Debug, Clone, Copy)]
 pub struct ShareCounter<const N: usize> {
-    row: Option<usize>,
+    share: Share,
 }
 
 impl<const N: usize> ShareCounter<N> {
-    /// An update is next.
+    /// A prediction is next.
     pub const fn new() -> Self {
-        Self { row: None }
+        Self { share: Share::Prediction }
     }
 
     /// Share of this sample.
     pub fn share(&self, rule: &AnchorConfig) -> Share {
-        if rule.sample_rate_millihertz <= WHOLE_UP_TO_MILLIHERTZ {
-            return Share::Whole;
-        }
-        self.row.map_or(Share::Update, Share::Row)
+        if rule.sample_rate_millihertz <= WHOLE_UP_TO_MILLIHERTZ { Share::Whole } else { self.share }
     }
 
     /// Goes on to the next share.
     pub fn advance(&mut self) {
-        let next = self.row.map_or(0, |row| row + 1);
-        self.row = (next < N).then_some(next);
+        self.share = match self.share {
+            Share::Row(row) if row + 1 < N => Share::Row(row + 1),
+            Share::Row(_) | Share::Whole => Share::Prediction,
+            Share::Prediction => Share::Update,
+            Share::Update => Share::Row(0),
+        };
+    }
+}
+
+impl Share {
+    /// Whether the creep of segment `i`'s sensors is followed.
+    pub fn has_creep_of(self, i: usize) -> bool {
+        self == Self::Whole || self == Self::Row(i)
     }
 }

@@ -24,27 +24,34 @@ pub struct BendAngles<S> {
     pub is_extrapolated: bool,
 }
 
+impl<S> BendAngles<S> {
+    /// No sensor was read.
+    pub const UNKNOWN: Self =
+        Self { sensors: [const { None }; SENSORS_PER_SEGMENT], mean: None, is_extrapolated: false };
+}
+
 impl<S: FusedOps> BendSensors<S> {
     /// Sensors that were not read yet.
     pub const fn new() -> Self {
         Self { memory: [Memory::new(); SENSORS_PER_SEGMENT], hysteresis: PrandtlIshlinskii::new() }
     }
 
-    /// Bend angles at these counts, read at `time_us`.
+    /// Bend angles at these counts, read at `time_us`; the memory of creep moves where it `is_followed`.
     pub fn read(
         &mut self,
         config: &SegmentConfig<S>,
         counts: [Option<u16>; SENSORS_PER_SEGMENT],
         time_us: u64,
+        is_followed: bool,
     ) -> BendAngles<S> {
-        let mut angles = BendAngles { sensors: [None; SENSORS_PER_SEGMENT], mean: None, is_extrapolated: false };
+        let mut angles = BendAngles::UNKNOWN;
         let sensors = config.bend.iter().zip(counts).zip(&mut self.memory).zip(&mut angles.sensors);
         for (((sensor, counts), memory), angle) in sensors {
             let (Some(sensor), Some(counts)) = (sensor, counts) else { continue };
             let mapped = sensor.map.angle(counts);
             *angle = match (mapped, &sensor.memory) {
                 (Some(theta), Some(config)) => {
-                    let compensated = memory.compensate(config, theta.to_q(), time_us);
+                    let compensated = memory.compensate(config, theta.to_q(), time_us, is_followed);
                     Some(theta + S::from_q(compensated - theta.to_q()))
                 }
                 (mapped, _) => mapped,

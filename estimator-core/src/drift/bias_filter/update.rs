@@ -63,27 +63,29 @@ impl<F: FusedOps, const N: usize> BiasFilter<F, N> {
         self.check_bend(i, &segment.bend_error, *angles, are_headings_read, time_us);
         self.grow_offset(i, &segment.bend_error);
         if sensed.share == Share::Whole {
-            self.update_segment(i, &segment.bend_error, filter, sensed, are_headings_read);
+            self.predict(i, filter, time_us);
+            self.update_segment(i, &segment.bend_error, sensed, are_headings_read);
             self.state.finish_update();
         }
         true
     }
 
+    /// The prediction of the states of the segment whose update is next.
+    pub(super) fn take_prediction(&mut self, filter: &BiasFilterConfig, time_us: u64) {
+        self.predict(self.next_update, filter, time_us);
+    }
+
     /// The update by the next segment; what it takes off the covariance follows in the next samples. Where it must wait, so
-    /// does the next share of the work.
-    pub(super) fn take_update<S: Scalar>(
-        &mut self,
-        segments: &[SegmentConfig<S>],
-        filter: &BiasFilterConfig,
-        sensed: &SensedArm<S, N>,
-    ) {
+    /// does the next share of the work. A sample that has nothing to update looks after rest.
+    pub(super) fn take_update<S: Scalar>(&mut self, segments: &[SegmentConfig<S>], sensed: &SensedArm<S, N>) {
         let i = self.next_update;
         let Some(segment) = segments.get(i) else { return };
         let Some(are_headings_read) = self.are_headings_read(i, sensed.time_us) else { return };
         self.next_update = following(i, segments);
-        self.update_segment(i, &segment.bend_error, filter, sensed, are_headings_read);
+        self.update_segment(i, &segment.bend_error, sensed, are_headings_read);
         if !self.state.is_updating() {
             self.state.begin_no_update();
+            self.follow_rest(sensed.time_us);
         }
     }
 
@@ -99,16 +101,14 @@ impl<F: FusedOps, const N: usize> BiasFilter<F, N> {
         (are_read || !are_recent()).then_some(are_read)
     }
 
-    /// Predicts the states of segment `i` and updates all states by what is known of it.
+    /// Updates all states by what is known of segment `i`.
     fn update_segment<S: Scalar>(
         &mut self,
         i: usize,
         error: &BendErrorConfig,
-        filter: &BiasFilterConfig,
         sensed: &SensedArm<S, N>,
         are_headings_read: bool,
     ) {
-        self.predict(i, filter, sensed.time_us);
         let biases = self.state.bias;
         self.use_tare(i, error);
         self.learn_rate(i);
