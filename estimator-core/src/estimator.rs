@@ -11,7 +11,7 @@ use crate::drift::share::{Share, ShareCounter};
 use crate::drift::{CorrectedArm, DriftCorrection, SensedArm};
 use crate::kinematics::forward::forward_kinematics;
 use crate::numeric::fused::FusedOps;
-use crate::numeric::phase::Angle;
+use crate::numeric::phase::{Angle, Turns};
 use crate::numeric::q::Q;
 use crate::segment::SegmentState;
 use crate::sensing::heading::SegmentHeading;
@@ -33,10 +33,10 @@ pub struct Estimator<'t, S, const N: usize, const W: usize> {
     segments: Vec<SegmentState<S>, N>,
     drift: Drift<N, W>,
     contact: ContactMonitor<N>,
-    /// Whether θ_c and θ_bend of each segment were known in the newest sample.
-    measured: [Measured; N],
+    /// Angles of the newest sample: a local would be copied.
     sensed: SensedArm<S, N>,
-    corrected: CorrectedArm<N>,
+    /// θ_c of each segment.
+    theta_c: [Option<Turns>; N],
     fused: Shape<S, N>,
     uncertainty: ShapeUncertainty<N>,
 }
@@ -49,13 +49,6 @@ struct Drift<const N: usize, const W: usize> {
     bias_filter: BiasFilter<Q, N>,
     has_bias_filter: bool,
     shares: ShareCounter<N>,
-}
-
-/// Which of a segment's two angles a sample has.
-#[derive(Debug, Clone, Copy, Default)]
-struct Measured {
-    imu: bool,
-    bend: bool,
 }
 
 impl<const N: usize, const W: usize> Drift<N, W> {
@@ -123,9 +116,8 @@ impl<'t, S: FusedOps, const N: usize, const W: usize> Estimator<'t, S, N, W> {
             segments: Vec::new(),
             drift: Drift::new(),
             contact: ContactMonitor::new(),
-            measured: [Measured { imu: false, bend: false }; N],
             sensed: SensedArm::UNKNOWN,
-            corrected: CorrectedArm::UNKNOWN,
+            theta_c: [None; N],
             fused: Vec::new(),
             uncertainty: ShapeUncertainty::new(),
         }
@@ -141,7 +133,7 @@ impl<'t, S: FusedOps, const N: usize, const W: usize> Estimator<'t, S, N, W> {
         self.fused.clear();
         self.decimator = Decimator::new();
         self.contact.start();
-        self.measured = [Measured::default(); N];
+        self.theta_c = [None; N];
         self.sensed = SensedArm::UNKNOWN;
         self.uncertainty = ShapeUncertainty::new();
         let window = config.anchor.window;
@@ -173,10 +165,10 @@ impl<'t, S: FusedOps, const N: usize, const W: usize> Estimator<'t, S, N, W> {
     /// Takes one sample; gives the estimate by every method.
     pub fn update_full(&mut self, sample: &Sample<N>) -> Estimate<S, N> {
         self.process(sample);
-        let Self { sensed, corrected, .. } = self;
+        let sensed = &self.sensed;
         let mut segments = Vec::new();
         let mut below = &SegmentHeading::BASE;
-        let angles = sensed.bend.iter().zip(&sensed.headings).zip(corrected.imu);
+        let angles = sensed.bend.iter().zip(&sensed.headings).zip(self.theta_c);
         for (segment, ((bend, heading), imu_c)) in self.segments.iter().zip(angles) {
             let [difference, zero] = heading.relative_to(below);
             below = heading;
@@ -189,12 +181,12 @@ impl<'t, S: FusedOps, const N: usize, const W: usize> Estimator<'t, S, N, W> {
     /// The stages, in the order of the data.
     fn process(&mut self, sample: &Sample<N>) {
         self.sense(sample);
-        self.corrected = self.drift.correct(self.config, &self.sensed);
+        let mut corrected = self.drift.correct(self.config, &self.sensed);
         if !self.has_bend_sensors {
-            self.corrected = CorrectedArm::UNKNOWN;
+            corrected = CorrectedArm::UNKNOWN;
         }
-        self.fuse();
-        self.detect_contact();
+        self.fuse(&corrected);
+        self.detect_contact(&corrected);
         self.follow_uncertainty();
         self.drift.finish(self.sensed.share);
     }
@@ -205,27 +197,27 @@ impl<'t, S: FusedOps, const N: usize, const W: usize> Estimator<'t, S, N, W> {
         sensed.time_us = sample.time_us;
         sensed.decimated = self.decimator.tick(&self.config.anchor);
         sensed.share = self.drift.shares.share(&self.config.anchor);
+        let rows = sensed.share.rows(N);
         let readings = sample.bend.iter().zip(&sample.imu);
         let angles = sensed.bend.iter_mut().zip(&mut sensed.headings);
         let segments = self.segments.iter_mut().zip(self.config.segments).enumerate();
         for (((i, (segment, config)), (counts, imu)), (bend, heading)) in segments.zip(readings).zip(angles) {
-            *heading = segment.sense_heading(imu.as_ref());
-            segment.sense_bend(config, *counts, sample.time_us, sensed.share.has_creep_of(i), bend);
+            segment.sense_heading(heading, imu.as_ref());
+            segment.sense_bend(bend, config, *counts, sample.time_us, rows.contains(&i));
         }
     }
 
     /// Fusion, and forward kinematics of what it gives.
-    fn fuse(&mut self) {
-        let Self { sensed, corrected, .. } = self;
+    fn fuse(&mut self, corrected: &CorrectedArm<N>) {
         let filters = !self.drift.has_bias_filter;
-        let angles = sensed.bend.iter().zip(corrected.imu.iter().zip(corrected.fused)).zip(&mut self.measured);
-        for (segment, ((bend, (theta_c, fused)), measured)) in self.segments.iter_mut().zip(angles) {
+        let angles = self.sensed.bend.iter().zip(&corrected.imu).zip(&corrected.fused).zip(&mut self.theta_c);
+        for (segment, (((bend, corrected), fused), theta_c)) in self.segments.iter_mut().zip(angles) {
             if filters {
-                segment.filter(*theta_c, bend.mean);
+                segment.filter(*corrected, bend.mean);
             } else {
-                segment.bend_to(fused);
+                segment.bend_to(*fused);
             }
-            *measured = Measured { imu: theta_c.is_some(), bend: bend.mean.is_some() };
+            *theta_c = *corrected;
         }
         let links = self.segments.iter().map(SegmentState::fused);
         for (shape, segment) in self.fused.iter_mut().zip(forward_kinematics(links)) {
@@ -233,9 +225,9 @@ impl<'t, S: FusedOps, const N: usize, const W: usize> Estimator<'t, S, N, W> {
         }
     }
 
-    fn detect_contact(&mut self) {
+    fn detect_contact(&mut self, corrected: &CorrectedArm<N>) {
         let Some(thresholds) = &self.config.contact else { return };
-        let Self { contact, drift, sensed, corrected, .. } = self;
+        let Self { contact, drift, sensed, .. } = self;
         let condition = |i| drift.bias_filter().map_or(Condition::default(), |filter| filter.condition(i));
         contact.update(self.config, thresholds, self.decimator, sensed.decimated, &corrected.measured, condition);
     }
@@ -286,10 +278,8 @@ impl<'t, S: FusedOps, const N: usize, const W: usize> Estimator<'t, S, N, W> {
     /// This sample's share of the uncertainties.
     fn follow_uncertainty(&mut self) {
         let Some(sources) = &self.config.uncertainty else { return };
-        match self.sensed.share {
-            Share::Whole => (0..self.segments.len()).for_each(|i| self.propagate(sources, i)),
-            Share::Row(i) => self.propagate(sources, i),
-            Share::Prediction | Share::Update => {}
+        for i in self.sensed.share.rows(self.segments.len()) {
+            self.propagate(sources, i);
         }
     }
 
@@ -310,7 +300,8 @@ impl<'t, S: FusedOps, const N: usize, const W: usize> Estimator<'t, S, N, W> {
     }
 
     fn is_measured(&self, i: usize) -> bool {
-        let measured = self.measured.get(i).is_some_and(|measured| measured.imu || measured.bend);
+        let is_bend_read = || self.sensed.bend.get(i).is_some_and(|bend| bend.mean.is_some());
+        let measured = self.theta_c.get(i).is_some_and(Option::is_some) || is_bend_read();
         self.drift.bias_filter().map_or(measured, BiasFilter::is_started)
     }
 
@@ -319,9 +310,9 @@ impl<'t, S: FusedOps, const N: usize, const W: usize> Estimator<'t, S, N, W> {
         let mask = self.contact_mask();
         let mut sums = [Q::from_f64(0.0); N];
         let mut sum = Q::from_f64(0.0);
-        for (j, (total, measured)) in sums.iter_mut().zip(&self.measured).enumerate() {
+        for (j, (total, theta_c)) in sums.iter_mut().zip(&self.theta_c).enumerate() {
             if j <= i {
-                sum += if measured.imu { sources.theta } else { sources.bend };
+                sum += if theta_c.is_some() { sources.theta } else { sources.bend };
                 if mask >> j & 1 != 0 {
                     sum += sources.contact;
                 }

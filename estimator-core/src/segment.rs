@@ -39,22 +39,22 @@ impl<S: FusedOps> SegmentState<S> {
         }
     }
 
-    /// Heading of one sample's reading.
-    pub fn sense_heading(&mut self, imu: Option<&ImuReading>) -> SegmentHeading {
+    /// Takes the `heading` of one sample's reading.
+    pub fn sense_heading(&mut self, heading: &mut SegmentHeading, imu: Option<&ImuReading>) {
         self.heading.read(imu.and_then(ImuReading::heading));
-        *self.heading.segment_heading()
+        *heading = *self.heading.segment_heading();
     }
 
-    /// Bend angles of one sample's readings; the sensors' memory of creep moves where it `is_followed`.
+    /// Takes the bend `angles` of one sample's readings; the sensors' memory of creep moves where it `is_followed`.
     pub fn sense_bend(
         &mut self,
+        angles: &mut BendAngles<S>,
         config: &SegmentConfig<S>,
         counts: [Option<u16>; 2],
         time_us: u64,
         is_followed: bool,
-        angles: &mut BendAngles<S>,
     ) {
-        *angles = self.bend.read(config, counts, time_us, is_followed);
+        self.bend.read(angles, config, counts, time_us, is_followed);
     }
 
     /// KF_orient and KF_coord with the angles that there are; of θ_c without its whole turns, which say nothing of the bend

@@ -3,6 +3,8 @@
 //! Up to 50 Hz a sample does all of it. Above, a sample does one share, which is linear: the prediction of one segment's states
 //! in the bias filter, the update by that segment, or one block row of what the update takes off the covariance.
 
+use core::ops::Range;
+
 use crate::config::AnchorConfig;
 
 /// Highest sample rate at which a sample does all work, mHz.
@@ -50,8 +52,12 @@ impl<const N: usize> ShareCounter<N> {
 }
 
 impl Share {
-    /// Whether the creep of segment `i`'s sensors is followed.
-    pub fn has_creep_of(self, i: usize) -> bool {
-        self == Self::Whole || self == Self::Row(i)
+    /// Block rows and segments of the share, in an arm of up to `count`.
+    pub fn rows(self, count: usize) -> Range<usize> {
+        match self {
+            Self::Whole => 0..count,
+            Self::Row(row) => row..row + 1,
+            Self::Prediction | Self::Update => 0..0,
+        }
     }
 }
