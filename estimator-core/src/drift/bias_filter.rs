@@ -285,7 +285,7 @@ impl<S: Scalar, F: FusedOps, const N: usize> DriftCorrection<S, N> for BiasFilte
             self.take_update(config.segments, sensed);
         } else {
             if sensed.share == Share::Prediction {
-                self.take_prediction(filter, sensed.time_us);
+                self.take_prediction(config.segments, filter, sensed.time_us);
             }
             for _ in 0..turns(config) {
                 if !self.take_turn(config.segments, filter, sensed, &angles) {

@@ -36,8 +36,8 @@ pub type Row<S, const N: usize> = [[S; 3]; N];
 const LARGEST: Constant = Constant::new(16.0);
 /// Largest variance of a rate, 0.23 °/s.
 const LARGEST_RATE: Constant = Constant::new(4.0);
-/// Longest prediction, time units: 384 s.
-const LONGEST: Constant = Constant::new(6.0);
+/// Longest prediction: 384 s, six time units.
+const LONGEST_US: u64 = 384_000_000;
 /// Growth of a bias's variance by its rate in one step of a prediction, 9°: the variance stays within fixed point.
 const LARGEST_GROWTH: Constant = Constant::new(1.6);
 /// A prediction over a time unit's quarter grows by less.
@@ -125,8 +125,7 @@ impl<S: Scalar, const N: usize> BiasState<S, N> {
 
     fn elapsed_until(&self, i: usize, time_us: u64) -> Option<S> {
         let elapsed_us = time_us.checked_sub(*self.predicted_at_us.get(i)?).filter(|us| *us > 0)?;
-        let (dt, longest) = (S::from_micros(elapsed_us.min(u64::from(u32::MAX)) as u32), S::constant(LONGEST));
-        Some(if dt < longest { dt } else { longest })
+        Some(S::from_micros(elapsed_us.min(LONGEST_US) as u32))
     }
 
     /// β ← β + v `dt`.

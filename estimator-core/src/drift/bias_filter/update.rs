@@ -61,8 +61,8 @@ impl<F: FusedOps, const N: usize> BiasFilter<F, N> {
         let Some(are_headings_read) = self.are_headings_read(i, time_us) else { return false };
         self.turn = following(i, segments);
         self.check_bend(i, &segment.bend_error, *angles, are_headings_read, time_us);
-        self.grow_offset(i, &segment.bend_error);
         if sensed.share == Share::Whole {
+            self.grow_offset(i, &segment.bend_error);
             self.predict(i, filter, time_us);
             self.update_segment(i, &segment.bend_error, sensed, are_headings_read);
             self.state.finish_update();
@@ -71,8 +71,16 @@ impl<F: FusedOps, const N: usize> BiasFilter<F, N> {
     }
 
     /// The prediction of the states of the segment whose update is next.
-    pub(super) fn take_prediction(&mut self, filter: &BiasFilterConfig, time_us: u64) {
-        self.predict(self.next_update, filter, time_us);
+    pub(super) fn take_prediction<S: Scalar>(
+        &mut self,
+        segments: &[SegmentConfig<S>],
+        filter: &BiasFilterConfig,
+        time_us: u64,
+    ) {
+        let i = self.next_update;
+        let Some(segment) = segments.get(i) else { return };
+        self.grow_offset(i, &segment.bend_error);
+        self.predict(i, filter, time_us);
     }
 
     /// The update by the next segment; what it takes off the covariance follows in the next samples. Where it must wait, so
