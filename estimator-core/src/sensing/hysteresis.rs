@@ -78,7 +78,7 @@ impl<S: FusedOps> Memory<S> {
 
     /// What to add to the angle of a reading at `time_us`. The lags move where they are `followed`, which may be less often
     /// than at each reading: they are slow.
-    #[inline(never)]
+    #[inline]
     pub fn correction(&mut self, config: &MemoryConfig<S>, theta: S, time_us: u64, followed: bool) -> S {
         let Some(state) = &mut self.state else {
             self.state = Some(MemoryState { lags: [theta; 2], plays: [theta; 2], followed_at_us: time_us });
