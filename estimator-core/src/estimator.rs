@@ -260,7 +260,7 @@ impl<'t, S: FusedOps, const N: usize, const W: usize> Estimator<'t, S, N, W> {
 
     /// Uncertainty of the newest fused shape; empty where the configuration has no error sources.
     ///
-    /// Above 50 Hz it is worked out a segment in a sample, and so by up to N samples older than the shape.
+    /// Above 50 Hz it is worked out a segment in a sample, and so by up to N + 2 samples older than the shape.
     #[must_use]
     pub fn uncertainties(&self) -> Uncertainties<N> {
         let mut uncertainties = Vec::new();
