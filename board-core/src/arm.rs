@@ -64,8 +64,7 @@ impl Arm {
         has_changed.then(|| Event::Contact(tick, core::array::from_fn(|i| touched >> i & 1 != 0)))
     }
 
-    /// How far the newest estimate, which was that of this tick, may be off. Not part of a step: it costs as much as a third
-    /// of one, and is rarely asked for.
+    /// How far the newest estimate, which was that of this tick, may be off, as worked out within the last ticks.
     pub fn uncertainty(&self, tick: u32) -> Uncertainty {
         Uncertainty::of(tick, &self.estimator.uncertainties(), &self.estimator.contacts())
     }

@@ -8,16 +8,18 @@ use crate::drift::bias_filter::BiasFilter;
 use crate::drift::bias_trace::BiasTrace;
 use crate::drift::decimator::Decimator;
 use crate::drift::moving_average::MovingAverage;
+use crate::drift::share::{Share, ShareCounter};
 use crate::drift::{CorrectedArm, DriftCorrection, SensedArm};
-use crate::kinematics::covariance::shape_uncertainties;
 use crate::kinematics::forward::forward_kinematics;
 use crate::numeric::fused::FusedOps;
-use crate::numeric::phase::Angle;
+use crate::numeric::phase::{Angle, Turns};
 use crate::numeric::q::Q;
 use crate::segment::SegmentState;
-use crate::sensing::bend_sensors::BendAngles;
 use crate::sensing::heading::SegmentHeading;
-use crate::types::{Condition, Conditions, Contacts, Estimate, Method, Sample, SegmentShape, Shape, Uncertainties};
+use crate::types::{
+    Condition, Conditions, Contacts, Estimate, Method, Sample, SegmentShape, Shape, Uncertainties, Uncertainty,
+};
+use crate::uncertainty::ShapeUncertainty;
 
 /// State of the pipeline for an arm of up to `N` segments and an anchor of up to `W` values.
 ///
@@ -34,9 +36,12 @@ pub struct Estimator<'t, S, const N: usize, const W: usize, T = ()> {
     segments: Vec<SegmentState<S>, N>,
     drift: Drift<N, W, T>,
     contact: ContactMonitor<N>,
-    /// Whether θ_c and θ_bend of each segment were known in the newest sample.
-    measured: [Measured; N],
+    /// Angles of the newest sample: a local would be copied.
+    sensed: SensedArm<S, N>,
+    /// θ_c of each segment.
+    theta_c: [Option<Turns>; N],
     fused: Shape<S, N>,
+    uncertainty: ShapeUncertainty<N>,
 }
 
 /// Both drift corrections, of which the configuration selects one: a static has room for both, and a small stack for
@@ -46,31 +51,25 @@ struct Drift<const N: usize, const W: usize, T> {
     moving_average: MovingAverage<N, W>,
     bias_filter: BiasFilter<Q, N, T>,
     has_bias_filter: bool,
-}
-
-/// Which of a segment's two angles a sample has.
-#[derive(Debug, Clone, Copy, Default)]
-struct Measured {
-    imu: bool,
-    bend: bool,
-}
-
-/// Angles of one sample, sensed and corrected.
-struct Processed<S, const N: usize> {
-    sensed: SensedArm<S, N>,
-    corrected: CorrectedArm<N>,
+    shares: ShareCounter<N>,
 }
 
 impl<const N: usize, const W: usize, T: BiasTrace<Q>> Drift<N, W, T> {
     const fn new(trace: T) -> Self {
-        let bias_filter = BiasFilter::new(Q::from_bits(0), trace);
-        Self { moving_average: MovingAverage::new(), bias_filter, has_bias_filter: false }
+        let zero = Q::from_bits(0);
+        Self {
+            moving_average: MovingAverage::new(),
+            bias_filter: BiasFilter::new(zero, trace),
+            has_bias_filter: false,
+            shares: ShareCounter::new(),
+        }
     }
 
     fn start(&mut self, has_bias_filter: bool) {
         self.moving_average.start();
         self.bias_filter.start();
         self.has_bias_filter = has_bias_filter;
+        self.shares = ShareCounter::new();
     }
 
     /// The bias filter, if it corrects the drift.
@@ -83,6 +82,17 @@ impl<const N: usize, const W: usize, T: BiasTrace<Q>> Drift<N, W, T> {
             self.bias_filter.correct(config, sensed)
         } else {
             self.moving_average.correct(config, sensed)
+        }
+    }
+
+    /// Ends a sample, after all that reads the covariance.
+    fn finish(&mut self, share: Share) {
+        if let Share::Row(_) = share {
+            self.bias_filter.reduce_covariance();
+        }
+        let waits = share == Share::Update && self.bias_filter.is_started() && !self.bias_filter.is_updating();
+        if !waits {
+            self.shares.advance();
         }
     }
 }
@@ -123,8 +133,10 @@ impl<'t, S: FusedOps, const N: usize, const W: usize, T: BiasTrace<Q>> Estimator
             segments: Vec::new(),
             drift: Drift::new(trace),
             contact: ContactMonitor::new(),
-            measured: [Measured { imu: false, bend: false }; N],
+            sensed: SensedArm::UNKNOWN,
+            theta_c: [None; N],
             fused: Vec::new(),
+            uncertainty: ShapeUncertainty::new(),
         }
     }
 
@@ -143,7 +155,9 @@ impl<'t, S: FusedOps, const N: usize, const W: usize, T: BiasTrace<Q>> Estimator
         self.fused.clear();
         self.decimator = Decimator::new();
         self.contact.start();
-        self.measured = [Measured::default(); N];
+        self.theta_c = [None; N];
+        self.sensed = SensedArm::UNKNOWN;
+        self.uncertainty = ShapeUncertainty::new();
         let window = config.anchor.window;
         if window == 0 || usize::from(window) > W {
             return Err(ConfigError::Window { found: window, room: W });
@@ -172,10 +186,11 @@ impl<'t, S: FusedOps, const N: usize, const W: usize, T: BiasTrace<Q>> Estimator
 
     /// Takes one sample; gives the estimate by every method.
     pub fn update_full(&mut self, sample: &Sample<N>) -> Estimate<S, N> {
-        let Processed { sensed, corrected } = self.process(sample);
+        self.process(sample);
+        let sensed = &self.sensed;
         let mut segments = Vec::new();
         let mut below = &SegmentHeading::BASE;
-        let angles = sensed.bend.iter().zip(&sensed.headings).zip(corrected.imu);
+        let angles = sensed.bend.iter().zip(&sensed.headings).zip(self.theta_c);
         for (segment, ((bend, heading), imu_c)) in self.segments.iter().zip(angles) {
             let [difference, zero] = heading.relative_to(below);
             below = heading;
@@ -186,46 +201,45 @@ impl<'t, S: FusedOps, const N: usize, const W: usize, T: BiasTrace<Q>> Estimator
     }
 
     /// The stages, in the order of the data.
-    fn process(&mut self, sample: &Sample<N>) -> Processed<S, N> {
-        let sensed = self.sense(sample);
-        let mut corrected = self.drift.correct(self.config, &sensed);
+    fn process(&mut self, sample: &Sample<N>) {
+        self.sense(sample);
+        let mut corrected = self.drift.correct(self.config, &self.sensed);
         if !self.has_bend_sensors {
             corrected = CorrectedArm::UNKNOWN;
         }
-        self.fuse(&sensed, &corrected);
-        self.detect_contact(&sensed, &corrected);
-        Processed { sensed, corrected }
+        self.fuse(&corrected);
+        self.detect_contact(&corrected);
+        self.follow_uncertainty();
+        self.drift.finish(self.sensed.share);
     }
 
     /// Sensing: counts to bend angles, IMU readings to headings.
-    fn sense(&mut self, sample: &Sample<N>) -> SensedArm<S, N> {
-        let unread = BendAngles { sensors: [None; 2], mean: None, is_extrapolated: false };
-        let mut sensed = SensedArm {
-            time_us: sample.time_us,
-            decimated: self.decimator.tick(&self.config.anchor),
-            bend: [unread; N],
-            headings: [SegmentHeading::BASE; N],
-        };
+    fn sense(&mut self, sample: &Sample<N>) {
+        let sensed = &mut self.sensed;
+        sensed.time_us = sample.time_us;
+        sensed.decimated = self.decimator.tick(&self.config.anchor);
+        sensed.share = self.drift.shares.share(&self.config.anchor);
+        let rows = sensed.share.rows(N);
         let readings = sample.bend.iter().zip(&sample.imu);
         let angles = sensed.bend.iter_mut().zip(&mut sensed.headings);
-        let segments = self.segments.iter_mut().zip(self.config.segments);
-        for (((segment, config), (counts, imu)), (bend, heading)) in segments.zip(readings).zip(angles) {
-            (*bend, *heading) = segment.sense(config, *counts, imu.as_ref(), sample.time_us);
+        let segments = self.segments.iter_mut().zip(self.config.segments).enumerate();
+        for (((i, (segment, config)), (counts, imu)), (bend, heading)) in segments.zip(readings).zip(angles) {
+            segment.sense_heading(heading, imu.as_ref());
+            segment.sense_bend(bend, config, *counts, sample.time_us, rows.contains(&i));
         }
-        sensed
     }
 
     /// Fusion, and forward kinematics of what it gives.
-    fn fuse(&mut self, sensed: &SensedArm<S, N>, corrected: &CorrectedArm<N>) {
+    fn fuse(&mut self, corrected: &CorrectedArm<N>) {
         let filters = !self.drift.has_bias_filter;
-        let angles = sensed.bend.iter().zip(corrected.imu.iter().zip(corrected.fused)).zip(&mut self.measured);
-        for (segment, ((bend, (theta_c, fused)), measured)) in self.segments.iter_mut().zip(angles) {
+        let angles = self.sensed.bend.iter().zip(&corrected.imu).zip(&corrected.fused).zip(&mut self.theta_c);
+        for (segment, (((bend, corrected), fused), theta_c)) in self.segments.iter_mut().zip(angles) {
             if filters {
-                segment.filter(*theta_c, bend.mean);
+                segment.filter(*corrected, bend.mean);
             } else {
-                segment.bend_to(fused);
+                segment.bend_to(*fused);
             }
-            *measured = Measured { imu: theta_c.is_some(), bend: bend.mean.is_some() };
+            *theta_c = *corrected;
         }
         let links = self.segments.iter().map(SegmentState::fused);
         for (shape, segment) in self.fused.iter_mut().zip(forward_kinematics(links)) {
@@ -233,9 +247,9 @@ impl<'t, S: FusedOps, const N: usize, const W: usize, T: BiasTrace<Q>> Estimator
         }
     }
 
-    fn detect_contact(&mut self, sensed: &SensedArm<S, N>, corrected: &CorrectedArm<N>) {
+    fn detect_contact(&mut self, corrected: &CorrectedArm<N>) {
         let Some(thresholds) = &self.config.contact else { return };
-        let Self { contact, drift, .. } = self;
+        let Self { contact, drift, sensed, .. } = self;
         let condition = |i| drift.bias_filter().map_or(Condition::default(), |filter| filter.condition(i));
         contact.update(self.config, thresholds, self.decimator, sensed.decimated, &corrected.measured, condition);
     }
@@ -267,71 +281,81 @@ impl<'t, S: FusedOps, const N: usize, const W: usize, T: BiasTrace<Q>> Estimator
     }
 
     /// Uncertainty of the newest fused shape; empty where the configuration has no error sources.
+    ///
+    /// Above 50 Hz it is worked out a segment in a sample, and so by up to N + 2 samples older than the shape.
     #[must_use]
     pub fn uncertainties(&self) -> Uncertainties<N> {
-        let Some(sources) = &self.config.uncertainty else { return Vec::new() };
-        let headings = self.heading_covariance(sources);
-        shape_uncertainties(self.config.segments, sources.end, headings, &self.fused, |i| self.is_measured(i))
+        let mut uncertainties = Vec::new();
+        if self.config.uncertainty.is_some() {
+            for (i, shape) in self.fused.iter().enumerate() {
+                let newest = self.uncertainty.of(i).copied().unwrap_or(Uncertainty { theta: None, end: None });
+                let theta = newest.theta.filter(|_| shape.theta.is_some());
+                let end = newest.end.filter(|_| shape.end.is_some());
+                let _ = uncertainties.push(Uncertainty { theta, end });
+            }
+        }
+        uncertainties
     }
 
     /// Variance of each heading that was not read, in addition to that of its bias, rad² times
     /// [`VARIANCE_SCALE`](crate::VARIANCE_SCALE); zero for all others, and behind the moving-average anchor.
     #[must_use]
     pub fn absence_variances(&self) -> [Q; N] {
-        let mut variances = [Q::from_f64(0.0); N];
-        if let Some(filter) = self.drift.bias_filter() {
-            for (i, (variance, config)) in variances.iter_mut().zip(self.config.segments).enumerate() {
-                *variance = filter.absence_variance(&config.bend_error, i);
-            }
+        let mut variances = [Q::from_bits(0); N];
+        for (i, variance) in variances.iter_mut().enumerate() {
+            *variance = self.absence_variance(i);
         }
         variances
     }
 
+    fn absence_variance(&self, i: usize) -> Q {
+        let filter = self.drift.bias_filter().zip(self.config.segments.get(i));
+        filter.map_or(Q::from_bits(0), |(filter, config)| filter.absence_variance(&config.bend_error, i))
+    }
+
+    /// This sample's share of the uncertainties.
+    fn follow_uncertainty(&mut self) {
+        let Some(sources) = &self.config.uncertainty else { return };
+        for i in self.sensed.share.rows(self.segments.len()) {
+            self.propagate(sources, i);
+        }
+    }
+
+    /// Propagates the covariance of the headings over segment `i`.
+    fn propagate(&mut self, sources: &UncertaintyConfig, i: usize) {
+        let (Some(shape), Some(config)) = (self.fused.get(i), self.config.segments.get(i)) else { return };
+        let mut headings = match self.drift.bias_filter() {
+            Some(filter) => filter.heading_covariance(i).map(|covariance| sources.bias_share * covariance),
+            None => self.anchored_covariance(sources, i),
+        };
+        if let Some(own) = headings.get_mut(i) {
+            *own += self.absence_variance(i) + sources.heading;
+        }
+        let shape = SegmentShape { theta: shape.theta.filter(|_| self.is_measured(i)), end: shape.end };
+        self.uncertainty.step(i, config, sources, &shape, &headings);
+    }
+
     fn is_measured(&self, i: usize) -> bool {
-        let measured = self.measured.get(i).is_some_and(|measured| measured.imu || measured.bend);
+        let is_bend_read = || self.sensed.bend.get(i).is_some_and(|bend| bend.mean.is_some());
+        let measured = self.theta_c.get(i).is_some_and(Option::is_some) || is_bend_read();
         self.drift.bias_filter().map_or(measured, BiasFilter::is_started)
     }
 
-    /// Covariance of all headings.
-    fn heading_covariance(&self, sources: &UncertaintyConfig) -> [[Q; N]; N] {
-        let mut headings = match self.drift.bias_filter() {
-            Some(filter) => self.filtered_covariance(sources, filter),
-            None => self.anchored_covariance(sources),
-        };
-        for (i, row) in headings.iter_mut().enumerate() {
-            if let Some(diagonal) = row.get_mut(i) {
-                *diagonal += sources.heading;
-            }
-        }
-        headings
-    }
-
     /// Behind the anchors the errors of the bend angles are independent, and add up along the arm.
-    fn anchored_covariance(&self, sources: &UncertaintyConfig) -> [[Q; N]; N] {
+    fn anchored_covariance(&self, sources: &UncertaintyConfig, i: usize) -> [Q; N] {
         let mask = self.contact_mask();
         let mut sums = [Q::from_f64(0.0); N];
         let mut sum = Q::from_f64(0.0);
-        for (i, (total, measured)) in sums.iter_mut().zip(&self.measured).enumerate() {
-            sum += if measured.imu { sources.theta } else { sources.bend };
-            if mask >> i & 1 != 0 {
-                sum += sources.contact;
+        for (j, (total, theta_c)) in sums.iter_mut().zip(&self.theta_c).enumerate() {
+            if j <= i {
+                sum += if theta_c.is_some() { sources.theta } else { sources.bend };
+                if mask >> j & 1 != 0 {
+                    sum += sources.contact;
+                }
             }
             *total = sum;
         }
-        core::array::from_fn(|i| core::array::from_fn(|j| sums.get(i.min(j)).copied().unwrap_or(sum)))
-    }
-
-    /// The bias filter's covariance, and what absent headings add.
-    fn filtered_covariance(&self, sources: &UncertaintyConfig, filter: &BiasFilter<Q, N, T>) -> [[Q; N]; N] {
-        let mut headings =
-            core::array::from_fn(|i| core::array::from_fn(|j| sources.bias_share * filter.heading_covariance(i, j)));
-        for (i, (row, absence)) in headings.iter_mut().zip(self.absence_variances()).enumerate() {
-            let row: &mut [Q; N] = row;
-            if let Some(diagonal) = row.get_mut(i) {
-                *diagonal += absence;
-            }
-        }
-        headings
+        sums
     }
 
     /// The arm's shape by `method` at one of this estimator's estimates: bend angles, and the chain of the segments.

@@ -55,6 +55,7 @@ mod numeric;
 mod segment;
 mod sensing;
 mod types;
+mod uncertainty;
 
 pub use config::{
     AnchorConfig, ArmConfig, BendErrorConfig, BendMap, BendSensorConfig, BiasFilterConfig, ChangeLimit, ConfigError,
@@ -65,10 +66,11 @@ pub use drift::bias_state::{BiasState, Innovation, Row};
 pub use drift::bias_trace::{BiasMeasurement, BiasOperation, BiasTrace};
 pub use drift::decimator::{Decimated, Decimator};
 pub use drift::moving_average::MovingAverageAnchor;
+pub use drift::share::Share;
 pub use drift::{CorrectedArm, DriftCorrection, MeasuredAngles, SensedArm};
 pub use estimator::Estimator;
 pub use fusion::kalman::{COVARIANCE_LIMIT, H_LIMIT, KalmanFilter, KalmanGains};
-pub use kinematics::covariance::{CovariancePropagation, lever_arm, shape_uncertainties};
+pub use kinematics::covariance::{CovariancePropagation, lever_arm};
 pub use kinematics::forward::forward_kinematics;
 pub use kinematics::pcc::{Link, Pcc, UnitArc};
 pub use numeric::fused::{FusedOps, plain};
@@ -83,3 +85,4 @@ pub use types::{
     Condition, Conditions, Contact, Contacts, Covariance, Estimate, ImuReading, Method, Sample, SegmentEstimate,
     SegmentShape, Shape, Uncertainties, Uncertainty,
 };
+pub use uncertainty::ShapeUncertainty;

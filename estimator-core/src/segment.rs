@@ -39,16 +39,22 @@ impl<S: FusedOps> SegmentState<S> {
         }
     }
 
-    /// Bend angles and heading of one sample's readings.
-    pub fn sense(
+    /// Takes the `heading` of one sample's reading.
+    pub fn sense_heading(&mut self, heading: &mut SegmentHeading, imu: Option<&ImuReading>) {
+        self.heading.read(imu.and_then(ImuReading::heading));
+        *heading = *self.heading.segment_heading();
+    }
+
+    /// Takes the bend `angles` of one sample's readings; the sensors' memory of creep moves where it `is_followed`.
+    pub fn sense_bend(
         &mut self,
+        angles: &mut BendAngles<S>,
         config: &SegmentConfig<S>,
         counts: [Option<u16>; 2],
-        imu: Option<&ImuReading>,
         time_us: u64,
-    ) -> (BendAngles<S>, SegmentHeading) {
-        self.heading.read(imu.and_then(ImuReading::heading));
-        (self.bend.read(config, counts, time_us), *self.heading.segment_heading())
+        is_followed: bool,
+    ) {
+        self.bend.read(angles, config, counts, time_us, is_followed);
     }
 
     /// KF_orient and KF_coord with the angles that there are; of θ_c without its whole turns, which say nothing of the bend

@@ -1,6 +1,6 @@
 //! The bias filter's model against the dense Kalman filter of the textbooks, in floats and in fixed point.
 
-use estimator_core::{BiasFilterConfig, BiasState, Q, Scalar, TIME_UNIT_S, Turns};
+use estimator_core::{BiasFilterConfig, BiasState, FusedOps, Q, Scalar, TIME_UNIT_S, Turns};
 use nalgebra::{SMatrix, SVector};
 
 /// IMUs and segments, and their states.
@@ -85,7 +85,7 @@ struct Driven<S> {
     state: BiasState<S, N>,
 }
 
-impl<S: Scalar> Driven<S> {
+impl<S: FusedOps> Driven<S> {
     fn new() -> Self {
         let mut state = BiasState::new(S::zero());
         state.initialise(&config(), S::from_f64(STRAIGHTNESS), &[S::from_f64(OFFSET); N], 0);
@@ -95,7 +95,7 @@ impl<S: Scalar> Driven<S> {
     fn update(&mut self, i: usize, z: f64, r: f64) {
         let hx = self.state.angle_bias(i) - self.state.angle_offset(i);
         let innovation = self.state.innovation(i);
-        self.state.update(&innovation, S::from_f64(z) - hx, S::from_f64(r));
+        self.state.update(innovation, S::from_f64(z) - hx, S::from_f64(r));
     }
 
     fn x(&self) -> State {
@@ -118,7 +118,7 @@ fn measurement(i: usize, k: u64) -> f64 {
 }
 
 /// Runs both for so many samples, one segment in its turn; `check` compares them after each update.
-fn run<S: Scalar>(samples: u64, mut check: impl FnMut(u64, &Driven<S>, &Textbook)) {
+fn run<S: FusedOps>(samples: u64, mut check: impl FnMut(u64, &Driven<S>, &Textbook)) {
     let (mut driven, mut book) = (Driven::<S>::new(), Textbook::new());
     let mut predicted = [0; N];
     for k in 1..=samples {
@@ -167,7 +167,7 @@ fn an_update_at_rest_is_that_of_the_textbooks() {
     let (rate, r) = (0.05, 0.01);
     let innovation = driven.state.innovation_at_rest(1);
     let nu = rate - driven.state.rate_of(1);
-    driven.state.update(&innovation, nu, r);
+    driven.state.update(innovation, nu, r);
     let mut h = State::zeros();
     h[4] = 1.0;
     book.update_by(&h, rate, r);
@@ -203,7 +203,7 @@ fn rest_after_a_long_outage_leaves_the_covariance_positive() {
     for _ in 0..10 {
         for j in 0..N {
             let innovation = driven.state.innovation_at_rest(j);
-            driven.state.update(&innovation, Q::from_f64(0.001), Q::from_f64(0.02));
+            driven.state.update(innovation, Q::from_f64(0.001), Q::from_f64(0.02));
             assert!(least_eigenvalue(&driven.p()) > -1e-5, "{}", least_eigenvalue(&driven.p()));
         }
     }
@@ -216,7 +216,7 @@ fn an_update_of_unknown_states_leaves_the_covariance_positive() {
     let mut state = BiasState::<Q, N>::new(Scalar::from_f64(0.0));
     state.initialise(&config, Q::from_f64(0.0), &[Q::from_f64(16.0); N], 0);
     let innovation = state.innovation(1);
-    state.update(&innovation, Q::from_f64(0.1), Q::from_f64(1.0));
+    state.update(innovation, Q::from_f64(0.1), Q::from_f64(1.0));
     let driven = Driven { state };
     assert!(least_eigenvalue(&driven.p()) > -1e-6, "{}", least_eigenvalue(&driven.p()));
     let expected = 16.0 - 16.0 * 16.0 / 49.0;

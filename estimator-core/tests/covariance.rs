@@ -46,14 +46,14 @@ fn heading_covariance() -> Matrix6<f64> {
 fn propagated() -> Vec<[f64; 3]> {
     let scaled = |variance: f64| Q::from_f64(variance * VARIANCE_SCALE);
     let headings = heading_covariance();
-    let headings = core::array::from_fn(|i| core::array::from_fn(|j| scaled(headings[(i, j)])));
-    let mut propagation = CovariancePropagation::<6>::new(headings, scaled(POINT * POINT));
-    let step = |(chord, segment): (Vector2<f64>, SegmentConfig<f64>)| {
-        propagation.step(chord.map(Q::from_f64), lever_arm(&segment));
+    let mut propagation = CovariancePropagation::<6>::new();
+    let step = |(i, (chord, segment)): (usize, (Vector2<f64>, SegmentConfig<f64>))| {
+        let headings = core::array::from_fn(|j| scaled(headings[(i, j)]));
+        propagation.step(&headings, chord.map(Q::from_f64), lever_arm(&segment), scaled(POINT * POINT));
         let [xx, xy, yy] = propagation.end().square_metres();
         deviations(Matrix2::new(xx, xy, xy, yy))
     };
-    chords().into_iter().zip(segments()).map(step).collect()
+    chords().into_iter().zip(segments()).enumerate().map(step).collect()
 }
 
 fn deviations(covariance: Matrix2<f64>) -> [f64; 3] {

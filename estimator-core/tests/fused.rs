@@ -104,6 +104,34 @@ proptest! {
         prop_assert!((fused - plain).abs() <= tolerance, "{fused} instead of {plain}");
     }
 
+    /// To the bit as the operators of fixed point, saturated differences too.
+    #[test]
+    fn subtract_products(values in [q(32.0), q(32.0), q(32.0)], others in [q(32.0), q(32.0), q(32.0)], factor in q(1.0)) {
+        let (mut fused, mut plain) = (values, values);
+        Q::subtract_products(&mut fused, &others, factor);
+        plain::subtract_products(&mut plain, &others, factor);
+        prop_assert_eq!(fused, plain);
+    }
+
+    /// Products that end with a half, which rounding to nearest takes up.
+    #[test]
+    fn subtract_products_of_halves(value in q(1.0), odd in -1000..1000_i32, shift in 0_u32..=25) {
+        let (other, factor) = (Q::from_bits((2 * odd + 1) << (25 - shift)), Q::from_bits(1 << shift));
+        let (mut fused, mut plain) = ([value], [value]);
+        Q::subtract_products(&mut fused, &[other], factor);
+        plain::subtract_products(&mut plain, &[other], factor);
+        prop_assert_eq!(fused, plain);
+    }
+
+    /// To the bit as the operator, overflows and a divisor of zero too.
+    #[test]
+    fn divide_all(values in [q(32.0), q(32.0), q(32.0)], divisor in prop_oneof![q(32.0), Just(Q::from_bits(0))]) {
+        let (mut fused, mut plain) = (values, values);
+        Q::divide_all(&mut fused, divisor);
+        plain::divide_all(&mut plain, divisor);
+        prop_assert_eq!(fused, plain);
+    }
+
     /// The innovation is rounded down, and the ratio multiplies that.
     #[test]
     fn kalman_update(

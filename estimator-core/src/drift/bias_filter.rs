@@ -17,7 +17,9 @@ use crate::drift::bias_state::BiasState;
 use crate::drift::bias_trace::{BiasOperation, BiasTrace};
 use crate::drift::heading_gate::HeadingGate;
 use crate::drift::rest::RestDetector;
+use crate::drift::share::Share;
 use crate::drift::{CorrectedArm, DriftCorrection, MeasuredAngles, SensedArm};
+use crate::numeric::fused::FusedOps;
 use crate::numeric::phase::Turns;
 use crate::numeric::scalar::{Constant, Scalar};
 use crate::numeric::variance::{smaller, variance_deg};
@@ -59,8 +61,9 @@ pub struct BiasFilter<F, const N: usize, T = ()> {
     is_started: bool,
     is_tare_bad: bool,
     last_us: Option<u64>,
-    /// The segment whose turn it is.
+    /// The segment whose turn it is, and the one whose update is next.
     turn: usize,
+    next_update: usize,
 }
 
 /// Changes of one heading and bend angle over a window of rest.
@@ -179,6 +182,7 @@ impl<F: Scalar, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
             is_tare_bad: false,
             last_us: None,
             turn: 0,
+            next_update: 0,
         }
     }
 
@@ -191,7 +195,8 @@ impl<F: Scalar, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
             *track = SegmentTrack::new(zero);
         }
         self.rest = RestDetector::new(zero);
-        (self.is_started, self.is_tare_bad, self.last_us, self.turn) = (false, false, None, 0);
+        (self.is_started, self.is_tare_bad, self.last_us) = (false, false, None);
+        (self.turn, self.next_update) = (0, 0);
     }
 
     /// The trace of the operations on the states.
@@ -199,9 +204,9 @@ impl<F: Scalar, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
         self.state.trace_mut()
     }
 
-    /// Covariance of two headings, [`VARIANCE_SCALE`](crate::VARIANCE_SCALE) times rad².
-    pub fn heading_covariance(&self, i: usize, j: usize) -> F {
-        self.state.bias_covariance(i, j)
+    /// Covariance of heading `i` with all headings, [`VARIANCE_SCALE`](crate::VARIANCE_SCALE) times rad².
+    pub fn heading_covariance(&self, i: usize) -> [F; N] {
+        self.state.bias_covariance(i)
     }
 
     /// Variance of heading `i` in addition to its bias: that of the bend sensors for an absent heading, else zero.
@@ -252,7 +257,19 @@ impl<F: Scalar, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
     }
 }
 
-impl<S: Scalar, F: Scalar, const N: usize, T: BiasTrace<F>> DriftCorrection<S, N> for BiasFilter<F, N, T> {
+impl<F: FusedOps, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
+    /// Whether the covariance is not up to date yet.
+    pub fn is_updating(&self) -> bool {
+        self.state.is_updating()
+    }
+
+    /// Brings the next block row of the covariance up to date.
+    pub fn reduce_covariance(&mut self) {
+        self.state.reduce_row();
+    }
+}
+
+impl<S: Scalar, F: FusedOps, const N: usize, T: BiasTrace<F>> DriftCorrection<S, N> for BiasFilter<F, N, T> {
     fn correct(&mut self, config: &ArmConfig<S>, sensed: &SensedArm<S, N>) -> CorrectedArm<N> {
         let Some(filter) = &config.bias_filter else { return CorrectedArm::UNKNOWN };
         let dt = since(self.last_us.unwrap_or(sensed.time_us), sensed.time_us);
@@ -271,12 +288,21 @@ impl<S: Scalar, F: Scalar, const N: usize, T: BiasTrace<F>> DriftCorrection<S, N
         self.fill_absent_headings(config.segments.len(), dt);
         let corrected = self.angles(config.segments);
         self.state.trace_mut().record(BiasOperation::Output);
-        for _ in 0..turns(config) {
-            if !self.take_turn(config.segments, filter, sensed, &angles) {
-                break;
+        if sensed.share == Share::Update {
+            self.take_update(config.segments, sensed);
+        } else {
+            if sensed.share == Share::Prediction {
+                self.take_prediction(config.segments, filter, sensed.time_us);
+            }
+            for _ in 0..turns(config) {
+                if !self.take_turn(config.segments, filter, sensed, &angles) {
+                    break;
+                }
             }
         }
-        self.follow_rest(sensed.time_us);
+        if sensed.share == Share::Whole {
+            self.follow_rest(sensed.time_us);
+        }
         for track in &mut self.segments {
             track.last_bend = track.bend.map(|bend| bend.theta).or(track.last_bend);
         }

@@ -11,10 +11,15 @@
 //! The covariance is that of all states, because an error of one heading is in two bend angles with opposite signs: what is
 //! wrong with one angle is undone by the next, and hardly moves the tip.
 //!
-//! Each IMU and its segment are predicted when it is their turn, one in a sample, so that a sample costs a share of the whole.
+//! Each IMU and its segment are predicted when it is their turn, so that a sample costs a share of the whole.
+
+mod update;
+
+pub use update::Innovation;
 
 use crate::config::BiasFilterConfig;
-use crate::drift::bias_trace::{BiasMeasurement, BiasOperation, BiasTrace};
+use crate::drift::bias_state::update::Reduction;
+use crate::drift::bias_trace::{BiasOperation, BiasTrace};
 use crate::numeric::phase::Turns;
 use crate::numeric::scalar::{Constant, Scalar};
 
@@ -32,17 +37,12 @@ pub type Row<S, const N: usize> = [[S; 3]; N];
 const LARGEST: Constant = Constant::new(16.0);
 /// Largest variance of a rate, 0.23 °/s.
 const LARGEST_RATE: Constant = Constant::new(4.0);
-/// Longest prediction, time units: 384 s.
-const LONGEST: Constant = Constant::new(6.0);
-/// Two variances below this add up in fixed point.
-const HALF_OF_RANGE: Constant = Constant::new(15.5);
+/// Longest prediction: 384 s, six time units.
+const LONGEST_US: u64 = 384_000_000;
 /// Growth of a bias's variance by its rate in one step of a prediction, 9°: the variance stays within fixed point.
 const LARGEST_GROWTH: Constant = Constant::new(1.6);
 /// A prediction over a time unit's quarter grows by less.
 const SHORT: Constant = Constant::new(0.25);
-/// Smallest variance, 0.004° or 0.004° per time unit: rounding must not bring one to zero.
-const SMALLEST: Constant = Constant::new(3e-7);
-
 /// States and covariance, and a [trace](BiasTrace) of the operations on them.
 #[derive(Debug, Clone, Copy)]
 pub struct BiasState<S, const N: usize, T = ()> {
@@ -55,21 +55,9 @@ pub struct BiasState<S, const N: usize, T = ()> {
     /// P, [`VARIANCE_SCALE`](crate::VARIANCE_SCALE) times as large.
     covariance: [[Row<S, N>; 3]; N],
     predicted_at_us: [u64; N],
+    /// What the newest update has not yet taken off P.
+    reduction: Reduction<S, N>,
     trace: T,
-}
-
-/// Innovation of a scalar measurement: P⁻Hᵀ, and the variance S = H P⁻ Hᵀ without the measurement noise.
-pub struct Innovation<S, const N: usize> {
-    cross: Row<S, N>,
-    /// H P⁻ Hᵀ; in fixed point no more than it holds.
-    pub variance: S,
-    /// An eighth of it, which fits in any case.
-    eighth: S,
-    measurement: BiasMeasurement,
-}
-
-fn eighth<S: Scalar>(value: S) -> S {
-    value.half().half().half()
 }
 
 impl<S: Scalar, const N: usize> Default for BiasState<S, N> {
@@ -94,6 +82,7 @@ impl<S: Scalar, const N: usize, T: BiasTrace<S>> BiasState<S, N, T> {
             offset: [zero; N],
             covariance: [[[[zero; 3]; N]; 3]; N],
             predicted_at_us: [0; N],
+            reduction: Reduction::complete(zero),
             trace,
         }
     }
@@ -170,8 +159,7 @@ impl<S: Scalar, const N: usize, T: BiasTrace<S>> BiasState<S, N, T> {
 
     fn elapsed_until(&self, i: usize, time_us: u64) -> Option<S> {
         let elapsed_us = time_us.checked_sub(*self.predicted_at_us.get(i)?).filter(|us| *us > 0)?;
-        let (dt, longest) = (S::from_micros(elapsed_us.min(u64::from(u32::MAX)) as u32), S::constant(LONGEST));
-        Some(if dt < longest { dt } else { longest })
+        Some(S::from_micros(elapsed_us.min(LONGEST_US) as u32))
     }
 
     /// β ← β + v `dt`.
@@ -208,47 +196,26 @@ impl<S: Scalar, const N: usize, T: BiasTrace<S>> BiasState<S, N, T> {
     }
 
     fn propagate_step(&mut self, i: usize, dt: S, decay: S) {
-        let Some([bias, rate, offset]) = self.covariance.get_mut(i) else { return };
-        let is_known = bias.get(i).is_some_and(|[bias, ..]| *bias < S::constant(LARGEST));
-        let dt = if is_known { dt } else { S::zero() };
-        for ((bias, rate), offset) in bias.iter_mut().zip(rate.iter()).zip(offset.iter_mut()) {
-            for ((bias, rate), offset) in bias.iter_mut().zip(rate).zip(offset) {
-                *bias += dt * *rate;
-                *offset *= decay;
+        // Indices that this and the loops bound by the arrays' lengths: the compiler leaves out their checks.
+        if i >= N {
+            return;
+        }
+        let p = &mut self.covariance;
+        let dt = if p[i][BIAS][i][BIAS] < S::constant(LARGEST) { dt } else { S::zero() };
+        for j in (0..N).filter(|j| *j != i) {
+            for k in 0..3 {
+                let [bias, rate, offset] = p[j][k][i];
+                let (bias, offset) = (bias + dt * rate, offset * decay);
+                p[j][k][i] = [bias, rate, offset];
+                (p[i][BIAS][j][k], p[i][OFFSET][j][k]) = (bias, offset);
             }
         }
-        for row in [bias, rate, offset] {
-            if let Some([bias, rate, offset]) = row.get_mut(i) {
-                *bias += dt * *rate;
-                *offset *= decay;
-            }
-        }
-        self.mirror(i);
-    }
-
-    /// Copies the rows of `i` to its columns.
-    fn mirror(&mut self, i: usize) {
-        let Some([mut bias, mut rate, offset]) = self.covariance.get(i).copied() else { return };
-        // Its own block's upper half is that of the lower one.
-        if let (
-            Some([_, bias_rate, bias_offset]),
-            Some([rate_bias, _, rate_offset]),
-            Some([offset_bias, offset_rate, _]),
-        ) = (bias.get_mut(i), rate.get_mut(i), offset.get(i))
-        {
-            (*bias_rate, *bias_offset, *rate_offset) = (*rate_bias, *offset_bias, *offset_rate);
-        }
-        for (j, rows) in self.covariance.iter_mut().enumerate().filter(|(j, _)| *j != i) {
-            let (Some(bias), Some(rate), Some(offset)) = (bias.get(j), rate.get(j), offset.get(j)) else { return };
-            for (row, ((bias, rate), offset)) in rows.iter_mut().zip(bias.iter().zip(rate).zip(offset)) {
-                if let Some(own) = row.get_mut(i) {
-                    *own = [*bias, *rate, *offset];
-                }
-            }
-        }
-        if let Some(rows) = self.covariance.get_mut(i) {
-            *rows = [bias, rate, offset];
-        }
+        let [bias, rate, offset] = p[i].map(|row| row[i]);
+        let rows = [core::array::from_fn(|k| bias[k] + dt * rate[k]), rate, offset.map(|value| value * decay)];
+        let [bias, rate, offset] = rows.map(|[bias, rate, offset]| [bias + dt * rate, rate, offset * decay]);
+        p[i][BIAS][i] = [bias[BIAS], rate[BIAS], offset[BIAS]];
+        p[i][RATE][i] = [rate[BIAS], rate[RATE], offset[RATE]];
+        p[i][OFFSET][i] = offset;
     }
 
     /// Adds process noise to one state, up to a variance of `limit`; gives what it has added.
@@ -322,91 +289,8 @@ impl<S: Scalar, const N: usize, T: BiasTrace<S>> BiasState<S, N, T> {
         self.covariance.get(i).map_or([[S::zero(); 3]; 3], block)
     }
 
-    /// P of two biases.
-    pub fn bias_covariance(&self, i: usize, j: usize) -> S {
-        let covariance = || self.covariance.get(i)?.first()?.get(j)?.first().copied();
-        covariance().unwrap_or_else(S::zero)
-    }
-
-    /// Innovation of segment `i`'s bend sensors against its IMUs, H = (β_i: 1, β_{i−1}: −1, o_i: −1).
-    pub fn innovation(&self, i: usize) -> Innovation<S, N> {
-        let below = i.checked_sub(1);
-        let mut cross = [[S::zero(); 3]; N];
-        if let Some([bias, _, offset]) = self.covariance.get(i) {
-            for ((cross, bias), offset) in cross.iter_mut().zip(bias).zip(offset) {
-                for ((cross, bias), offset) in cross.iter_mut().zip(bias).zip(offset) {
-                    *cross = *bias - *offset;
-                }
-            }
-        }
-        if let Some([bias, ..]) = below.and_then(|below| self.covariance.get(below)) {
-            for (cross, bias) in cross.iter_mut().zip(bias) {
-                for (cross, bias) in cross.iter_mut().zip(bias) {
-                    *cross -= *bias;
-                }
-            }
-        }
-        let [bias, _, offset] = cross.get(i).copied().unwrap_or([S::zero(); 3]);
-        let of_below = below.and_then(|below| cross.get(below)).map_or(S::zero(), |[bias, ..]| *bias);
-        let eighth = eighth(bias) - eighth(offset) - eighth(of_below);
-        Innovation {
-            cross,
-            variance: bias - offset - of_below,
-            eighth,
-            measurement: BiasMeasurement::BendAngle { segment: i },
-        }
-    }
-
-    /// Innovation of heading `j`'s rate while the arm rests, H = (v_j: 1).
-    pub fn innovation_at_rest(&self, j: usize) -> Innovation<S, N> {
-        let cross = self.covariance.get(j).map_or([[S::zero(); 3]; N], |[_, rate, _]| *rate);
-        let variance = cross.get(j).map_or(S::zero(), |[_, rate, _]| *rate);
-        Innovation { cross, variance, eighth: eighth(variance), measurement: BiasMeasurement::Rate { segment: j } }
-    }
-
-    /// K = P⁻Hᵀ/S, x = x⁻ + K ν, P = P⁻ − K (P⁻Hᵀ)ᵀ, for the innovation ν and measurement noise R.
-    pub fn update(&mut self, innovation: &Innovation<S, N>, nu: S, r: S) {
-        let Innovation { cross, variance, eighth: variance_eighth, measurement } = innovation;
-        self.trace.record(BiasOperation::Update { measurement: *measurement, nu, r });
-        let mut gain = *cross;
-        let half = S::constant(HALF_OF_RANGE);
-        if *variance < half && r < half {
-            let s = *variance + r;
-            for value in gain.iter_mut().flatten() {
-                *value = *value / s;
-            }
-        } else {
-            let s = *variance_eighth + eighth(r);
-            for value in gain.iter_mut().flatten() {
-                *value = eighth(*value) / s;
-            }
-        }
-        let states = self.bias.iter_mut().zip(&mut self.rate).zip(&mut self.offset);
-        for (((bias, rate), offset), gain) in states.zip(&gain) {
-            let [of_bias, of_rate, of_offset] = *gain;
-            *bias = *bias + (of_bias * nu).to_turns();
-            *rate += of_rate * nu;
-            *offset += of_offset * nu;
-        }
-        self.reduce(&gain, cross);
-    }
-
-    /// P = P⁻ − K (P⁻Hᵀ)ᵀ: one half, and its mirror.
-    fn reduce(&mut self, gain: &Row<S, N>, cross: &Row<S, N>) {
-        let p = &mut self.covariance;
-        // Indices that the loops bound by the arrays' lengths: the compiler leaves out their checks.
-        for j in 0..N {
-            for k in 0..3 {
-                for m in j..N {
-                    for n in if m == j { k } else { 0 }..3 {
-                        let value = p[j][k][m][n] - gain[j][k] * cross[m][n];
-                        (p[j][k][m][n], p[m][n][j][k]) = (value, value);
-                    }
-                }
-                if p[j][k][j][k] < S::constant(SMALLEST) {
-                    p[j][k][j][k] = S::constant(SMALLEST);
-                }
-            }
-        }
+    /// P of bias `i` with all biases.
+    pub fn bias_covariance(&self, i: usize) -> [S; N] {
+        self.covariance.get(i).map_or([S::zero(); N], |[row, ..]| row.map(|[bias, ..]| bias))
     }
 }

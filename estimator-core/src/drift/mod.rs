@@ -8,9 +8,11 @@ pub mod decimator;
 pub mod heading_gate;
 pub mod moving_average;
 pub mod rest;
+pub mod share;
 
 use crate::config::ArmConfig;
 use crate::drift::decimator::Decimated;
+use crate::drift::share::Share;
 use crate::numeric::phase::Turns;
 use crate::sensing::bend_sensors::BendAngles;
 use crate::sensing::heading::SegmentHeading;
@@ -22,10 +24,23 @@ pub struct SensedArm<S, const N: usize> {
     pub time_us: u64,
     /// Position of the sample between two values of the anchor.
     pub decimated: Decimated,
+    /// Share of the work on covariances that the sample does.
+    pub share: Share,
     /// Bend angles.
     pub bend: [BendAngles<S>; N],
     /// Headings of the segments' ends.
     pub headings: [SegmentHeading; N],
+}
+
+impl<S, const N: usize> SensedArm<S, N> {
+    /// Before the first sample.
+    pub const UNKNOWN: Self = Self {
+        time_us: 0,
+        decimated: Decimated { oldest: 0, complete: 0 },
+        share: Share::Whole,
+        bend: [const { BendAngles::UNKNOWN }; N],
+        headings: [SegmentHeading::BASE; N],
+    };
 }
 
 /// Corrected bend angles of one sample, from the base to the tip.

@@ -9,16 +9,39 @@ pub(crate) fn divide<const FRAC: u32>(num: u32, den: u32) -> u32 {
     if den == 0 {
         return u32::MAX;
     }
-    let (num_zeros, den_zeros) = ((num | 1).leading_zeros(), den.leading_zeros());
-    let shift = (num_zeros + 31 - FRAC).wrapping_sub(den_zeros);
-    let quotient = match shift {
-        0..32 => upper_word(num << num_zeros, reciprocal(den << den_zeros)) >> shift,
-        32..64 => 0,
-        _ => return u32::MAX,
-    };
-    // The quotient is never too large, and so little too small that what rests shows in 32 bits.
-    let rest = (num << FRAC).wrapping_sub(quotient.wrapping_mul(den));
-    quotient.wrapping_add(rest.wrapping_add(den / 2) / den)
+    Divisor::<FRAC>::new(den).divide(num)
+}
+
+/// A divisor whose reciprocal is worked out once, for several quotients.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Divisor<const FRAC: u32> {
+    den: u32,
+    zeros: u32,
+    reciprocal: u32,
+}
+
+impl<const FRAC: u32> Divisor<FRAC> {
+    /// Of 1 to 2³¹.
+    #[inline]
+    pub fn new(den: u32) -> Self {
+        let zeros = den.leading_zeros();
+        Self { den, zeros, reciprocal: reciprocal(den.wrapping_shl(zeros)) }
+    }
+
+    /// As [`divide`], in half of its instructions.
+    #[inline]
+    pub fn divide(&self, num: u32) -> u32 {
+        let num_zeros = (num | 1).leading_zeros();
+        let shift = (num_zeros + 31 - FRAC).wrapping_sub(self.zeros);
+        let quotient = match shift {
+            0..32 => upper_word(num << num_zeros, self.reciprocal) >> shift,
+            32..64 => 0,
+            _ => return u32::MAX,
+        };
+        // The quotient is never too large, and so little too small that what rests shows in 32 bits.
+        let rest = (num << FRAC).wrapping_sub(quotient.wrapping_mul(self.den));
+        quotient.wrapping_add(rest.wrapping_add(self.den / 2) / self.den)
+    }
 }
 
 /// `num · 2^FRAC / den`, too small by a unit and its 2²⁸th part at most; `None` where `den` is 0, or the quotient is 2³¹ or

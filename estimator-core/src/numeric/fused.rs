@@ -44,6 +44,20 @@ pub mod plain {
         p / (r + p * h)
     }
 
+    /// Each of `values` less its product.
+    pub fn subtract_products<S: Scalar>(values: &mut [S], others: &[S], factor: S) {
+        for (value, other) in values.iter_mut().zip(others) {
+            *value -= *other * factor;
+        }
+    }
+
+    /// Each of `values` over the divisor.
+    pub fn divide_all<S: Scalar>(values: &mut [S], divisor: S) {
+        for value in values {
+            *value = *value / divisor;
+        }
+    }
+
     /// x + ratio (w0 a + w1 b + w2 x).
     pub fn kalman_update<S: Scalar>(x: S, ratio: S, [w0, w1, w2]: &[S; 3], a: S, b: S) -> S {
         x + ratio * (*w0 * a + *w1 * b + *w2 * x)
@@ -106,6 +120,17 @@ pub trait FusedOps: Scalar {
     #[must_use]
     fn gain_over_innovation_variance(self, r: Self, h: Self) -> Self {
         plain::gain_over_innovation_variance(self, r, h)
+    }
+
+    /// Subtracts from each of `values` the product of its place in `others` and of `factor`: to the bit as the operators do
+    /// where the product is within ±32.
+    fn subtract_products(values: &mut [Self], others: &[Self], factor: Self) {
+        plain::subtract_products(values, others, factor);
+    }
+
+    /// Divides all `values`, to the bit as the operator does.
+    fn divide_all(values: &mut [Self], divisor: Self) {
+        plain::divide_all(values, divisor);
     }
 
     /// `x` + `ratio` · (w0 a + w1 b + w2 x) of each `x` and its `a` and `b`.

@@ -4,8 +4,8 @@
 //! whole step took 4,974 instructions with them and 44,000 in `f32`; each form is held against its plain one in
 //! [`plain`](super::fused::plain) by a property test.
 
-use crate::numeric::division::div_approx;
-use crate::numeric::fused::FusedOps;
+use crate::numeric::division::{Divisor, div_approx};
+use crate::numeric::fused::{FusedOps, plain};
 use crate::numeric::polynomial::{AXIAL, COSINE, Terms};
 use crate::numeric::q::Q;
 use crate::numeric::scalar::{Constant, TWO_PI};
@@ -59,6 +59,13 @@ impl Q {
     #[inline(never)]
     fn saturated_update(self, ratio: Self, weights: &[Self; 3], a: Self, b: Self) -> Self {
         self + ratio * Self::dot(*weights, [a, b, self])
+    }
+
+    /// [`FusedOps::subtract_products`] where the product or the difference is beyond the range.
+    #[cold]
+    #[inline(never)]
+    fn saturated_difference(self, other: Self, factor: Self) -> Self {
+        self - other * factor
     }
 
     /// Out of line, for what hardly happens.
@@ -179,6 +186,37 @@ impl FusedOps for Q {
             values[k] = if fit { Self::narrow(sums[k]) } else { x[k].saturated_update(ratio, weights, a[k], b[k]) };
         }
         values
+    }
+
+    #[inline(never)]
+    fn subtract_products(values: &mut [Self], others: &[Self], factor: Self) {
+        // Just under a half rounds the difference down where the operator rounds the product up.
+        const ROUND: i64 = Q::HALF - 1;
+        let minus = Self(factor.0.saturating_neg());
+        for (value, other) in values.iter_mut().zip(others) {
+            let sum = Self::sum(value.wide() + ROUND, &([*other], [minus]));
+            *value = if Self::all_fit(&[sum]) {
+                Self::narrow(sum)
+            } else {
+                Self::saturated_difference(*value, *other, factor)
+            };
+        }
+    }
+
+    #[inline(never)]
+    fn divide_all(values: &mut [Self], divisor: Self) {
+        if divisor.0 <= 0 {
+            return plain::divide_all(values, divisor);
+        }
+        let by = Divisor::<{ Self::FRACTION_BITS }>::new(divisor.0 as u32);
+        for value in values {
+            let quotient = by.divide(value.0.unsigned_abs());
+            let signed = quotient as i32;
+            *value = match signed < 0 {
+                true => Self::overflowed(value.0 < 0),
+                false => Self(if value.0 < 0 { -signed } else { signed }),
+            };
+        }
     }
 
     #[inline]

@@ -24,28 +24,36 @@ pub struct BendAngles<S> {
     pub is_extrapolated: bool,
 }
 
+impl<S> BendAngles<S> {
+    /// No sensor was read.
+    pub const UNKNOWN: Self =
+        Self { sensors: [const { None }; SENSORS_PER_SEGMENT], mean: None, is_extrapolated: false };
+}
+
 impl<S: FusedOps> BendSensors<S> {
     /// Sensors that were not read yet.
     pub const fn new() -> Self {
         Self { memory: [Memory::new(); SENSORS_PER_SEGMENT], hysteresis: PrandtlIshlinskii::new() }
     }
 
-    /// Bend angles at these counts, read at `time_us`.
+    /// Takes the bend `angles` at these counts, read at `time_us`, in place; the memory of creep moves where it `is_followed`.
     pub fn read(
         &mut self,
+        angles: &mut BendAngles<S>,
         config: &SegmentConfig<S>,
         counts: [Option<u16>; SENSORS_PER_SEGMENT],
         time_us: u64,
-    ) -> BendAngles<S> {
-        let mut angles = BendAngles { sensors: [None; SENSORS_PER_SEGMENT], mean: None, is_extrapolated: false };
+        is_followed: bool,
+    ) {
+        angles.is_extrapolated = false;
         let sensors = config.bend.iter().zip(counts).zip(&mut self.memory).zip(&mut angles.sensors);
         for (((sensor, counts), memory), angle) in sensors {
+            *angle = None;
             let (Some(sensor), Some(counts)) = (sensor, counts) else { continue };
             let mapped = sensor.map.angle(counts);
             *angle = match (mapped, &sensor.memory) {
                 (Some(theta), Some(config)) => {
-                    let compensated = memory.compensate(config, theta.to_q(), time_us);
-                    Some(theta + S::from_q(compensated - theta.to_q()))
+                    Some(theta + S::from_q(memory.correction(config, theta.to_q(), time_us, is_followed)))
                 }
                 (mapped, _) => mapped,
             };
@@ -56,7 +64,6 @@ impl<S: FusedOps> BendSensors<S> {
             Some(plays) => mean.map(|theta| self.hysteresis.compensate(plays, theta)),
             None => mean,
         };
-        angles
     }
 }
 

@@ -2,7 +2,7 @@
 
 use calibration_tables::MAX_SEGMENTS;
 use estimator_core::{
-    Angle, ArmConfig, FusedOps, Pcc, Q, Shape, Uncertainties, VARIANCE_SCALE, forward_kinematics, shape_uncertainties,
+    Angle, ArmConfig, FusedOps, Pcc, Q, Shape, ShapeUncertainty, Uncertainties, VARIANCE_SCALE, forward_kinematics,
 };
 use nalgebra::DMatrix;
 
@@ -59,6 +59,12 @@ impl<'t, S: FusedOps> Kinematics<'t, S> {
             }
             row[j] += sources.heading + absence[j];
         }
-        shape_uncertainties(self.config.segments, sources.end, headings, shape, |_| true)
+        let mut chain = ShapeUncertainty::<MAX_SEGMENTS>::new();
+        let segments = shape.iter().zip(self.config.segments).zip(&headings).enumerate();
+        let of_segment = |(i, ((shape, config), headings))| {
+            chain.step(i, config, sources, shape, headings);
+            *chain.of(i).expect("there is room")
+        };
+        segments.map(of_segment).collect()
     }
 }

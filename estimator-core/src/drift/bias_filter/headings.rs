@@ -8,7 +8,7 @@ use crate::drift::bias_trace::BiasTrace;
 use crate::drift::heading_gate::{Expected, Verdict};
 use crate::numeric::phase::Turns;
 use crate::numeric::scalar::{Constant, Scalar, TIME_UNIT_S};
-use crate::numeric::variance::{degrees, is_beyond, smaller, variance_deg};
+use crate::numeric::variance::{degrees, smaller, variance_deg};
 use crate::sensing::heading::SegmentHeading;
 
 /// Doubt about a new zero: 2°, a quarter of the bend sensors' variance, and 0.02° a second of absence up to 400 s.
@@ -23,7 +23,7 @@ const RETURNED: Constant = variance_deg(1.0);
 const ABSENT_TIME: Constant = Constant::new(20.0 / TIME_UNIT_S);
 /// An IMU whose bend sensors move by this much, and by four of their standard deviations, must change.
 const FROZEN_MOTION: Constant = degrees(8.0);
-const FROZEN_DEVIATIONS: Constant = Constant::new(1.0 / 4.0);
+const FROZEN_VARIANCE: Constant = variance_deg(8.0 / 4.0);
 
 impl<F: Scalar, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
     /// Headings that are read and plausible, from the base to the tip.
@@ -86,7 +86,7 @@ impl<F: Scalar> SegmentTrack<F> {
     /// Prediction of the heading by the bend sensors and the heading `below`.
     fn expected(&self, below: Turns, bias: Turns, error: &BendErrorConfig) -> Expected<F> {
         let motion = F::constant(FROZEN_MOTION);
-        let is_beyond_errors = is_beyond(motion, FROZEN_DEVIATIONS, F::from_q(error.mean));
+        let is_beyond_errors = F::from_q(error.mean) < F::constant(FROZEN_VARIANCE);
         Expected {
             heading: below + (self.theta + self.motion).to_turns(),
             motion: self.motion,

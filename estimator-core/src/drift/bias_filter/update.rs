@@ -7,6 +7,8 @@ use crate::drift::bias_filter::{BiasFilter, MAX_RATIO, RestChange, SegmentTrack,
 use crate::drift::bias_state::{BIAS, OFFSET};
 use crate::drift::bias_trace::BiasTrace;
 use crate::drift::rest::RestWindow;
+use crate::drift::share::Share;
+use crate::numeric::fused::FusedOps;
 use crate::numeric::phase::Turns;
 use crate::numeric::scalar::{Constant, Scalar};
 use crate::numeric::variance::{degrees, is_beyond, larger, magnitude, scaled_square, smaller, variance_deg};
@@ -45,9 +47,9 @@ const REST_READING: Constant = variance_deg(0.064);
 /// Gate of a heading change at rest: one over three predicted standard deviations.
 const REST_GATE: Constant = Constant::new(1.0 / 3.0);
 
-impl<F: Scalar, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
-    /// The turn of one segment: its bend sensors are held against the IMUs, its states predicted and updated. `false` where the
-    /// turn must be repeated in the next sample.
+impl<F: FusedOps, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
+    /// The turn of one segment: its bend sensors are held against the IMUs, and where a sample does all work, its states are
+    /// predicted and updated. `false` where the turn must be repeated in the next sample.
     pub(super) fn take_turn<S: Scalar>(
         &mut self,
         segments: &[SegmentConfig<S>],
@@ -56,31 +58,77 @@ impl<F: Scalar, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
         angles: &[[Option<F>; SENSORS_PER_SEGMENT]; N],
     ) -> bool {
         let (i, time_us) = (self.turn, sensed.time_us);
-        let (Some(segment), Some(bend), Some(angles)) = (segments.get(i), sensed.bend.get(i), angles.get(i)) else {
-            return false;
-        };
-        let below = i.checked_sub(1).and_then(|below| self.segments.get(below)).copied();
-        let Some(track) = self.segments.get(i) else { return false };
-        let is_read = |track: &SegmentTrack<F>| track.is_heading_read;
-        let are_headings_read = is_read(track) && below.as_ref().is_none_or(is_read);
-        // A heading that is only now and then missing must not be missing at each of the segment's turns.
-        let is_recent = |track: &SegmentTrack<F>| time_us.saturating_sub(track.heading_read_at_us) < RETRY_US;
-        if !are_headings_read && is_recent(track) && below.as_ref().is_none_or(is_recent) {
-            return false;
-        }
-        self.turn = if i + 1 < segments.len().min(N) { i + 1 } else { 0 };
+        let (Some(segment), Some(angles)) = (segments.get(i), angles.get(i)) else { return false };
+        let Some(are_headings_read) = self.are_headings_read(i, time_us) else { return false };
+        self.turn = following(i, segments);
         self.check_bend(i, &segment.bend_error, *angles, are_headings_read, time_us);
+        if sensed.share == Share::Whole {
+            self.grow_offset(i, &segment.bend_error);
+            self.predict(i, filter, time_us);
+            self.update_segment(i, &segment.bend_error, sensed, are_headings_read);
+            self.state.finish_update();
+        }
+        true
+    }
+
+    /// The prediction of the states of the segment whose update is next.
+    pub(super) fn take_prediction<S: Scalar>(
+        &mut self,
+        segments: &[SegmentConfig<S>],
+        filter: &BiasFilterConfig,
+        time_us: u64,
+    ) {
+        let i = self.next_update;
+        let Some(segment) = segments.get(i) else { return };
         self.grow_offset(i, &segment.bend_error);
         self.predict(i, filter, time_us);
+    }
+
+    /// The update by the next segment; what it takes off the covariance follows in the next samples. Where it must wait, so
+    /// does the next share of the work. A sample that has nothing to update looks after rest.
+    pub(super) fn take_update<S: Scalar>(&mut self, segments: &[SegmentConfig<S>], sensed: &SensedArm<S, N>) {
+        let i = self.next_update;
+        let Some(segment) = segments.get(i) else { return };
+        let Some(are_headings_read) = self.are_headings_read(i, sensed.time_us) else { return };
+        self.next_update = following(i, segments);
+        self.update_segment(i, &segment.bend_error, sensed, are_headings_read);
+        if !self.state.is_updating() {
+            self.state.begin_no_update();
+            self.follow_rest(sensed.time_us);
+        }
+    }
+
+    /// Whether the headings of segment `i` and of the one below are read. `None`: they are missing only now and then, which
+    /// must not be at each of the segment's turns.
+    fn are_headings_read(&self, i: usize, time_us: u64) -> Option<bool> {
+        let track = self.segments.get(i)?;
+        let below = i.checked_sub(1).and_then(|below| self.segments.get(below));
+        let is_read = |track: &SegmentTrack<F>| track.is_heading_read;
+        let is_recent = |track: &SegmentTrack<F>| time_us.saturating_sub(track.heading_read_at_us) < RETRY_US;
+        let are_read = is_read(track) && below.is_none_or(is_read);
+        let are_recent = || is_recent(track) && below.is_none_or(is_recent);
+        (are_read || !are_recent()).then_some(are_read)
+    }
+
+    /// Updates all states by what is known of segment `i`.
+    fn update_segment<S: Scalar>(
+        &mut self,
+        i: usize,
+        error: &BendErrorConfig,
+        sensed: &SensedArm<S, N>,
+        are_headings_read: bool,
+    ) {
         let biases = self.state.bias;
-        self.use_tare(i, &segment.bend_error);
+        self.use_tare(i, error);
         self.learn_rate(i);
-        let bend = self.segments.get(i).and_then(|track| track.bend).filter(|_| !bend.is_extrapolated);
-        if let Some(bend) = bend.filter(|_| are_headings_read) {
-            self.update(i, &segment.bend_error, bend, time_us);
+        let is_extrapolated = sensed.bend.get(i).is_none_or(|bend| bend.is_extrapolated);
+        let bend = self.segments.get(i).and_then(|track| track.bend).filter(|_| !is_extrapolated);
+        // One update at a time: that by the bend sensors loses nothing by waiting.
+        let is_free = sensed.share == Share::Whole || !self.state.is_updating();
+        if let Some(bend) = bend.filter(|_| are_headings_read && is_free) {
+            self.update(i, error, bend, sensed.time_us);
         }
         self.follow_biases(&biases);
-        true
     }
 
     /// Moves the headings with the biases that an update has changed, so that the next readings are held against the new ones.
@@ -145,7 +193,7 @@ impl<F: Scalar, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
         let Some(bend) = self.segments.get_mut(i).and_then(|track| track.tare_bend.take()) else { return };
         let nu = self.state.angle_offset(i) - bend - self.state.angle_bias(i);
         let innovation = self.state.innovation(i);
-        self.state.update(&innovation, nu, F::constant(TARE_NOISE) * F::from_q(error.mean));
+        self.state.begin_update(innovation, nu, F::constant(TARE_NOISE) * F::from_q(error.mean));
     }
 
     /// Widens the prior of the offset where the two sensors disagree more than before, or one is lost.
@@ -188,7 +236,7 @@ impl<F: Scalar, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
         if let Some(ratio) = track.noise_ratio(error, bend.theta, time_us) {
             let r = F::from_int(LONG_ERRORS) * ratio * sigma;
             let r = if bend.is_single { F::from_int(SINGLE) * smaller(r, F::constant(LARGEST_SINGLE)) } else { r };
-            self.state.update(&innovation, nu, r);
+            self.state.begin_update(innovation, nu, r);
             (track.travelled, track.updated_at_us) = (F::zero(), time_us);
         }
     }
@@ -204,6 +252,9 @@ impl<F: Scalar, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
     /// The change of heading `j` over a window of rest, per time: H = (v_j: 1). The shape stays: what the heading has changed
     /// by was its bias.
     fn learn_rate(&mut self, j: usize) {
+        if self.state.is_updating() {
+            return;
+        }
         let Some(change) = self.segments.get_mut(j).and_then(|track| track.rest.take()) else { return };
         let dt = since(0, change.length_us);
         let nu = change.heading - self.state.rate_of(j) * dt;
@@ -212,9 +263,14 @@ impl<F: Scalar, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
         if is_beyond(nu, REST_GATE, innovation.variance * dt * dt + r) {
             return;
         }
-        self.state.update(&innovation, nu / dt, r / dt / dt);
+        self.state.begin_update(innovation, nu / dt, r / dt / dt);
         self.state.add_to_bias(j, nu.to_turns());
     }
+}
+
+/// The segment that follows `i` in turn.
+fn following<S>(i: usize, segments: &[SegmentConfig<S>]) -> usize {
+    if i + 1 < segments.len() { i + 1 } else { 0 }
 }
 
 impl<F: Scalar> SegmentTrack<F> {

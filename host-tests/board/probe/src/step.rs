@@ -90,7 +90,7 @@ const CURVE_SENSOR: BendSensorConfig<Q> = {
 };
 
 /// Segments with all that a table can have beside the paper's method.
-static BIAS_FILTER_SEGMENTS: [SegmentConfig<Q>; 6] = {
+static BIAS_FILTER_SEGMENTS: [SegmentConfig<Q>; 8] = {
     let first = SegmentConfig {
         bend: [Some(CURVE_SENSOR); SENSORS_PER_SEGMENT],
         hysteresis: Some([PLAY; 3]),
@@ -101,28 +101,33 @@ static BIAS_FILTER_SEGMENTS: [SegmentConfig<Q>; 6] = {
     let second = SegmentConfig { coupled_to: Some(CoupledSegment { segment: 0, ratio: 1 << 28 }), ..first };
     let fourth = SegmentConfig { coupled_to: Some(CoupledSegment { segment: 2, ratio: 1 << 28 }), ..first };
     let sixth = SegmentConfig { coupled_to: Some(CoupledSegment { segment: 4, ratio: 1 << 28 }), ..first };
-    [first, second, first, fourth, first, sixth]
+    let eighth = SegmentConfig { coupled_to: Some(CoupledSegment { segment: 6, ratio: 1 << 28 }), ..first };
+    [first, second, first, fourth, first, sixth, first, eighth]
 };
 
 const fn degrees(degrees: i64) -> Turns {
     Turns::from_bits((degrees << 32) / 360)
 }
 
-/// The table of six segments with the bias filter, contact and uncertainty.
-pub static BIAS_FILTER_TABLE: ArmConfig<'static, Q> = ArmConfig {
-    segments: &BIAS_FILTER_SEGMENTS,
-    bias_filter: Some(BiasFilterConfig::BNO055),
-    contact: Some(ContactConfig { bend: degrees(5), coupling: degrees(4) }),
-    uncertainty: Some(UncertaintyConfig {
-        theta: Q::from_f64(0.001),
-        bias_share: Q::from_f64(0.5),
-        bend: Q::from_f64(0.2),
-        contact: Q::from_f64(0.1),
-        heading: Q::from_f64(0.007),
-        end: Q::from_f64(6.4e-5),
-    }),
-    ..table(6)
-};
+const fn bias_filter_table(segments: usize) -> ArmConfig<'static, Q> {
+    ArmConfig {
+        segments: BIAS_FILTER_SEGMENTS.split_at(segments).0,
+        bias_filter: Some(BiasFilterConfig::BNO055),
+        contact: Some(ContactConfig { bend: degrees(5), coupling: degrees(4) }),
+        uncertainty: Some(UncertaintyConfig {
+            theta: Q::from_f64(0.001),
+            bias_share: Q::from_f64(0.5),
+            bend: Q::from_f64(0.2),
+            contact: Q::from_f64(0.1),
+            heading: Q::from_f64(0.007),
+            end: Q::from_f64(6.4e-5),
+        }),
+        ..table(segments)
+    }
+}
+
+/// Tables of 6 and 8 segments with the bias filter, contact and uncertainty.
+pub static BIAS_FILTER_TABLES: [ArmConfig<'static, Q>; 2] = [bias_filter_table(6), bias_filter_table(8)];
 
 /// Tables of 1, 2, 6 and 8 segments.
 pub static TABLES: [ArmConfig<'static, Q>; 4] = [table(1), table(2), table(6), table(8)];

@@ -1,0 +1,63 @@
+//! Shares of the work on covariances, which is quadratic in the number of segments.
+//!
+//! Up to 50 Hz a sample does all of it. Above, a sample does one share, which is linear: the prediction of one segment's states
+//! in the bias filter, the update by that segment, or one block row of what the update takes off the covariance.
+
+use core::ops::Range;
+
+use crate::config::AnchorConfig;
+
+/// Highest sample rate at which a sample does all work, mHz.
+const WHOLE_UP_TO_MILLIHERTZ: u32 = 50_000;
+
+/// Share of one sample.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Share {
+    /// All of it.
+    Whole,
+    /// The prediction of the segment whose update is next.
+    Prediction,
+    /// The update by that segment.
+    Update,
+    /// One block row of the covariance, one segment of the shape's uncertainty, and creep of that segment's sensors.
+    Row(usize),
+}
+
+/// Counter of the shares: a prediction, an update, and then all `N` rows.
+#[derive(Debug, Clone, Copy)]
+pub struct ShareCounter<const N: usize> {
+    share: Share,
+}
+
+impl<const N: usize> ShareCounter<N> {
+    /// A prediction is next.
+    pub const fn new() -> Self {
+        Self { share: Share::Prediction }
+    }
+
+    /// Share of this sample.
+    pub fn share(&self, rule: &AnchorConfig) -> Share {
+        if rule.sample_rate_millihertz <= WHOLE_UP_TO_MILLIHERTZ { Share::Whole } else { self.share }
+    }
+
+    /// Goes on to the next share.
+    pub fn advance(&mut self) {
+        self.share = match self.share {
+            Share::Row(row) if row + 1 < N => Share::Row(row + 1),
+            Share::Row(_) | Share::Whole => Share::Prediction,
+            Share::Prediction => Share::Update,
+            Share::Update => Share::Row(0),
+        };
+    }
+}
+
+impl Share {
+    /// Block rows and segments of the share, in an arm of up to `count`.
+    pub fn rows(self, count: usize) -> Range<usize> {
+        match self {
+            Self::Whole => 0..count,
+            Self::Row(row) => row..row + 1,
+            Self::Prediction | Self::Update => 0..0,
+        }
+    }
+}
