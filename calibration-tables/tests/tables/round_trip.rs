@@ -136,13 +136,14 @@ fn rmse() -> impl Strategy<Value = RmseKeys> {
 
 fn drift_tuning() -> impl Strategy<Value = DriftTuningKeys> {
     let pair = || [magnitude(-5.0..1.0), magnitude(-5.0..1.0)];
-    (any::<u32>(), pair(), pair(), pair(), pair()).prop_map(
-        |(runs, rate_deg_per_s, rate_random_walk, angle_random_walk, offset_deg)| DriftTuningKeys {
+    (any::<u32>(), pair(), pair(), pair(), pair(), pair()).prop_map(
+        |(runs, rate_deg_per_s, rate_random_walk, angle_random_walk, offset_deg, offset_s)| DriftTuningKeys {
             runs: runs.into(),
             rate_deg_per_s,
             rate_random_walk_deg_per_s_sqrt_s: rate_random_walk,
             angle_random_walk_deg_per_sqrt_s: angle_random_walk,
             offset_deg,
+            offset_s,
         },
     )
 }

@@ -12,7 +12,7 @@ iterations = 12
 kept = 9
 stopped = "interrupted"
 variances = 1.5
-drift = { runs = 31, rate_deg_per_s = [0.05, 0.08], rate_random_walk_deg_per_s_sqrt_s = [2e-4, 1e-4], angle_random_walk_deg_per_sqrt_s = [0.01, 0.02], offset_deg = [1.0, 1.5] }
+drift = { runs = 31, rate_deg_per_s = [0.05, 0.08], rate_random_walk_deg_per_s_sqrt_s = [2e-4, 1e-4], angle_random_walk_deg_per_sqrt_s = [0.01, 0.02], offset_deg = [1.0, 1.5], offset_s = [1500.0, 2000.0] }
 before = { position_rmse_mm = 4.0, tip_rmse_mm = 8.0, heading_rmse_deg = 1.5 }
 after = { position_rmse_mm = 3.0, tip_rmse_mm = 6.0, heading_rmse_deg = 1.25 }
 held_back_before = { position_rmse_mm = 5.0, tip_rmse_mm = 9.0, heading_rmse_deg = 2.0 }
@@ -43,6 +43,7 @@ fn every_key_is_read() {
         rate_random_walk_deg_per_s_sqrt_s: [2e-4, 1e-4],
         angle_random_walk_deg_per_sqrt_s: [0.01, 0.02],
         offset_deg: [1.0, 1.5],
+        offset_s: [1500.0, 2000.0],
     };
     assert_eq!(tuning.drift, Some(drift));
     let figures = [tuning.before, tuning.after, tuning.held_back_before, tuning.held_back_after]
