@@ -51,7 +51,7 @@ struct Drift<const N: usize, const W: usize, T> {
     moving_average: MovingAverage<N, W>,
     bias_filter: BiasFilter<Q, N, T>,
     has_bias_filter: bool,
-    shares: ShareCounter<N>,
+    shares: ShareCounter,
 }
 
 impl<const N: usize, const W: usize, T: BiasTrace<Q>> Drift<N, W, T> {
@@ -86,13 +86,17 @@ impl<const N: usize, const W: usize, T: BiasTrace<Q>> Drift<N, W, T> {
     }
 
     /// Ends a sample, after all that reads the covariance.
-    fn finish(&mut self, share: Share) {
-        if let Share::Row(_) = share {
+    fn finish(&mut self, share: Share, segments: usize) {
+        if let Share::Row(row) = share {
             self.bias_filter.reduce_covariance();
+            if row + 1 >= segments {
+                // Rows of segments that the arm does not have.
+                self.bias_filter.finish_covariance();
+            }
         }
         let waits = share == Share::Update && self.bias_filter.is_started() && !self.bias_filter.is_updating();
         if !waits {
-            self.shares.advance();
+            self.shares.advance(segments);
         }
     }
 }
@@ -210,7 +214,7 @@ impl<'t, S: FusedOps, const N: usize, const W: usize, T: BiasTrace<Q>> Estimator
         self.fuse(&corrected);
         self.detect_contact(&corrected);
         self.follow_uncertainty();
-        self.drift.finish(self.sensed.share);
+        self.drift.finish(self.sensed.share, self.segments.len());
     }
 
     /// Sensing: counts to bend angles, IMU readings to headings.

@@ -15,7 +15,10 @@ fn magnitude(powers: std::ops::Range<f64>) -> impl Strategy<Value = f64> {
 
 /// A map that only rises or only falls: its angles at both ends, and a curvature that leaves a slope at both.
 fn monotonic_map() -> impl Strategy<Value = BendKeys> {
-    let volts = (0.0..3.0_f64, 0.2..3.3_f64).prop_map(|(lo, width)| [lo, (lo + width).min(3.3)]);
+    map_over((0.0..3.0_f64, 0.2..3.3_f64).prop_map(|(lo, width)| [lo, (lo + width).min(3.3)]))
+}
+
+fn map_over(volts: impl Strategy<Value = [f64; 2]>) -> impl Strategy<Value = BendKeys> {
     let angles = (-3.0..3.0_f64, prop_oneof![-3.0..-0.05_f64, 0.05..3.0_f64]);
     let curve = -0.9..0.9_f64;
     (volts, angles, curve, option::of(0.0..360.0_f64)).prop_map(|([lo, hi], (at_lo, rise), curve, rmse_deg)| {
@@ -26,9 +29,9 @@ fn monotonic_map() -> impl Strategy<Value = BendKeys> {
     })
 }
 
-/// A map that does not say its voltages.
+/// A map that does not say its voltages, and so holds over all of them.
 fn bare_map() -> impl Strategy<Value = BendKeys> {
-    monotonic_map().prop_map(|map| BendKeys { volts: None, ..map })
+    map_over(Just([0.0, 3.3])).prop_map(|map| BendKeys { volts: None, ..map })
 }
 
 fn noise() -> impl Strategy<Value = NoiseKeys> {

@@ -267,6 +267,11 @@ impl<F: FusedOps, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
     pub fn reduce_covariance(&mut self) {
         self.state.reduce_row();
     }
+
+    /// Brings all of the covariance up to date.
+    pub fn finish_covariance(&mut self) {
+        self.state.finish_update();
+    }
 }
 
 impl<S: Scalar, F: FusedOps, const N: usize, T: BiasTrace<F>> DriftCorrection<S, N> for BiasFilter<F, N, T> {

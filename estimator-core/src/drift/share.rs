@@ -23,13 +23,13 @@ pub enum Share {
     Row(usize),
 }
 
-/// Counter of the shares: a prediction, an update, and then all `N` rows.
+/// Counter of the shares: a prediction, an update, and then a row for each segment of the arm.
 #[derive(Debug, Clone, Copy)]
-pub struct ShareCounter<const N: usize> {
+pub struct ShareCounter {
     share: Share,
 }
 
-impl<const N: usize> ShareCounter<N> {
+impl ShareCounter {
     /// A prediction is next.
     pub const fn new() -> Self {
         Self { share: Share::Prediction }
@@ -40,10 +40,10 @@ impl<const N: usize> ShareCounter<N> {
         if rule.sample_rate_millihertz <= WHOLE_UP_TO_MILLIHERTZ { Share::Whole } else { self.share }
     }
 
-    /// Goes on to the next share.
-    pub fn advance(&mut self) {
+    /// Goes on to the next share of an arm of `segments`.
+    pub fn advance(&mut self, segments: usize) {
         self.share = match self.share {
-            Share::Row(row) if row + 1 < N => Share::Row(row + 1),
+            Share::Row(row) if row + 1 < segments => Share::Row(row + 1),
             Share::Row(_) | Share::Whole => Share::Prediction,
             Share::Prediction => Share::Update,
             Share::Update => Share::Row(0),

@@ -92,7 +92,8 @@ fn set_errors(sweep: &Sweep, sensors: &[Sensor], table: &mut ArmFile) {
 fn set_contact(sweep: &Sweep, sensors: &[Sensor], table: &mut ArmFile) {
     let of_segment = |i: usize| sensors.iter().filter(move |sensor| sensor.segment == i).map(|sensor| &sensor.fitted);
     let sensors: Vec<Vec<_>> = (0..table.segments.len()).map(|i| of_segment(i).collect()).collect();
-    let has_limits = table.contact.is_none();
+    // Thresholds beside limits are those that an earlier calibration has written.
+    let has_limits = table.contact.is_none() || table.segments.iter().any(|segment| segment.contact.is_some());
     table.contact.get_or_insert_default();
     contact::set(sweep, &sensors, has_limits, table);
 }
