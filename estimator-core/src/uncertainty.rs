@@ -17,6 +17,12 @@ pub struct ShapeUncertainty<const N: usize> {
     newest: [Uncertainty; N],
 }
 
+impl<const N: usize> Default for ShapeUncertainty<N> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
 impl<const N: usize> ShapeUncertainty<N> {
     /// Nothing known.
     pub const fn new() -> Self {

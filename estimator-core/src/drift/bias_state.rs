@@ -203,7 +203,7 @@ impl<S: Scalar, const N: usize, T: BiasTrace<S>> BiasState<S, N, T> {
         let p = &mut self.covariance;
         let dt = if p[i][BIAS][i][BIAS] < S::constant(LARGEST) { dt } else { S::zero() };
         for j in (0..N).filter(|j| *j != i) {
-            for k in 0..3 {
+            for k in [BIAS, RATE, OFFSET] {
                 let [bias, rate, offset] = p[j][k][i];
                 let (bias, offset) = (bias + dt * rate, offset * decay);
                 p[j][k][i] = [bias, rate, offset];

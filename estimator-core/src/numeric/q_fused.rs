@@ -212,9 +212,10 @@ impl FusedOps for Q {
         for value in values {
             let quotient = by.divide(value.0.unsigned_abs());
             let signed = quotient as i32;
-            *value = match signed < 0 {
-                true => Self::overflowed(value.0 < 0),
-                false => Self(if value.0 < 0 { -signed } else { signed }),
+            *value = if signed < 0 {
+                Self::overflowed(value.0 < 0)
+            } else {
+                Self(if value.0 < 0 { -signed } else { signed })
             };
         }
     }

@@ -171,14 +171,14 @@ impl Values {
     fn residuals(&self, model: &Model, i: usize, j: usize, angles: &[Vec<Option<f64>>]) -> Vec<Residual> {
         let mut expected = 0.0;
         let behind = self.responses(model, i, j, angles).into_iter().zip(angles[i].iter().zip(&self.theta[i]));
-        let residual = |(behind, (angle, theta)): (Option<[f64; 3]>, (&Option<f64>, &Option<f64>))| {
+        let residuals = behind.map(|(behind, (angle, theta))| {
             let [lead, own, motion] = behind?;
             // The ratio changes where the true angle is zero.
             let theta = lead + (*theta)? - (*angle)?;
             expected += model.curve(theta) - model.curve(theta - motion);
             Some([own - expected, expected])
-        };
-        behind.map(residual).collect()
+        });
+        residuals.collect()
     }
 
     fn limit(&self, residuals: &[Residual]) -> Option<ChangeKeys> {

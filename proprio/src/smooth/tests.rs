@@ -76,12 +76,15 @@ struct Moment {
     p: DMatrix<f64>,
 }
 
+/// A transition matrix, and the moment that it comes from.
+type Transition = (DMatrix<f64>, Moment);
+
 /// The textbook: x and P before and after each transition F, and the recursion x_s = x + C (x_s' − F x),
 /// P_s = P + C (P_s' − P') Cᵀ with C = P Fᵀ P'⁻¹. Gives the smoothed moment at each output.
 fn rauch_tung_striebel(operations: &[BiasOperation<Q>]) -> Vec<Moment> {
     let mut now = Moment { x: DVector::zeros(N), p: DMatrix::zeros(N, N) };
     // Filtered moments, each with the transition and the predicted moment that follow it.
-    let mut moments: Vec<(Moment, Option<(DMatrix<f64>, Moment)>, bool)> = Vec::new();
+    let mut moments: Vec<(Moment, Option<Transition>, bool)> = Vec::new();
     for operation in operations {
         let mut transition = None;
         match *operation {
