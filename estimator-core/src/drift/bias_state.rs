@@ -195,6 +195,7 @@ impl<S: Scalar, const N: usize, T: BiasTrace<S>> BiasState<S, N, T> {
         }
     }
 
+    #[expect(clippy::needless_range_loop, reason = "each index is of two arrays")]
     fn propagate_step(&mut self, i: usize, dt: S, decay: S) {
         // Indices that this and the loops bound by the arrays' lengths: the compiler leaves out their checks.
         if i >= N {
@@ -203,7 +204,7 @@ impl<S: Scalar, const N: usize, T: BiasTrace<S>> BiasState<S, N, T> {
         let p = &mut self.covariance;
         let dt = if p[i][BIAS][i][BIAS] < S::constant(LARGEST) { dt } else { S::zero() };
         for j in (0..N).filter(|j| *j != i) {
-            for k in [BIAS, RATE, OFFSET] {
+            for k in 0..3 {
                 let [bias, rate, offset] = p[j][k][i];
                 let (bias, offset) = (bias + dt * rate, offset * decay);
                 p[j][k][i] = [bias, rate, offset];
