@@ -59,7 +59,7 @@ impl ResponseFilter {
     /// Takes one value; gives the change of the output.
     fn step(&mut self, response: Response, angle: i32) -> i32 {
         let ahead = angle.wrapping_sub(self.play);
-        self.play = self.play.wrapping_add(ahead.saturating_sub(ahead.clamp(-response.play, response.play)));
+        self.play = self.play.wrapping_add(ahead.saturating_sub(ahead.min(response.play).max(-response.play)));
         let behind = self.play.wrapping_sub(self.lag);
         let change = ((i64::from(behind) * i64::from(response.share)) >> 16) as i32;
         self.lag = self.lag.wrapping_add(change);
