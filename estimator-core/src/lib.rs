@@ -62,7 +62,8 @@ pub use config::{
     ContactConfig, ContactLimits, CoupledSegment, Coupling, CurveMap, KNOTS, KalmanParams, Lag, MemoryConfig, OffsetAt,
     PLAYS, Play, QuadraticMap, Response, SENSORS_PER_SEGMENT, SegmentConfig, UncertaintyConfig, VARIANCE_SCALE,
 };
-pub use drift::bias_state::{BiasState, Innovation, Row};
+pub use drift::bias_filter::ABSENT_TIME_S;
+pub use drift::bias_state::{BiasState, Innovation, LONGEST_PREDICTION_US, Row};
 pub use drift::bias_trace::{BiasMeasurement, BiasOperation, BiasTrace};
 pub use drift::decimator::{Decimated, Decimator};
 pub use drift::moving_average::MovingAverageAnchor;

@@ -143,8 +143,8 @@ fn limited_segments() -> [SegmentConfig<f64>; 2] {
     [first, SegmentConfig { coupled_to: Some(CoupledSegment { segment: 0, ratio }), contact, ..second }]
 }
 
-/// Whether contact is told of each segment at last, after so many values of a swing and then `pushed` values of a push that
-/// bends the second segment by 1° more in each.
+/// Contact of each segment at the end of a swing and of a push of `pushed` values, each of which bends the second segment by
+/// 1° more.
 fn told_after(estimator: &mut Estimator<f64, 2, 100>, pushed: u32) -> [bool; 2] {
     for k in 0..40_u32 {
         let swing = f64::from(k.min(20));

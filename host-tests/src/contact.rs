@@ -46,7 +46,7 @@ impl AddAssign for Found {
     }
 }
 
-/// How often contact is told of where there was none before: of a free arm, false alarms.
+/// Number of contacts that begin; of a free arm, of false alarms.
 #[must_use]
 pub fn alarms(told: &[[bool; SEGMENTS]]) -> usize {
     told.windows(2).filter(|pair| pair[1] != [false; SEGMENTS] && pair[0] == [false; SEGMENTS]).count()
@@ -70,7 +70,7 @@ impl Run {
         Self { told, bends_rad: session.contact_bends_rad, pushes: session.pushes }
     }
 
-    /// How often contact is told of where there was none before: of a free arm, false alarms.
+    /// Number of contacts that begin; of a free arm, of false alarms.
     #[must_use]
     pub fn alarms(&self) -> usize {
         alarms(&self.told)

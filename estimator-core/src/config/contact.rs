@@ -39,7 +39,7 @@ pub struct ChangeLimit {
     pub motion: Turns,
 }
 
-/// Free motion of a segment beside the one that it is coupled to: both responses to the same pressure.
+/// Coupling of a segment to an earlier one in free motion: the responses of both to the same pressure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Coupling {
     /// θ over that of the coupled segment where the latter is negative, in units of 2⁻²⁸, within ±8.

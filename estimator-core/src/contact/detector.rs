@@ -196,13 +196,13 @@ impl ActiveContact {
 
 impl Thresholds {
     /// The arm's, of the IMUs against the bend sensors.
-    pub fn of_bend(config: &ContactConfig) -> Self {
+    pub const fn of_bend(config: &ContactConfig) -> Self {
         let change = config.bend.bits() as u32;
         Self { change, excess_shift: HYSTERESIS_SHIFT, ..Self::of_coupling(config) }
     }
 
     /// The arm's, of a segment against the coupled one.
-    pub fn of_coupling(config: &ContactConfig) -> Self {
+    pub const fn of_coupling(config: &ContactConfig) -> Self {
         Self {
             change: config.coupling.bits() as u32,
             motion: 0,
@@ -215,7 +215,7 @@ impl Thresholds {
     }
 
     /// Those of a residual in the sweep.
-    pub fn of_limit(limit: &ChangeLimit) -> Self {
+    pub const fn of_limit(limit: &ChangeLimit) -> Self {
         Self {
             change: limit.change.bits() as u32,
             motion: limit.motion.bits() as u32,
@@ -241,35 +241,21 @@ mod tests {
 
     use std::vec::Vec;
 
-    use super::{
-        ChangeDetector, CoupledSegment, DEBOUNCE, EXCESS_SHIFT, HOLD_SHIFT, LONGEST_WINDOW, Residual, SHORT_WINDOW,
-        TIMEOUT, Thresholds,
-    };
+    use super::{ChangeDetector, CoupledSegment, Residual, TIMEOUT, Thresholds};
+    use crate::config::{ChangeLimit, ContactConfig};
+    use crate::numeric::phase::Turns;
 
-    /// 4° and 1°, in units of 2⁻³² turns.
-    const LIMIT: u32 = 47_721_859;
+    /// 1°, in units of 2⁻³² turns.
     const DEGREE: i32 = 11_930_465;
 
-    const COUPLING: Thresholds = Thresholds {
-        change: LIMIT,
-        motion: 0,
-        excess_shift: 31,
-        hold_shift: 0,
-        window: SHORT_WINDOW,
-        debounce: 1,
-        has_zero: true,
-    };
-    const BEND: Thresholds = Thresholds { excess_shift: 2, ..COUPLING };
-    /// By the sweep, which has moved by 10° in half a second.
-    const SWEPT: Thresholds = Thresholds {
-        motion: 5 * DEGREE as u32,
-        excess_shift: EXCESS_SHIFT,
-        hold_shift: HOLD_SHIFT,
-        window: LONGEST_WINDOW as u8,
-        debounce: DEBOUNCE,
-        has_zero: false,
-        ..COUPLING
-    };
+    /// 4° for either residual.
+    const LIMIT: Turns = Turns::from_bits(47_721_859);
+    const CONFIG: ContactConfig = ContactConfig { bend: LIMIT, coupling: LIMIT };
+    const COUPLING: Thresholds = Thresholds::of_coupling(&CONFIG);
+    const BEND: Thresholds = Thresholds::of_bend(&CONFIG);
+    /// By the sweep, which has moved by 5° in half a second.
+    const SWEPT: Thresholds =
+        Thresholds::of_limit(&ChangeLimit { change: LIMIT, motion: Turns::from_bits(5 * DEGREE as i64) });
 
     /// Whether each of the residuals, in degrees, is seen as contact; the segment moves as they do, tenfold.
     fn touched(limits: Thresholds, degrees: impl IntoIterator<Item = i32>) -> Vec<bool> {
@@ -326,7 +312,7 @@ mod tests {
         assert_eq!(coupled.residual(5 * DEGREE, -4 * DEGREE), 2 * DEGREE);
     }
 
-    /// Whether each residual is seen as contact by [`SWEPT`], with the motion of the segment beside it, degrees.
+    /// Contact after each residual by [`SWEPT`]; residuals and the segment's angles in degrees.
     fn touched_in_motion(values: impl IntoIterator<Item = [i32; 2]>) -> Vec<bool> {
         let mut detector = ChangeDetector::new();
         let step = |[residual, angle]: [i32; 2]| {

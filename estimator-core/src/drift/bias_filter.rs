@@ -10,6 +10,8 @@ mod headings;
 mod tare;
 mod update;
 
+pub use headings::ABSENT_TIME_S;
+
 use crate::config::{ArmConfig, BendErrorConfig, SENSORS_PER_SEGMENT, SegmentConfig};
 use crate::drift::bend_monitor::{BendMonitor, TrustedBend};
 use crate::drift::bias_filter::tare::TareStatistics;

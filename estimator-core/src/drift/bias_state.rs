@@ -37,12 +37,13 @@ pub type Row<S, const N: usize> = [[S; 3]; N];
 const LARGEST: Constant = Constant::new(16.0);
 /// Largest variance of a rate, 0.23 °/s.
 const LARGEST_RATE: Constant = Constant::new(4.0);
-/// Longest prediction: 384 s, six time units.
-const LONGEST_US: u64 = 384_000_000;
+/// Longest prediction, µs: 384 s, six time units.
+pub const LONGEST_PREDICTION_US: u64 = 384_000_000;
 /// Growth of a bias's variance by its rate in one step of a prediction, 9°: the variance stays within fixed point.
 const LARGEST_GROWTH: Constant = Constant::new(1.6);
 /// A prediction over a time unit's quarter grows by less.
 const SHORT: Constant = Constant::new(0.25);
+
 /// States and covariance, and a [trace](BiasTrace) of the operations on them.
 #[derive(Debug, Clone, Copy)]
 pub struct BiasState<S, const N: usize, T = ()> {
@@ -159,7 +160,7 @@ impl<S: Scalar, const N: usize, T: BiasTrace<S>> BiasState<S, N, T> {
 
     fn elapsed_until(&self, i: usize, time_us: u64) -> Option<S> {
         let elapsed_us = time_us.checked_sub(*self.predicted_at_us.get(i)?).filter(|us| *us > 0)?;
-        Some(S::from_micros(elapsed_us.min(LONGEST_US) as u32))
+        Some(S::from_micros(elapsed_us.min(LONGEST_PREDICTION_US) as u32))
     }
 
     /// β ← β + v `dt`.

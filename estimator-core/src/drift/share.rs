@@ -40,7 +40,7 @@ impl ShareCounter {
         if rule.sample_rate_millihertz <= WHOLE_UP_TO_MILLIHERTZ { Share::Whole } else { self.share }
     }
 
-    /// Goes on to the next share of an arm of `segments`.
+    /// Selects the next sample's share, for an arm of `segments`.
     pub fn advance(&mut self, segments: usize) {
         self.share = match self.share {
             Share::Row(row) if row + 1 < segments => Share::Row(row + 1),

@@ -3,7 +3,7 @@
 use std::vec::IntoIter;
 
 use calibration_tables::MAX_SEGMENTS;
-use estimator_core::{ArmConfig, BiasOperation, FusedOps, Method, Q, TIME_UNIT_S};
+use estimator_core::{ArmConfig, BiasOperation, FusedOps, LONGEST_PREDICTION_US, Method, Q, TIME_UNIT_S};
 
 use super::adjoint::Adjoint;
 use super::correction::{Correction, RowCovariance};
@@ -14,9 +14,6 @@ use super::shape::{Kinematics, Smoothed};
 use super::step::{Step, bias};
 use crate::replay::Outcome;
 use crate::session::Row;
-
-/// Longest prediction of the bias filter, time units.
-const LONGEST: f64 = 6.0;
 
 /// The pass over all rows after the [forward pass](super::ForwardPass) over the same.
 pub struct SmoothingPass<'t, S> {
@@ -92,7 +89,8 @@ impl<'t, S: FusedOps> SmoothingPass<'t, S> {
 
     /// The covariance at the time of the row: the filter's own predictions take turns.
     fn row_covariance(&self, time_us: u64) -> RowCovariance {
-        let elapsed = |at_us: &u64| (time_us.saturating_sub(*at_us) as f64 / 1e6 / TIME_UNIT_S).min(LONGEST);
+        let elapsed =
+            |at_us: &u64| time_us.saturating_sub(*at_us).min(LONGEST_PREDICTION_US) as f64 / 1e6 / TIME_UNIT_S;
         RowCovariance::new(self.covariance.p(), &self.predicted_at_us.iter().map(elapsed).collect::<Vec<_>>())
     }
 

@@ -1,9 +1,8 @@
 //! Corrections of the headings: a heading that was read by its bias, an absent one by its neighbours.
 
-use super::correction::Correction;
+use estimator_core::ABSENT_TIME_S;
 
-/// An absent heading is drawn to its bend sensors with this time constant, s: that of the bias filter.
-const ABSENT_S: f64 = 20.0;
+use super::correction::Correction;
 
 /// What a segment's sensors gave in a row.
 #[derive(Debug, Clone, Copy)]
@@ -46,7 +45,7 @@ impl HeadingCorrections {
     }
 
     fn absent(&self, i: usize, below: f64, correction: &Correction, present: &[Present], elapsed_s: f64) -> f64 {
-        let share = if present[i].bend { (elapsed_s / ABSENT_S).min(1.0) } else { 0.0 };
+        let share = if present[i].bend { (elapsed_s / ABSENT_TIME_S).min(1.0) } else { 0.0 };
         let own = below + self.angles[i] + share * (-correction.offsets[i] - self.angles[i]);
         if present.get(i + 1).is_some_and(|above| above.heading) {
             f64::midpoint(own, -correction.biases[i + 1] - self.angles[i + 1])

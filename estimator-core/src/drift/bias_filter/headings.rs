@@ -19,8 +19,10 @@ const NEW_ZERO_RATE: Constant = variance_deg(0.025 * TIME_UNIT_S);
 const UNSEEN_ZERO: Constant = variance_deg(15.0);
 /// Doubt about an IMU that returned near its old zero.
 const RETURNED: Constant = variance_deg(1.0);
-/// An absent heading is drawn to its bend sensors with this time constant, time units: 20 s.
-const ABSENT_TIME: Constant = Constant::new(20.0 / TIME_UNIT_S);
+/// An absent heading is drawn to its bend sensors with this time constant, s.
+pub const ABSENT_TIME_S: f64 = 20.0;
+/// The same in time units.
+const ABSENT_TIME: Constant = Constant::new(ABSENT_TIME_S / TIME_UNIT_S);
 /// An IMU whose bend sensors move by this much, and by four of their standard deviations, must change.
 const FROZEN_MOTION: Constant = degrees(8.0);
 const FROZEN_VARIANCE: Constant = variance_deg(8.0 / 4.0);

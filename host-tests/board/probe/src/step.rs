@@ -132,18 +132,23 @@ pub static BIAS_FILTER_TABLES: [ArmConfig<'static, Q>; 2] = [bias_filter_table(6
 /// Tables of 1, 2, 6 and 8 segments.
 pub static TABLES: [ArmConfig<'static, Q>; 4] = [table(1), table(2), table(6), table(8)];
 
+/// The estimator of an arm of up to `N` segments.
+pub type ProbedEstimator<const N: usize> = Estimator<'static, Q, N, WINDOW>;
+
 /// All steps of one arm.
 #[inline(never)]
 pub fn steps<const N: usize>(table: &'static ArmConfig<'static, Q>) {
-    run::<N>(table, STEPS, |estimator, sample| {
+    // Made where it stays: the stack has no room for a copy.
+    run(&mut ProbedEstimator::<N>::const_new(table), STEPS, |estimator, sample| {
         core::hint::black_box(estimator.update(sample));
     });
 }
 
-/// All steps of one arm, at rest at last, each with the covariances of its shape.
+/// All steps of one arm, at rest at last, each with the covariances of its shape. The estimator is a static, as in the
+/// firmware: the stack has no room for that of eight segments.
 #[inline(never)]
-pub fn steps_with_uncertainty<const N: usize>(table: &'static ArmConfig<'static, Q>) {
-    run::<N>(table, STEPS_WITH_REST, |estimator, sample| {
+pub fn steps_with_uncertainty<const N: usize>(estimator: &mut ProbedEstimator<N>) {
+    run(estimator, STEPS_WITH_REST, |estimator, sample| {
         estimator.update(sample);
         core::hint::black_box(&estimator.uncertainties());
     });
@@ -162,12 +167,10 @@ pub fn alone(run: impl FnOnce()) -> ! {
 
 #[inline]
 fn run<const N: usize>(
-    table: &'static ArmConfig<'static, Q>,
+    estimator: &mut ProbedEstimator<N>,
     steps: u32,
-    step: impl Fn(&mut Estimator<'static, Q, N, WINDOW>, &Sample<N>),
+    step: impl Fn(&mut ProbedEstimator<N>, &Sample<N>),
 ) {
-    // Made where it stays: the stack has no room for a copy.
-    let mut estimator = Estimator::const_new(table);
     if estimator.start().is_err() {
         return;
     }
@@ -175,7 +178,7 @@ fn run<const N: usize>(
     for k in 0..steps {
         let sample = arm.sample(u64::from(k) * SAMPLE_US, k < STEPS);
         step_begins((&raw const sample).cast());
-        step(&mut estimator, &sample);
+        step(estimator, &sample);
         step_ends();
     }
 }

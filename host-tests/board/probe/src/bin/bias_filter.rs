@@ -5,10 +5,10 @@
 #![no_std]
 #![no_main]
 
-use board_probe::step::{BIAS_FILTER_TABLES, alone, steps_with_uncertainty};
+use board_probe::step::{BIAS_FILTER_TABLES, ProbedEstimator, alone, steps_with_uncertainty};
 
 #[cortex_m_rt::entry]
 fn main() -> ! {
-    let [six, _] = &BIAS_FILTER_TABLES;
-    alone(|| steps_with_uncertainty::<6>(six))
+    static mut SIX: ProbedEstimator<6> = ProbedEstimator::const_new(&BIAS_FILTER_TABLES[0]);
+    alone(|| steps_with_uncertainty(SIX))
 }
