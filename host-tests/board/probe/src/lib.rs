@@ -7,7 +7,7 @@
 //! | `preemption` | in which order tasks of three priorities run |
 //! | `step` | the estimator's step and nothing else, for the benchmark |
 //! | `bias_filter` | the same with bias filter, contact and uncertainty |
-//! | `bias_filter_growth` | that for arms of 6 and 8 segments |
+//! | `bias_filter_growth` | that for an arm of eight segments |
 //! | `growth` | `step` for arms of 1 to 8 segments |
 #![no_std]
 

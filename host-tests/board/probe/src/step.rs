@@ -144,8 +144,7 @@ pub fn steps<const N: usize>(table: &'static ArmConfig<'static, Q>) {
     });
 }
 
-/// All steps of one arm, at rest at last, each with the covariances of its shape. The estimator is a static, as in the
-/// firmware: the stack has no room for that of eight segments.
+/// All steps of one arm, at rest at last, each with the covariances of its shape.
 #[inline(never)]
 pub fn steps_with_uncertainty<const N: usize>(estimator: &mut ProbedEstimator<N>) {
     run(estimator, STEPS_WITH_REST, |estimator, sample| {

@@ -9,6 +9,6 @@ use board_probe::step::{BIAS_FILTER_TABLES, ProbedEstimator, alone, steps_with_u
 
 #[cortex_m_rt::entry]
 fn main() -> ! {
-    static mut SIX: ProbedEstimator<6> = ProbedEstimator::const_new(&BIAS_FILTER_TABLES[0]);
-    alone(|| steps_with_uncertainty(SIX))
+    let [six, _] = &BIAS_FILTER_TABLES;
+    alone(|| steps_with_uncertainty(&mut ProbedEstimator::<6>::const_new(six)))
 }

@@ -43,8 +43,8 @@ pub fn figures() -> [Figure; 8] {
     let [(_, _, bias_filter)] = &arms_of("bias_filter", &[6], STEPS + REST)[..] else {
         panic!("the firmware steps one arm")
     };
-    let [(_, _, of_six), (_, _, of_eight)] = &arms_of("bias_filter_growth", &[6, 8], STEPS + REST)[..] else {
-        panic!("the firmware steps two arms")
+    let [(_, _, of_eight)] = &arms_of("bias_filter_growth", &[8], STEPS + REST)[..] else {
+        panic!("the firmware steps one arm")
     };
     let for_each =
         |arm: usize| growth.get(arm).map_or(f64::NAN, |(segments, _, after)| after.most as f64 / f64::from(*segments));
@@ -55,7 +55,7 @@ pub fn figures() -> [Figure; 8] {
         Figure { name: "step_growth", value: for_each(3) / for_each(2) },
         Figure { name: "step_routines", value: unwanted(&elf("board-probe", "step")) as f64 },
         Figure { name: "bias_filter_instructions", value: bias_filter.most as f64 },
-        Figure { name: "bias_filter_growth", value: of_eight.most as f64 / 8.0 / (of_six.most as f64 / 6.0) },
+        Figure { name: "bias_filter_growth", value: of_eight.most as f64 / 8.0 / (bias_filter.most as f64 / 6.0) },
         Figure { name: "bias_filter_routines", value: unwanted(&elf("board-probe", "bias_filter")) as f64 },
     ]
 }
