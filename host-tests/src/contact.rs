@@ -4,7 +4,7 @@ use std::error::Error;
 use std::ops::AddAssign;
 
 use calibration_tables::ArmFile;
-use proprio::replay::Outcome;
+use proprio_analysis::Outcome;
 use rig_twin::{Push, SEGMENTS, Scenario, Setup};
 
 use crate::twin::TwinSession;

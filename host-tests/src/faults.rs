@@ -5,7 +5,7 @@
 
 use std::ops::Range;
 
-use proprio::simulate::Recorded;
+use proprio_simulation::Recorded;
 use rig_twin::{BEND_SENSORS, SEGMENTS};
 
 /// The highest count of the converter.
@@ -140,7 +140,7 @@ fn shift(sample: &mut Recorded, sensor: usize, counts: f64) {
 
 #[cfg(test)]
 mod tests {
-    use proprio::simulate::Simulation;
+    use proprio_simulation::Simulation;
     use rig_twin::Scenario;
 
     use super::{Recorded, Spoiler};

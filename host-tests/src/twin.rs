@@ -4,11 +4,10 @@ use std::convert::Infallible;
 
 use calibration_tables::{ArmFile, FileError, MAX_SEGMENTS};
 use estimator_core::{ArmConfig, Estimator, ImuReading, Q, Sample};
-use proprio::error::Error;
-use proprio::replay::{HostEstimator, Outcome};
-use proprio::session::{Row, Truth};
-use proprio::simulate::{Recorded, Simulation};
-use proprio::smooth::{ForwardPass, SmoothingPass};
+use proprio_analysis::smooth::{ForwardPass, SmoothingPass};
+use proprio_analysis::{HostEstimator, Outcome};
+use proprio_session::{Row, Truth};
+use proprio_simulation::{Recorded, Simulation, SimulationError};
 use rig_twin::{Push, SEGMENTS, Setup};
 
 /// A session of the twin.
@@ -28,8 +27,8 @@ impl TwinSession {
     /// Simulates `seconds` of a session at `rate_hz`.
     ///
     /// # Errors
-    /// [`Error::Rate`] and [`Error::Seconds`].
-    pub fn new(setup: &Setup, seconds: f64, rate_hz: f64) -> Result<Self, Error> {
+    /// [`SimulationError`].
+    pub fn new(setup: &Setup, seconds: f64, rate_hz: f64) -> Result<Self, SimulationError> {
         Ok(Self::of(Simulation::of(setup, seconds, rate_hz)?, rate_hz))
     }
 

@@ -6,9 +6,11 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use estimator_core::{FusedOps, Q};
-use proprio::estimates::{write_header, write_row};
-use proprio::replay::{NamedTable, Outcome, replay};
-use proprio::score::Score;
+use proprio_analysis::Outcome;
+use proprio_analysis::estimates::{write_header, write_row};
+use proprio_analysis::metrics::Score;
+use proprio_analysis::replay::replay;
+use proprio_session::{NamedTable, NoProgress};
 
 const SESSIONS: [&str; 4] = ["scenario-1", "scenario-2", "scenario-3", "board-rate"];
 
@@ -35,7 +37,7 @@ fn outcomes<S: FusedOps>(session: &Path) -> Vec<Outcome<S>> {
     let mut outcomes = Vec::new();
     let path = reference_table();
     let table = NamedTable::load(&path).expect("the table is good");
-    replay::<S>(session, &table, |_, outcome| {
+    replay::<S>(session, &table, &mut NoProgress, |_, outcome| {
         outcomes.push(outcome.clone());
         Ok(())
     })
@@ -112,13 +114,13 @@ fn fixed_point_stays_with_the_float_reference_in_every_session() {
 
 #[test]
 fn a_session_of_the_board_keeps_its_quaternions_to_the_bit() {
-    let run = proprio::simulate::Simulation::new(rig_twin::Scenario::One, 24, 10.0, 100.0).expect("a valid run");
+    let run = proprio_simulation::Simulation::new(rig_twin::Scenario::One, 24, 10.0, 100.0).expect("a valid run");
     let recorded: Vec<_> =
         run.map(|sample| sample.quaternions.map(|read| read.map(estimator_core::ImuReading::from_bno055))).collect();
     let path = reference_table();
     let table = NamedTable::load(&path).expect("the table is good");
     let mut rows = 0;
-    replay::<Q>(&session("board-rate"), &table, |row, _| {
+    replay::<Q>(&session("board-rate"), &table, &mut NoProgress, |row, _| {
         let read = row.sample.imu.iter().flatten();
         assert!(read.eq(recorded[rows].iter().flatten()), "sample {rows}");
         rows += 1;
@@ -139,7 +141,7 @@ fn the_real_recording_misses_the_tip_by_the_known_floor() {
     let path = here("tables/trunk-planar.toml");
     let table = NamedTable::load(&path).expect("the table is good");
     let mut score = Score::new(table.file.length_mm());
-    replay::<Q>(&recording, &table, |row, outcome| {
+    replay::<Q>(&recording, &table, &mut NoProgress, |row, outcome| {
         score.add(row, outcome);
         Ok(())
     })

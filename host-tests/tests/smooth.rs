@@ -5,12 +5,10 @@ use std::path::Path;
 use calibration_tables::ArmFile;
 use host_tests::parallel::in_parallel;
 use host_tests::twin::{TwinSession, replay_smoothed};
-use proprio::calibrate::{CalibrationOptions, calibrate};
-use proprio::output::OutputFile;
-use proprio::replay::NamedTable;
-use proprio::score::Score;
-use proprio::session::{ImuColumns, SessionWriter};
-use proprio::simulate::Simulation;
+use proprio_analysis::metrics::Score;
+use proprio_calibration::calibrate::{CalibrationOptions, calibrate};
+use proprio_session::{NamedTable, NoProgress, OutputFile};
+use proprio_simulation::{ImuColumns, SessionWriter, Simulation};
 use rig_twin::{Motion, Scenario, Setup};
 
 const ARMS: [u64; 6] = [1, 2, 3, 4, 5, 6];
@@ -30,7 +28,7 @@ fn table(arm_seed: u64, folder: &Path) -> ArmFile {
     writer.into_inner().finish().expect("a temporary file can be renamed");
     let arm = Path::new(env!("CARGO_MANIFEST_DIR")).join("../calibration-tables/arms/planar-6.toml");
     let arm = NamedTable::load(&arm).expect("the reference arm's description");
-    calibrate(&[sweep], &arm, CalibrationOptions::default()).expect("a sweep calibrates").table
+    calibrate(&[sweep], &arm, CalibrationOptions::default(), &mut NoProgress).expect("a sweep calibrates").table
 }
 
 /// RMSE of the tip by fusion and smoothed, mm, and the share of true tips inside the smoothed ellipses, %.

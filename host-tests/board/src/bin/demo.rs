@@ -6,8 +6,7 @@ use std::fs::File;
 use std::io::BufWriter;
 
 use board_tests::{Board, View, replay};
-use proprio::session::{ImuColumns, SessionWriter};
-use proprio::simulate::Recorded;
+use proprio_simulation::{ImuColumns, Recorded, SessionWriter};
 use rig_twin::{Program, Scenario};
 use telemetry::{Command, Outcome};
 use virtual_due::Rig;

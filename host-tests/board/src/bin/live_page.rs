@@ -11,9 +11,9 @@ mod figures {
 
     use board_tests::browser::{Browser, MonitorRun};
     use board_tests::{UART, firmware};
-    use proprio::link::{Link, LinkError, Source, Transport};
-    use proprio::monitor::{Monitor, Options};
-    use proprio::replay::NamedTable;
+    use proprio_link::{Link, LinkError, Source, Transport};
+    use proprio_monitor::{Monitor, Options};
+    use proprio_session::NamedTable;
     use rig_twin::Scenario;
     use virtual_due::{CYCLES_PER_SECOND, Machine, Rig};
 

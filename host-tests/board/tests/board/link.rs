@@ -4,7 +4,7 @@ use std::os::unix::fs::symlink;
 use std::path::Path;
 use std::time::Duration;
 
-use proprio::link::{Baud, Link, PortSource, Subscription, What};
+use proprio_link::{Baud, Link, PortSource, Subscription, What};
 
 use crate::terminal::Terminal;
 use crate::tools::folder;

@@ -5,11 +5,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use calibration_tables::{ArmFile, DriftKeys, DriftKind};
-use proprio::calibrate::{Calibration, CalibrationOptions, HysteresisMode, MapMode, calibrate};
-use proprio::output::OutputFile;
-use proprio::replay::NamedTable;
-use proprio::session::{ImuColumns, SessionWriter};
-use proprio::simulate::Simulation;
+use proprio_calibration::calibrate::{Calibration, CalibrationOptions, HysteresisMode, MapMode, calibrate};
+use proprio_session::{NamedTable, NoProgress, OutputFile};
+use proprio_simulation::{ImuColumns, SessionWriter, Simulation};
 use rig_twin::{Motion, Scenario, Setup};
 
 /// Why a figure cannot be measured.
@@ -43,6 +41,7 @@ impl Tables {
                 &[sweep.to_owned()],
                 &NamedTable { file: file.clone(), path: Path::new("planar-6.toml") },
                 options,
+                &mut NoProgress,
             )?)
         };
         let Calibration { table: paper, sensors, .. } = table(&anchored, quadratic)?;

@@ -5,8 +5,8 @@ use std::fmt::{self, Write};
 use estimator_core::{Method, Q};
 use host_tests::parallel::in_parallel;
 use host_tests::twin::{Replayer, row};
-use proprio::score::Score;
-use proprio::simulate::Simulation;
+use proprio_analysis::metrics::Score;
+use proprio_simulation::Simulation;
 use rig_twin::{Motion, Scenario};
 
 use crate::arm::{Problem, RATE_HZ, Tables, setup};

@@ -4,9 +4,9 @@ use calibration_tables::{ArmFile, FileError};
 use estimator_core::{Method, Q};
 use host_tests::contact::in_contact;
 use host_tests::twin::{TwinSession, replay, replay_smoothed};
-use proprio::replay::Outcome;
-use proprio::score::Score;
-use proprio::session::Row;
+use proprio_analysis::Outcome;
+use proprio_analysis::metrics::Score;
+use proprio_session::Row;
 use rig_twin::SEGMENTS;
 
 use crate::arm::Tables;

@@ -7,7 +7,7 @@ use calibration_tables::ArmFile;
 use host_tests::contact::{Found, Run};
 use host_tests::parallel::in_parallel;
 use host_tests::twin::TwinSession;
-use proprio::score::Figures as MethodFigures;
+use proprio_analysis::metrics::Figures as MethodFigures;
 use rig_twin::{Motion, Scenario};
 
 use crate::arm::{Problem, RATE_HZ, SESSION_S, Tables, setup};

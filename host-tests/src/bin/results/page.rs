@@ -4,8 +4,9 @@ use std::fmt::{self, Write};
 use std::path::Path;
 
 use estimator_core::Method;
-use proprio::replay::{NamedTable, replay};
-use proprio::score::Score;
+use proprio_analysis::metrics::Score;
+use proprio_analysis::replay::replay;
+use proprio_session::{NamedTable, NoProgress};
 
 use crate::arm::{Problem, planar};
 use crate::contact;
@@ -115,7 +116,7 @@ fn real(root: &Path) -> Result<Option<[f64; 2]>, Problem> {
     let path = root.join("host-tests/tables/trunk-planar.toml");
     let table = NamedTable::load(&path)?;
     let mut score = Score::new(table.file.length_mm());
-    replay::<estimator_core::Q>(&recording, &table, |row, outcome| {
+    replay::<estimator_core::Q>(&recording, &table, &mut NoProgress, |row, outcome| {
         score.add(row, outcome);
         Ok(())
     })?;

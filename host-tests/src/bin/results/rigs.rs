@@ -9,8 +9,7 @@ use calibration_tables::ArmFile;
 use flate2::read::GzDecoder;
 use host_tests::contact::alarms;
 use host_tests::parallel::in_parallel;
-use proprio::replay::NamedTable;
-use proprio::session::{Row, SessionReader};
+use proprio_session::{NamedTable, Row, SessionReader};
 
 use crate::arm::{Problem, RATE_HZ, Tables};
 use crate::evaluation::{Evaluation, Figures};

@@ -6,16 +6,16 @@ mod trace;
 
 use std::ops::Range;
 
+use catalogue::{Course, FAST_HZ, FAULTS, Fault, REST_S, SLOW_HZ};
 use host_tests::faults::Spoiler;
 use host_tests::parallel::in_parallel;
 use host_tests::twin::TwinSession;
-use proprio::simulate::Simulation;
+use proprio_simulation::Simulation;
 use rig_twin::{Motion, SEGMENTS, Scenario, Setup};
+use trace::Trace;
 
 use crate::arm::{Problem, SESSION_S, Tables, setup};
 use crate::family::{Family, SCENARIOS};
-use catalogue::{Course, FAST_HZ, FAULTS, Fault, REST_S, SLOW_HZ};
-use trace::Trace;
 
 /// Some of the test arms.
 const ARMS: [u64; 3] = [105, 106, 107];

@@ -5,8 +5,8 @@ use std::ops::Range;
 use calibration_tables::{ArmFile, FileError};
 use estimator_core::Method;
 use host_tests::twin::TwinSession;
-use proprio::honesty::Honesty;
-use proprio::score::tip_errors_m;
+use proprio_analysis::consistency::Honesty;
+use proprio_analysis::metrics::tip_errors_m;
 
 /// The fused tip in one sample.
 #[derive(Debug, Clone, Copy)]

@@ -1,0 +1,112 @@
+//! How honest the estimates' covariances are: errors against truth, as the covariances would have them.
+
+use calibration_tables::MAX_SEGMENTS;
+use estimator_core::{FusedOps, Method, Shape, Uncertainties, VARIANCE_SCALE};
+use proprio_session::{CHI2_2_95, Row};
+use serde::Serialize;
+
+use crate::Outcome;
+
+/// Squared errors, each divided by its covariance.
+#[derive(Debug, Clone, Copy, Default)]
+struct Normalised {
+    sum: f64,
+    inside: u64,
+    count: u64,
+}
+
+impl Normalised {
+    fn add(&mut self, square: f64) {
+        self.sum += square;
+        self.inside += u64::from(square <= CHI2_2_95);
+        self.count += 1;
+    }
+
+    fn append(&mut self, other: &Self) {
+        self.sum += other.sum;
+        self.inside += other.inside;
+        self.count += other.count;
+    }
+
+    /// A mean, where there is one.
+    fn of_count(&self, sum: f64) -> Option<f64> {
+        (self.count > 0).then(|| sum / self.count as f64)
+    }
+}
+
+/// Normalised errors of the fused or smoothed shape, gathered over one or more sessions.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Honesty {
+    tips: Normalised,
+    ends: Normalised,
+    thetas: Normalised,
+}
+
+/// What they come to; `None` where the table does not say what errors come from, or there was no truth.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct HonestyFigures {
+    /// Mean normalised square error of the tip for each of its two coordinates: 1 is honest, more is too sure.
+    pub tip_nees: Option<f64>,
+    /// Share of the true tips within their 95 % ellipse, %.
+    pub tip_inside_percent: Option<f64>,
+    /// As for the tip, over the ends of all segments.
+    pub end_nees: Option<f64>,
+    /// As for the tip, over the ends of all segments.
+    pub end_inside_percent: Option<f64>,
+    /// Mean normalised square error of the bend angles.
+    pub theta_nees: Option<f64>,
+}
+
+impl Honesty {
+    /// Adds the fused shape of one row, as far as it has truth and covariances.
+    pub fn add<S: FusedOps>(&mut self, row: &Row, outcome: &Outcome<S>) {
+        self.add_shape(row, &outcome.shapes[Method::Fusion as usize], &outcome.uncertainties);
+    }
+
+    /// Adds a shape, as far as there are truth and covariances.
+    pub fn add_shape<S: FusedOps>(
+        &mut self,
+        row: &Row,
+        shape: &Shape<S, MAX_SEGMENTS>,
+        uncertainties: &Uncertainties<MAX_SEGMENTS>,
+    ) {
+        let count = shape.len();
+        for (i, (segment, uncertainty)) in shape.iter().zip(uncertainties).enumerate() {
+            let theta = segment.theta.zip(row.true_theta(i)).zip(uncertainty.theta);
+            if let Some(((theta, truth), variance)) = theta {
+                self.thetas.add((theta.rad() - truth).powi(2) * VARIANCE_SCALE / variance.to_f64());
+            }
+            let end = segment.end.zip(row.truth[i]).zip(uncertainty.end);
+            if let Some(((end, truth), covariance)) = end {
+                let [xx, xy, yy] = covariance.square_metres();
+                let (dx, dy) = (end.x.to_f64() - truth.x_m, end.y.to_f64() - truth.y_m);
+                let square = (yy * dx * dx - 2.0 * xy * dx * dy + xx * dy * dy) / (xx * yy - xy * xy);
+                self.ends.add(square);
+                if i + 1 == count {
+                    self.tips.add(square);
+                }
+            }
+        }
+    }
+
+    /// Adds all errors of another session of the same arm.
+    pub fn append(&mut self, other: &Self) {
+        self.tips.append(&other.tips);
+        self.ends.append(&other.ends);
+        self.thetas.append(&other.thetas);
+    }
+
+    /// The figures.
+    #[must_use]
+    pub fn figures(&self) -> HonestyFigures {
+        let nees = |of: &Normalised| of.of_count(of.sum / 2.0);
+        let inside_percent = |of: &Normalised| of.of_count(of.inside as f64 * 100.0);
+        HonestyFigures {
+            tip_nees: nees(&self.tips),
+            tip_inside_percent: inside_percent(&self.tips),
+            end_nees: nees(&self.ends),
+            end_inside_percent: inside_percent(&self.ends),
+            theta_nees: self.thetas.of_count(self.thetas.sum),
+        }
+    }
+}

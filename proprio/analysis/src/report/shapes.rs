@@ -1,0 +1,228 @@
+//! Snapshots of the arm's shape, estimated and true.
+
+use calibration_tables::{ArmFile, MAX_SEGMENTS};
+use estimator_core::{Angle, FusedOps, Method, UnitArc};
+use proprio_session::{Row, Truth};
+
+use super::plot::{Axis, Colour, Figure, Marks, Panel, Series, Size, extent, padded, rounded};
+use super::thin::Thinned;
+use crate::Outcome;
+use crate::metrics::{Score, tip_errors_m};
+
+/// Moments of a session that are kept at least.
+const MOMENTS: usize = 256;
+/// Points of a drawn segment.
+const SEGMENT_POINTS: u32 = 8;
+/// Methods whose error circles are drawn.
+const CIRCLES: [Method; 2] = [Method::Fusion, Method::ImuC];
+
+/// Shapes of one session at some moments.
+pub struct Shapes {
+    lengths_m: Vec<f64>,
+    /// The method whose errors choose the moments.
+    leading: Method,
+    kept: Thinned<Snapshot>,
+    worst: Option<Snapshot>,
+}
+
+/// One moment.
+#[derive(Debug, Clone)]
+struct Snapshot {
+    time_s: f64,
+    /// Of the leading method.
+    error_m: Option<f64>,
+    shapes: [Vec<Option<End>>; Method::ALL.len()],
+    truth: [Option<Truth>; MAX_SEGMENTS],
+}
+
+/// A segment's end.
+#[derive(Debug, Clone, Copy)]
+struct End {
+    x_m: f64,
+    y_m: f64,
+    heading_rad: f64,
+}
+
+impl Shapes {
+    pub fn new(table: &ArmFile) -> Self {
+        let has_bend_sensors =
+            table.segments.iter().any(|segment| segment.bend.as_ref().is_some_and(|b| !b.is_empty()));
+        Self {
+            lengths_m: table.segments.iter().map(|segment| (segment.length_mm + segment.offset_mm) / 1e3).collect(),
+            leading: if has_bend_sensors { Method::Fusion } else { Method::ImuO },
+            kept: Thinned::new(MOMENTS),
+            worst: None,
+        }
+    }
+
+    pub fn add<S: FusedOps>(&mut self, row: &Row, outcome: &Outcome<S>) {
+        let error_m = tip_errors_m(row, outcome)[self.leading as usize];
+        let snapshot = || Snapshot::new(row, outcome, error_m);
+        if error_m > self.worst.as_ref().and_then(|worst| worst.error_m) {
+            self.worst = Some(snapshot());
+        }
+        self.kept.add(snapshot);
+    }
+
+    /// The moments whose tip errors are nearest to the quartiles, and the worst; without truth, four evenly spaced.
+    fn moments(&self, score: &Score) -> Vec<(String, &Snapshot)> {
+        let items = self.kept.items();
+        let Some(worst) = &self.worst else {
+            let moments = (0..4).filter_map(|i| items.get((2 * i + 1) * items.len() / 8));
+            return (1..).zip(moments).map(|(i, moment)| (format!("moment {i}"), moment)).collect();
+        };
+        let tips = score.tips(self.leading);
+        let quartiles = [("first quartile", 0.25), ("median", 0.5), ("third quartile", 0.75)];
+        let nearest = quartiles.into_iter().filter_map(|(name, share)| {
+            let wanted_m = tips.quantile_m(share)?;
+            let distance = |moment: &&Snapshot| moment.error_m.map_or(f64::INFINITY, |m| (m - wanted_m).abs());
+            Some((name, items.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)))?))
+        });
+        nearest.chain([("largest error", worst)]).map(|(name, moment)| (name.to_owned(), moment)).collect()
+    }
+
+    /// The moments' panels, all to one scale.
+    fn panels(&self, session: &str, score: &Score) -> Vec<Panel> {
+        let moments = self.moments(score).into_iter();
+        let mut panels: Vec<Panel> =
+            moments.map(|(name, moment)| moment.panel(session, name, &self.lengths_m, score)).collect();
+        let [x, y] = extent(panels.iter().flat_map(|panel| &panel.series)).map(padded);
+        for panel in &mut panels {
+            (panel.x.range, panel.y.range) = (x, y);
+        }
+        panels
+    }
+}
+
+impl Snapshot {
+    fn new<S: FusedOps>(row: &Row, outcome: &Outcome<S>, error_m: Option<f64>) -> Self {
+        let shapes = outcome.shapes.each_ref().map(|shape| {
+            let mut heading_rad = 0.0;
+            let end = |segment: &estimator_core::SegmentShape<S>| {
+                heading_rad += segment.theta?.rad();
+                let end = segment.end?;
+                Some(End { x_m: end.x.to_f64(), y_m: end.y.to_f64(), heading_rad })
+            };
+            shape.iter().map(end).collect()
+        });
+        Self { time_s: row.sample.time_us as f64 / 1e6, error_m, shapes, truth: row.truth }
+    }
+
+    fn panel(&self, session: &str, name: String, lengths_m: &[f64], score: &Score) -> Panel {
+        let (time_s, error_mm) = (self.time_s, self.error_m.map(|m| m * 1e3));
+        let title = match error_mm {
+            Some(mm) => format!("{name}: {mm:.1} mm at {time_s:.1} s"),
+            None => format!("{name}: at {time_s:.1} s"),
+        };
+        let facts = [("time_s", Some(time_s)), ("tip_error_mm", error_mm)];
+        Panel {
+            session: Some(session.to_owned()),
+            name,
+            title,
+            facts: facts.into_iter().filter_map(|(name, value)| Some((name, rounded(value?)))).collect(),
+            size: Size::Quarter,
+            x: Axis::new("x, mm", [0.0, 1.0]),
+            y: Axis::new("y, mm", [0.0, 1.0]),
+            series: self.series(lengths_m, score),
+        }
+    }
+
+    fn series(&self, lengths_m: &[f64], score: &Score) -> Vec<Series> {
+        let mut series = self.true_series(lengths_m);
+        for method in Method::ALL {
+            let ends = &self.shapes[method as usize];
+            let points = curve(ends.iter().copied(), lengths_m);
+            if points.len() > 1 {
+                series.push(named(method.name(), Colour::Of(method), line(points)));
+            }
+        }
+        series.extend(CIRCLES.into_iter().filter_map(|method| self.circle(method, score)));
+        series
+    }
+
+    fn true_series(&self, lengths_m: &[f64]) -> Vec<Series> {
+        let known = self.truth.iter().take(lengths_m.len());
+        let places: Vec<(f64, f64)> =
+            known.clone().flatten().map(|pose| (rounded(pose.x_m * 1e3), rounded(pose.y_m * 1e3))).collect();
+        let end = |pose: &Truth| Some(End { x_m: pose.x_m, y_m: pose.y_m, heading_rad: pose.heading_rad? });
+        let points = curve(known.map(|pose| pose.as_ref().and_then(end)), lengths_m);
+        let mut series = Vec::new();
+        if points.len() > 1 {
+            series.push(named("truth", Colour::Truth, line(points)));
+        }
+        if !places.is_empty() {
+            series.push(named("truth", Colour::Truth, Marks::Dots { x: "end_x_mm", y: "end_y_mm", points: places }));
+        }
+        series
+    }
+
+    /// The circle about the estimated tip inside which three quarters of this session's errors are.
+    fn circle(&self, method: Method, score: &Score) -> Option<Series> {
+        let tip = (*self.shapes[method as usize].last()?)?;
+        let radius_m = score.tips(method).quantile_m(0.75)?;
+        let [center_x_mm, center_y_mm, radius_mm] = [tip.x_m, tip.y_m, radius_m].map(|m| rounded(m * 1e3));
+        let marks = Marks::Circle { center_x_mm, center_y_mm, radius_mm };
+        Some(named(&format!("{} 75 %", method.name()), Colour::Of(method), marks))
+    }
+}
+
+fn named(name: &str, colour: Colour, marks: Marks) -> Series {
+    Series { name: name.to_owned(), colour, marks }
+}
+
+fn line(points: Vec<(f64, f64)>) -> Marks {
+    let points = points.into_iter().map(|(x, y)| (rounded(x), Some(rounded(y)))).collect();
+    Marks::Line { x: "x_mm", y: "y_mm", points }
+}
+
+/// The arm through the ends of its segments, mm, up to the first that is unknown. Between two ends it is drawn as the cubic
+/// that has their headings and is as fast as the segment is long (Hermite's), which is near a constant curvature.
+fn curve(ends: impl Iterator<Item = Option<End>>, lengths_m: &[f64]) -> Vec<(f64, f64)> {
+    let mut points = vec![(0.0, 0.0)];
+    let mut before = End { x_m: 0.0, y_m: 0.0, heading_rad: 0.0 };
+    for (end, length_m) in ends.map_while(|end| end).zip(lengths_m) {
+        let [from, to] = [before, end].map(|end| {
+            let UnitArc { sin, cos, .. } = UnitArc::new(Angle::from(end.heading_rad));
+            (end.x_m, end.y_m, sin * length_m, cos * length_m)
+        });
+        points.extend((1..=SEGMENT_POINTS).map(|k| {
+            let t = f64::from(k) / f64::from(SEGMENT_POINTS);
+            let (start, into) = ((1.0 + 2.0 * t) * (1.0 - t) * (1.0 - t), t * (1.0 - t) * (1.0 - t));
+            let (stop, out) = (t * t * (3.0 - 2.0 * t), t * t * (t - 1.0));
+            let x_m = start * from.0 + into * from.2 + stop * to.0 + out * to.2;
+            let y_m = start * from.1 + into * from.3 + stop * to.1 + out * to.3;
+            (x_m * 1e3, y_m * 1e3)
+        }));
+        before = end;
+    }
+    points
+}
+
+/// From the sessions' names, shapes and scores.
+pub fn figure<'s>(sessions: impl Iterator<Item = (&'s str, &'s Shapes, &'s Score)>) -> Figure {
+    let mut panels = Vec::new();
+    let (mut has_errors, mut leading) = (false, Method::Fusion);
+    for (name, shapes, score) in sessions {
+        panels.extend(shapes.panels(name, score));
+        has_errors |= shapes.worst.is_some();
+        leading = shapes.leading;
+    }
+    let moments = if has_errors {
+        format!(
+            "The moments of a session with truth are those of its largest {leading} error at the tip and, of some hundred \
+             samples evenly spaced in time, those whose error is nearest to the quartiles. Circles are about the tip of an \
+             estimate; their radius is the 75th percentile of its tip error in this session.",
+            leading = leading.name()
+        )
+    } else {
+        "There is no truth; the moments are evenly spaced.".to_owned()
+    };
+    Figure {
+        name: "shapes",
+        title: "Shapes of the arm",
+        caption: format!(
+            "The arm in the world frame, base at the origin; a millimetre is as long on both axes. {moments}"
+        ),
+        panels,
+    }
+}

@@ -1,0 +1,91 @@
+//! Why a camera's file and a session cannot be brought together.
+
+/// Why there is no alignment.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum AlignmentError {
+    /// The session has no reading to compare.
+    #[error("has no reading of any IMU or bend sensor")]
+    NoSensors,
+    /// The camera saw no marker.
+    #[error("the camera saw no marker of a segment")]
+    NoMarkers,
+    /// There are columns of the base's marker without a pose in them.
+    #[error("the camera never saw the base's marker")]
+    NoBase,
+    /// The base's marker was not at rest.
+    #[error("the base's marker moved by {mm:.0} mm and {deg:.1}° during the recording")]
+    BaseMoved {
+        /// How far, mm.
+        mm: f64,
+        /// How far it turned, degrees.
+        deg: f64,
+    },
+    /// A recording is too short.
+    #[error("the recording lasts {seconds:.1} s, expected at least {least_s} s")]
+    TooShort {
+        /// Its length, s.
+        seconds: f64,
+        /// Length needed, s.
+        least_s: f64,
+    },
+    /// A recording is too long, or seems to be.
+    #[error("the recording lasts {hours:.0} h by its time stamps, expected at most {most_h}")]
+    TooLong {
+        /// Its length, h.
+        hours: f64,
+        /// Allowed length, h.
+        most_h: f64,
+    },
+    /// No offset brings the motions together.
+    #[error("has no motion in common with the session: the best correlation is {correlation:.2}, expected {least}")]
+    Unrelated {
+        /// Correlation at the best offset.
+        correlation: f64,
+        /// Correlation needed.
+        least: f64,
+    },
+    /// The camera's headings run the wrong way.
+    #[error("the camera's headings fall where the IMUs' rise: their correlation is {correlation:.2}")]
+    Mirrored {
+        /// Correlation at the best offset.
+        correlation: f64,
+    },
+    /// Several offsets bring the motions together.
+    #[error(
+        "two offsets, {apart_s:.1} s apart, fit nearly alike, with correlations of {:.2} and {:.2}",
+        correlations[0], correlations[1]
+    )]
+    Ambiguous {
+        /// From one to the other, s.
+        apart_s: f64,
+        /// Their correlations.
+        correlations: [f64; 2],
+    },
+    /// Pauses leave too little.
+    #[error("shares less than {least_s} s with the session at any offset, pauses of markers and sensors left out")]
+    Hidden {
+        /// What both must have seen, s.
+        least_s: f64,
+    },
+    /// The arm rests nearly all the time.
+    #[error("the arm hardly moves where both saw it without a pause")]
+    Still,
+    /// The clocks run too differently.
+    #[error("the clocks' rates differ by {ppm:.0} ppm, expected at most {most_ppm}")]
+    Skewed {
+        /// Found difference, ppm.
+        ppm: f64,
+        /// Allowed difference, ppm.
+        most_ppm: f64,
+    },
+    /// One of the clocks jumps or wanders.
+    #[error(
+        "the clocks do not run evenly: pieces of the recording are {residual_ms:.0} ms RMS off, expected at most {most_ms}"
+    )]
+    Uneven {
+        /// Root mean square of what a steady rate leaves, ms.
+        residual_ms: f64,
+        /// Allowed value, ms.
+        most_ms: f64,
+    },
+}

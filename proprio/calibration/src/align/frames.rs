@@ -1,0 +1,133 @@
+//! What the camera saw, in {W}: its frames in memory, and the poses between them.
+
+use std::f64::consts::TAU;
+use std::path::Path;
+
+use proprio_session::{CameraReader, Pose, Problem, Progress, SessionError};
+
+use super::base;
+use super::error::AlignmentError;
+use super::signal::Reading;
+use crate::error::Error;
+
+/// A pose is interpolated between two frames that are at most this far apart, s.
+const LONGEST_GAP_S: f64 = 0.2;
+
+/// All frames. Headings are unwrapped.
+pub(super) struct Frames {
+    /// Time of the first frame by the camera's clock.
+    pub first_s: f64,
+    pub ends_with_line: bool,
+    /// Times since the first frame.
+    times_s: Vec<f64>,
+    /// The marker at each segment's end, frame by frame.
+    ends: Vec<Vec<Option<Pose>>>,
+}
+
+impl Frames {
+    pub fn read(camera: &Path, segments: usize, progress: &mut dyn Progress) -> Result<Self, Error> {
+        let mut reader = CameraReader::open(camera, segments)?;
+        let work = format!("reading {}", camera.display());
+        let mut frames = Self {
+            first_s: 0.0,
+            ends_with_line: reader.ends_with_line(),
+            times_s: Vec::new(),
+            ends: vec![Vec::new(); segments],
+        };
+        let mut base = Vec::new();
+        while let Some(frame) = reader.next_frame()? {
+            if frames.times_s.is_empty() {
+                frames.first_s = frame.time_s;
+            }
+            frames.times_s.push(frame.time_s - frames.first_s);
+            base.extend(frame.base);
+            for (end, seen) in frames.ends.iter_mut().zip(frame.ends) {
+                end.push(seen);
+            }
+            let (done, total) = reader.progress();
+            progress.advance(&work, done, total);
+        }
+        if frames.times_s.is_empty() {
+            let path = camera.to_owned();
+            return Err(SessionError { path, line: None, column: None, problem: Problem::NoSamples }.into());
+        }
+        let refuse = |source| Error::Alignment { path: camera.to_owned(), source };
+        if frames.ends.iter().flatten().all(Option::is_none) {
+            return Err(refuse(AlignmentError::NoMarkers));
+        }
+        if reader.has_base() {
+            let base = base::median(base).map_err(refuse)?;
+            let seen = frames.ends.iter_mut().flatten().flatten();
+            seen.for_each(|pose| *pose = base::from_base(&base, pose));
+        }
+        frames.ends.iter_mut().for_each(|end| unwrap(end));
+        Ok(frames)
+    }
+
+    pub fn segments(&self) -> usize {
+        self.ends.len()
+    }
+
+    /// From the first frame to the last.
+    pub fn seconds(&self) -> f64 {
+        self.times_s.last().copied().unwrap_or_default()
+    }
+
+    /// Headings of the segments' ends.
+    pub fn headings(&self) -> Vec<Vec<Reading>> {
+        let heading = |pose: &Option<Pose>| pose.map(|pose| pose.heading_rad);
+        self.ends.iter().map(|end| self.timed(end.iter().map(heading))).collect()
+    }
+
+    /// Bend angles of the segments.
+    pub fn bends(&self) -> Vec<Vec<Reading>> {
+        let bend = |i: usize, frame: usize| {
+            let before = if i == 0 { 0.0 } else { self.ends[i - 1][frame]?.heading_rad };
+            Some(self.ends[i][frame]?.heading_rad - before)
+        };
+        let frames = 0..self.times_s.len();
+        (0..self.ends.len()).map(|i| self.timed(frames.clone().map(|frame| bend(i, frame)))).collect()
+    }
+
+    fn timed(&self, values: impl Iterator<Item = Option<f64>>) -> Vec<Reading> {
+        self.times_s.iter().zip(values).filter_map(|(time_s, value)| Some((*time_s, value?))).collect()
+    }
+
+    /// Poses of all segments' ends at a time since the first frame, on a line between the frames before and after it
+    /// that have the marker; none where these are far apart or missing.
+    pub fn poses_at(&self, time_s: f64) -> impl Iterator<Item = Option<Pose>> {
+        let next = self.times_s.partition_point(|frame_s| *frame_s <= time_s);
+        self.ends.iter().map(move |end| self.pose_at(end, next, time_s))
+    }
+
+    fn pose_at(&self, end: &[Option<Pose>], next: usize, time_s: f64) -> Option<Pose> {
+        let seen = |frame: usize| Some((self.times_s[frame], end[frame]?));
+        let near = |frame: &usize| (self.times_s[*frame] - time_s).abs() <= LONGEST_GAP_S;
+        let (from_s, from) = (0..next).rev().take_while(near).find_map(seen)?;
+        let (to_s, to) = (next..end.len()).take_while(near).find_map(seen)?;
+        if to_s - from_s > LONGEST_GAP_S {
+            return None;
+        }
+        let share = (time_s - from_s) / (to_s - from_s);
+        let between = |from: f64, to: f64| from + (to - from) * share;
+        Some(Pose {
+            x_m: between(from.x_m, to.x_m),
+            y_m: between(from.y_m, to.y_m),
+            heading_rad: between(from.heading_rad, to.heading_rad),
+        })
+    }
+}
+
+/// Takes a turn's jumps out of headings, and begins within ±π.
+fn unwrap(end: &mut [Option<Pose>]) {
+    let mut last = 0.0;
+    for pose in end.iter_mut().flatten() {
+        pose.heading_rad = near(pose.heading_rad, last);
+        last = pose.heading_rad;
+    }
+}
+
+/// The same direction, at most half a turn from `other`.
+pub(super) fn near(heading_rad: f64, other: f64) -> f64 {
+    heading_rad - TAU * ((heading_rad - other) / TAU).round()
+}

@@ -1,0 +1,128 @@
+//! Camera and sensors brought to one clock: truth for a session that has none.
+//!
+//! 1. Both recordings are taken apart into steps from two seconds to the next two: what moves stays, drift and noise go. An
+//!    IMU's steps are those of its segment's heading; a bend sensor's follow those of the bend angle, one way or the other.
+//! 2. The lag to a tenth of a second is where all of them correlate best.
+//! 3. In windows of 20 s the lag is refined by least squares. The line through the windows' lags is the offset and the
+//!    difference of the rates, and what it leaves tells how good they are.
+//! 4. The camera's poses are interpolated at the session's time stamps.
+
+mod base;
+mod coarse;
+mod error;
+mod fine;
+mod frames;
+mod motion;
+mod signal;
+mod truth;
+
+use std::path::Path;
+
+pub use error::AlignmentError;
+pub use motion::Sensors;
+pub use truth::Written;
+
+use crate::error::Error;
+use coarse::LEAST_OVERLAP_S;
+use fine::{Clocks, Fit};
+use frames::Frames;
+use motion::{Motion, Readings};
+use proprio_session::{NamedTable, Progress};
+
+/// Longest recording, h: memory goes with its length, and a wrong time stamp makes any length.
+const MOST_H: f64 = 24.0;
+/// Most that the rates of two clocks may differ: a camera of 29.97 frames a second whose times are counted as of 30.
+const MOST_SKEW: f64 = 1.5e-3;
+
+/// A camera's recording beside a session, on one clock.
+pub struct Alignment {
+    frames: Frames,
+    readings: Readings,
+    clocks: Clocks,
+    /// How well they fit.
+    pub report: AlignmentReport,
+}
+
+/// How well camera and sensors fit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AlignmentReport {
+    /// Which sensors were compared with the camera.
+    pub sensors: Sensors,
+    /// The camera's time less the session's, in the middle of what both saw, s.
+    pub offset_s: f64,
+    /// Its standard error, from how pieces of the recording scatter, ms. What lag all of them share is not in it.
+    pub offset_error_ms: f64,
+    /// That middle, by the session's clock, s.
+    pub middle_s: f64,
+    /// By how much the camera's clock is faster, ppm.
+    pub skew_ppm: f64,
+    /// Its standard error, ppm.
+    pub skew_error_ppm: f64,
+    /// Root mean square of what offset and skew leave of the lags of pieces of 20 s, ms.
+    pub residual_ms: f64,
+    /// Median of the sensors' correlations with the camera.
+    pub correlation: f64,
+    /// Moments, ten a second, at which both were compared.
+    pub matched: usize,
+    /// Whether the last lines of session and camera file are ended; if not, their last numbers may have been cut.
+    pub end_with_line: [bool; 2],
+}
+
+/// Finds the clocks of `camera` and of `session`, which has no truth yet.
+///
+/// # Errors
+/// [`Error::Session`] where one of the files cannot be used, [`Error::Alignment`] where they do not fit together.
+pub fn align(session: &Path, camera: &Path, arm: &NamedTable, progress: &mut dyn Progress) -> Result<Alignment, Error> {
+    let refuse = |path: &Path, source| Error::Alignment { path: path.to_owned(), source };
+    let mut readings = Readings::read(session, &arm.file, progress)?;
+    let frames = Frames::read(camera, arm.file.segments.len(), progress)?;
+    for (path, seconds) in [(session, readings.seconds()), (camera, frames.seconds())] {
+        check_length(seconds).map_err(|source| refuse(path, source))?;
+    }
+    let motion = Motion::of(&mut readings, &frames).map_err(|source| refuse(session, source))?;
+    let fit = coarse::lag_s(&motion).and_then(|lag_s| fine::fit(&motion, lag_s));
+    let fit = fit.and_then(|fit| check(motion.by, fit)).map_err(|source| refuse(camera, source))?;
+
+    let start_s = readings.first_us() as f64 / 1e6;
+    let report = AlignmentReport {
+        sensors: motion.by,
+        offset_s: frames.first_s - start_s + fit.clocks.camera_s(fit.middle_s) - fit.middle_s,
+        offset_error_ms: fit.lag_error_s * 1e3,
+        middle_s: start_s + fit.middle_s,
+        skew_ppm: fit.clocks.skew * 1e6,
+        skew_error_ppm: fit.skew_error * 1e6,
+        residual_ms: fit.residual_s * 1e3,
+        correlation: fit.correlation,
+        matched: fit.matched,
+        end_with_line: [readings.ends_with_line, frames.ends_with_line],
+    };
+    Ok(Alignment { frames, readings, clocks: fit.clocks, report })
+}
+
+fn check_length(seconds: f64) -> Result<(), AlignmentError> {
+    let hours = seconds / 3600.0;
+    if seconds < LEAST_OVERLAP_S {
+        Err(AlignmentError::TooShort { seconds, least_s: LEAST_OVERLAP_S })
+    } else if hours > MOST_H {
+        Err(AlignmentError::TooLong { hours, most_h: MOST_H })
+    } else {
+        Ok(())
+    }
+}
+
+/// Whether a fit is good enough to be believed.
+fn check(by: Sensors, fit: Fit) -> Result<Fit, AlignmentError> {
+    let (correlation, least) = (fit.correlation, by.least_correlation());
+    if correlation < least {
+        return Err(AlignmentError::Unrelated { correlation, least });
+    }
+    if fit.residual_s > by.most_residual_s() {
+        let (residual_ms, most_ms) = (fit.residual_s * 1e3, by.most_residual_s() * 1e3);
+        return Err(AlignmentError::Uneven { residual_ms, most_ms });
+    }
+    // Short recordings of bend sensors say little of the rates.
+    if fit.clocks.skew.abs() - 3.0 * fit.skew_error > MOST_SKEW {
+        return Err(AlignmentError::Skewed { ppm: fit.clocks.skew * 1e6, most_ppm: MOST_SKEW * 1e6 });
+    }
+    Ok(fit)
+}

@@ -1,0 +1,170 @@
+//! What sensors and camera both saw: pairs of columns that follow the same motion.
+
+use std::mem;
+use std::path::Path;
+
+use calibration_tables::ArmFile;
+use estimator_core::{ImuReading, SENSORS_PER_SEGMENT};
+use proprio_session::{Kind, Needs, Problem, Progress, Row, SessionError, SessionReader};
+
+use super::error::AlignmentError;
+use super::frames::{Frames, near};
+use super::signal::{Reading, Signal};
+use crate::error::Error;
+
+/// A sensor and what the camera saw of its motion.
+pub(super) struct Pair {
+    pub sensor: Signal,
+    pub camera: usize,
+}
+
+/// All that both saw. Times are since the first row and the first frame.
+pub(super) struct Motion {
+    pub pairs: Vec<Pair>,
+    pub cameras: Vec<Signal>,
+    pub by: Sensors,
+}
+
+/// Which sensors are compared with the camera.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Sensors {
+    /// IMUs, whose headings must follow those of the segments' ends.
+    Imus,
+    /// Bend sensors, of which is not known which way they run. They lag, and each in its own way.
+    Bend,
+}
+
+impl Sensors {
+    /// Correlation that good ones have.
+    pub(super) const fn least_correlation(self) -> f64 {
+        match self {
+            Self::Imus => 0.95,
+            Self::Bend => 0.9,
+        }
+    }
+
+    /// Scatter of the windows' lags beyond which it is not the sensors but a clock, s.
+    pub(super) const fn most_residual_s(self) -> f64 {
+        match self {
+            Self::Imus => 0.02,
+            Self::Bend => 0.1,
+        }
+    }
+}
+
+/// Readings of a session's sensors, those that were missing left out.
+pub(super) struct Readings {
+    pub times_us: Vec<u64>,
+    pub ends_with_line: bool,
+    /// When runs of the board began, s: there an IMU's heading has a new zero.
+    starts_s: Vec<f64>,
+    imu: Vec<Vec<Reading>>,
+    bend: Vec<[Vec<Reading>; SENSORS_PER_SEGMENT]>,
+}
+
+impl Readings {
+    pub fn read(session: &Path, arm: &ArmFile, progress: &mut dyn Progress) -> Result<Self, Error> {
+        let needs = Needs { truth: false, ..Needs::of_calibration(arm) };
+        let mut reader = SessionReader::open(session, &needs)?;
+        let refuse = |line, problem| SessionError { path: session.to_owned(), line, column: None, problem };
+        if !reader.is_regular_file() {
+            return Err(refuse(None, Problem::NotAFile).into());
+        }
+        if reader.kind() != Kind::Csv {
+            return Err(refuse(None, Problem::NotCsv).into());
+        }
+        if let Some(column) = reader.truth_column() {
+            return Err(refuse(Some(1), Problem::HasTruth(column.to_owned())).into());
+        }
+        let n = arm.segments.len();
+        let mut readings = Self {
+            times_us: Vec::new(),
+            ends_with_line: reader.ends_with_line(),
+            starts_s: Vec::new(),
+            imu: vec![Vec::new(); n],
+            bend: vec![Default::default(); n],
+        };
+        let work = format!("reading {}", session.display());
+        while let Some(row) = reader.next_row()? {
+            readings.push(&row);
+            let (done, total) = reader.progress();
+            progress.advance(&work, done, total);
+        }
+        Ok(readings)
+    }
+
+    fn push(&mut self, row: &Row) {
+        let Row { sample, .. } = row;
+        self.times_us.push(sample.time_us);
+        let time_s = self.since_start_s(sample.time_us);
+        self.starts_s.extend(row.starts.then_some(time_s));
+        for ((imu, bend), (imu_read, bend_read)) in
+            self.imu.iter_mut().zip(&mut self.bend).zip(sample.imu.iter().zip(&sample.bend))
+        {
+            if let Some(heading) = imu_read.as_ref().and_then(ImuReading::heading) {
+                imu.push((time_s, heading.rad()));
+            }
+            for (sensor, counts) in bend.iter_mut().zip(bend_read) {
+                sensor.extend(counts.map(|counts| (time_s, f64::from(counts))));
+            }
+        }
+    }
+
+    /// Time of the first row.
+    pub fn first_us(&self) -> u64 {
+        self.times_us.first().copied().unwrap_or_default()
+    }
+
+    /// Time since the first row.
+    pub fn since_start_s(&self, time_us: u64) -> f64 {
+        (time_us - self.first_us()) as f64 / 1e6
+    }
+
+    /// From the first row to the last.
+    pub fn seconds(&self) -> f64 {
+        self.times_us.last().map_or(0.0, |last_us| self.since_start_s(*last_us))
+    }
+}
+
+impl Motion {
+    /// IMUs where there are any, as they lag and remember least; else bend sensors.
+    ///
+    /// Takes the readings' columns, which are large.
+    pub fn of(readings: &mut Readings, frames: &Frames) -> Result<Self, AlignmentError> {
+        let imus = mem::take(&mut readings.imu).into_iter().map(unwrapped).enumerate();
+        let bend =
+            mem::take(&mut readings.bend).into_iter().enumerate().flat_map(|(i, pair)| pair.map(|sensor| (i, sensor)));
+        let (imus, bend) = (seen(imus), seen(bend));
+        let by = if imus.is_empty() { Sensors::Bend } else { Sensors::Imus };
+        let (sensors, cameras, starts_s) = match by {
+            Sensors::Imus => (imus, frames.headings(), &readings.starts_s[..]),
+            Sensors::Bend => (bend, frames.bends(), &[][..]),
+        };
+        let pairs: Vec<Pair> =
+            sensors.into_iter().map(|(camera, read)| Pair { sensor: Signal::new(&read, starts_s), camera }).collect();
+        if pairs.is_empty() {
+            return Err(AlignmentError::NoSensors);
+        }
+        Ok(Self { pairs, cameras: cameras.iter().map(|seen| Signal::new(seen, &[])).collect(), by })
+    }
+
+    /// The step of what the camera saw of a pair's motion.
+    pub fn camera_step(&self, pair: usize, time_s: f64) -> Option<f64> {
+        self.cameras[self.pairs[pair].camera].step(time_s).map(|[step, _]| step)
+    }
+}
+
+/// The columns that have readings.
+fn seen(columns: impl Iterator<Item = (usize, Vec<Reading>)>) -> Vec<(usize, Vec<Reading>)> {
+    columns.filter(|(_, readings)| !readings.is_empty()).collect()
+}
+
+/// Headings without their jumps of a turn.
+fn unwrapped(mut headings: Vec<Reading>) -> Vec<Reading> {
+    let mut last = 0.0;
+    for (_, heading) in &mut headings {
+        *heading = near(*heading, last);
+        last = *heading;
+    }
+    headings
+}

@@ -1,0 +1,236 @@
+//! Tuning on sessions with truth, by the RMSE of the fused shape, and of the variances, by what the errors are.
+//!
+//! 1. A table with the bias filter: its Kalman filters are bypassed, so a search tries other parameters of the bias filter.
+//!    Each try is a run of the estimator, and its errors are those of the fused shape.
+//! 2. A table with the anchor: Q, R and H of all Kalman filters. Nothing before the filters depends on their parameters, so
+//!    gradient descent runs the estimator's own filters over their inputs, in dual numbers, and chains the derivatives.
+//! 3. Every third session is held back, or the last fifth of each where there are fewer than three. What gets worse there was
+//!    tuned to noise or to one motion, and is not kept.
+//! 4. Where the table says what errors come from, all variances grow by one factor if they are too small.
+
+mod descent;
+mod dual;
+mod error;
+mod errors;
+mod filters;
+mod objective;
+mod parameters;
+mod search;
+#[cfg(test)]
+mod tests;
+mod training;
+
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use calibration_tables::{ArmFile, DriftKeys, DriftTuningKeys, Stopped, TuningKeys};
+
+pub use dual::Dual;
+pub use error::TuningError;
+
+use crate::error::Error;
+use descent::{Iterate, MAX_ITERATIONS, descend};
+use errors::Errors;
+use objective::{Evaluation, Objective, SessionErrors};
+use proprio_analysis::consistency::Honesty;
+use proprio_analysis::replay::replay;
+use proprio_session::NamedTable;
+use proprio_session::Progress;
+use search::{MAX_RUNS, filter_at, search};
+use training::{Part, Training};
+
+/// Sessions on which a table can be tuned.
+pub struct Tuner<'t> {
+    table: &'t NamedTable<'t>,
+    objective: Objective,
+    before: Evaluation,
+}
+
+/// A tuned table.
+#[derive(Debug, Clone)]
+pub struct Tuning {
+    /// The table, with its record of the tuning.
+    pub table: ArmFile,
+    /// That record.
+    pub record: TuningKeys,
+    /// What an iteration of the descent took; zero with the bias filter, which has no descent.
+    pub iteration_time: Duration,
+}
+
+impl<'t> Tuner<'t> {
+    /// Reads the training sessions.
+    ///
+    /// # Errors
+    /// [`Error::Session`] and [`Error::Tuning`] where a session cannot be used, [`Error::Table`] and [`Error::Tuning`] where
+    /// the table has no filters.
+    pub fn new(sessions: &[PathBuf], table: &'t NamedTable, progress: &mut dyn Progress) -> Result<Self, Error> {
+        let has_bend_sensors = table.needs()?.bend.iter().any(|sensors| *sensors != Some(0));
+        if !has_bend_sensors {
+            return Err(Error::Tuning { path: table.path.to_owned(), source: TuningError::NoBendSensors });
+        }
+        let count = sessions.len();
+        let part = |k| Part::of_session(k, count);
+        let mut read = |(k, path): (usize, &PathBuf)| Training::read(path, part(k), table, progress);
+        let sessions = sessions.iter().enumerate().map(&mut read).collect::<Result<Vec<_>, _>>()?;
+        let objective = Objective::new(sessions, table.bake::<f64>(table.file.rate_hz)?.config().segments);
+        let before = objective.of_table(&table.file);
+        for (session, errors) in objective.sessions().iter().zip(&before.sessions) {
+            session.check_count(errors).and_then(|()| session.check_truth()).map_err(|source| session.error(source))?;
+        }
+        Ok(Self { table, objective, before })
+    }
+
+    /// The sessions whose last line has no end.
+    pub fn cut_sessions(&self) -> impl Iterator<Item = &Path> {
+        let cut = self.objective.sessions().iter().filter(|session| !session.ends_with_line);
+        cut.map(|session| session.path.as_path())
+    }
+
+    /// Searches or descends until the RMSE converges, or until `is_interrupted` after a run or an iteration.
+    ///
+    /// # Errors
+    /// [`Error::Tuning`] where the RMSE of descent is no number, or falls on and on; [`Error::Session`] where a session is no
+    /// longer what it was.
+    pub fn tune(mut self, progress: &mut dyn Progress, is_interrupted: impl Fn() -> bool) -> Result<Tuning, Error> {
+        let start = Instant::now();
+        let Tuned { mut table, drift, iterations, kept, stopped } = match self.table.file.bias_filter() {
+            Some(start) => self.tune_bias_filter(start, progress, &is_interrupted),
+            None => self.tune_filters(progress, &is_interrupted)?,
+        };
+        let descended = if drift.is_none() { start.elapsed() } else { Duration::ZERO };
+        let iteration_time = descended.div_f64(iterations.max(1) as f64);
+        let variances = self.widen(&mut table, progress)?;
+        let after = self.objective.of_table(&table);
+        let record = TuningKeys {
+            sessions: self.objective.sessions().iter().map(|session| session.path.display().to_string()).collect(),
+            iterations,
+            kept,
+            stopped,
+            variances,
+            drift,
+            observer: serde::de::IgnoredAny,
+            before: pooled(&self.before, |session| &session.training).keys(),
+            after: pooled(&after, |session| &session.training).keys(),
+            held_back_before: pooled(&self.before, |session| &session.held_back).keys(),
+            held_back_after: pooled(&after, |session| &session.held_back).keys(),
+        };
+        Ok(Tuning { table: ArmFile { tuning: Some(record.clone()), ..table }, record, iteration_time })
+    }
+
+    /// The table with the best bias filter that is no worse on what is held back, which the sessions are measured with.
+    fn tune_bias_filter(
+        &mut self,
+        start: &DriftKeys,
+        progress: &mut dyn Progress,
+        is_interrupted: impl Fn() -> bool,
+    ) -> Tuned {
+        let mut table = self.table.file.clone();
+        let (mut runs, mut stopped) = (0, Stopped::Converged);
+        let finds = search(self.before.clone(), |place| {
+            table.drift = Some(filter_at(start, place));
+            self.objective.measure(&table);
+            let found = self.objective.of_table(&table);
+            runs += 1;
+            progress.complete(&format!("tuning the bias filter: {}", told(&found)), runs, MAX_RUNS as u64);
+            if is_interrupted() {
+                stopped = Stopped::Interrupted;
+                return None;
+            }
+            Some(found)
+        });
+        let kept = finds.iter().rev().find(|find| find.found.held_back_loss <= self.before.held_back_loss);
+        let tuned = kept.map_or_else(|| start.clone(), |kept| filter_at(start, &kept.place));
+        let record = DriftTuningKeys {
+            runs,
+            rate_deg_per_s: [start.rate_deg_per_s, tuned.rate_deg_per_s],
+            rate_random_walk_deg_per_s_sqrt_s: [
+                start.rate_random_walk_deg_per_s_sqrt_s,
+                tuned.rate_random_walk_deg_per_s_sqrt_s,
+            ],
+            angle_random_walk_deg_per_sqrt_s: [
+                start.angle_random_walk_deg_per_sqrt_s,
+                tuned.angle_random_walk_deg_per_sqrt_s,
+            ],
+            offset_deg: [start.offset_deg, tuned.offset_deg],
+            offset_s: [start.offset_s, tuned.offset_s],
+        };
+        table.drift = Some(tuned);
+        self.objective.measure(&table);
+        Tuned { table, drift: Some(record), iterations: 0, kept: 0, stopped }
+    }
+
+    /// The table with better Kalman filters.
+    fn tune_filters(&self, progress: &mut dyn Progress, is_interrupted: impl Fn() -> bool) -> Result<Tuned, Error> {
+        let table = &self.table.file;
+        let before = &self.before;
+        let (mut last, mut best): (Option<Iterate>, Option<Iterate>) = (None, None);
+        let stopped = descend(
+            |place| self.objective.at(place),
+            self.objective.start(table),
+            |iterate| {
+                progress.complete(&format!("tuning: {}", told(&iterate.found)), iterate.number, MAX_ITERATIONS);
+                let is_best = |best: &Iterate| iterate.found.held_back_loss < best.found.held_back_loss;
+                if best.as_ref().is_none_or(is_best) {
+                    best = Some(iterate.clone());
+                }
+                last = Some(iterate.clone());
+                !is_interrupted()
+            },
+        );
+        let stopped = stopped.map_err(|source| Error::Tuning { path: self.table.path.to_owned(), source })?;
+        let iterations = last.as_ref().map_or(0, |last| last.number);
+        let is_good = |iterate: &Iterate| {
+            let Evaluation { loss, held_back_loss, .. } = iterate.found;
+            iterate.number > 0 && loss <= before.loss && held_back_loss <= before.held_back_loss
+        };
+        let kept = [last, best].into_iter().flatten().find(is_good);
+        let number = kept.as_ref().map_or(0, |kept| kept.number);
+        let table = kept.map_or(table.clone(), |kept| self.objective.table(&kept.place, table.clone()));
+        Ok(Tuned { table, drift: None, iterations, kept: number, stopped })
+    }
+
+    /// Multiplies all variances by what the ends' errors on the training part have them too small by, and gives the factor.
+    /// Motion to come may be less gentle: what is too large stays.
+    fn widen(&self, table: &mut ArmFile, progress: &mut dyn Progress) -> Result<Option<f64>, Error> {
+        let Some(keys) = table.uncertainty.clone() else { return Ok(None) };
+        let mut honesty = Honesty::default();
+        let named = NamedTable { file: table.clone(), path: self.table.path };
+        for session in self.objective.sessions() {
+            let mut rows = 0..session.seen();
+            replay::<f64>(&session.path, &named, progress, |row, outcome| {
+                if rows.next().is_some() {
+                    honesty.add(row, outcome);
+                }
+                Ok(())
+            })?;
+        }
+        let factor = honesty.figures().end_nees.filter(|nees| nees.is_finite()).map_or(1.0, |nees| nees.max(1.0));
+        table.uncertainty = Some(keys.scaled(factor));
+        Ok(Some(factor))
+    }
+}
+
+/// Result of the search or of the descent.
+struct Tuned {
+    table: ArmFile,
+    /// Of the search.
+    drift: Option<DriftTuningKeys>,
+    /// Of the descent.
+    iterations: u64,
+    /// The iteration that the table's filters are of.
+    kept: u64,
+    stopped: Stopped,
+}
+
+/// The errors on the training part, for people.
+fn told(of: &Evaluation) -> String {
+    let rmse = pooled(of, |session| &session.training).keys();
+    format!("RMSE of the tip {:.2} mm, of headings {:.2} deg", rmse.tip_rmse_mm, rmse.heading_rmse_deg)
+}
+
+/// Errors over all sessions.
+fn pooled(of: &Evaluation, part: impl Fn(&SessionErrors) -> &Errors) -> Errors {
+    let mut all = Errors::default();
+    of.sessions.iter().for_each(|session| all.append(part(session)));
+    all
+}

@@ -1,0 +1,247 @@
+//! What can be typed.
+
+mod link;
+
+use std::path::PathBuf;
+
+use clap::builder::Styles;
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap_complete::Shell;
+
+pub use link::{Convert, Drive, Flash, LinkArgs, Monitor, Ports, Record, Recover, Status};
+
+/// Colours of help and errors; off where stderr is no terminal or NO_COLOR is set.
+pub const STYLES: Styles = Styles::styled();
+
+/// The shape of a soft robot arm from its bend sensors and IMUs.
+#[derive(Debug, Parser)]
+#[command(version, styles = STYLES, max_term_width = 100)]
+#[command(
+    after_help = "Exit status: 0 done, 2 the input or the command cannot be used, 130 interrupted, 1 a fault of proprio itself."
+)]
+pub struct Cli {
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Give a session the truth that a camera saw by its own clock
+    Align(Align),
+    /// Make a table of a session with camera truth
+    Calibrate(Calibrate),
+    /// Tune a table's bias filter, or its Kalman filters, on sessions with truth; Ctrl-C keeps the best so far
+    Tune(Tune),
+    /// Run sessions through the estimator and compare with truth
+    Replay(Replay),
+    /// Make a page of figures of sessions, and the numbers behind them
+    Report(Report),
+    /// Record a session of the simulated arm
+    Simulate(Simulate),
+    /// Build the firmware with a table, write it onto a board, and hear that it runs
+    Flash(Flash),
+    /// List the serial ports, and which of them a Due is on
+    Ports(Ports),
+    /// Say how a board is: versions, sensors, rates, losses
+    Status(Status),
+    /// Record what a board says
+    Record(Record),
+    /// Drive the arm's pressures, and vent them at the end
+    Drive(Drive),
+    /// Show a live arm, or a session, on a page in the browser
+    Monitor(Monitor),
+    /// Turn a session into CSV, a recording or raw bytes
+    Convert(Convert),
+    /// Save what is whole of a recording that was cut
+    Recover(Recover),
+    /// Print a completion script for a shell
+    Completions(Completions),
+}
+
+#[derive(Debug, Args)]
+pub struct Align {
+    /// Session without truth, as it was recorded
+    pub session: PathBuf,
+    /// What the camera saw: poses of the markers, a row a frame
+    #[arg(long, value_name = "CAMERA.csv")]
+    pub camera: PathBuf,
+    /// Arm description, or table
+    #[arg(long, value_name = "ARM.toml")]
+    pub arm: PathBuf,
+    /// Session with truth to write
+    #[arg(short, long, value_name = "ALIGNED.csv")]
+    pub output: PathBuf,
+}
+
+#[derive(Debug, Args)]
+pub struct Calibrate {
+    /// Sessions with truth: slow sweeps of every segment through its whole range, of one day or of several
+    #[arg(required = true, value_name = "SESSION")]
+    pub sessions: Vec<PathBuf>,
+    /// Arm description: its geometry
+    #[arg(long, value_name = "ARM.toml")]
+    pub arm: PathBuf,
+    /// Table to write
+    #[arg(short, long, value_name = "TABLE.toml")]
+    pub output: PathBuf,
+    /// V–Orient maps of the bend sensors
+    #[arg(long, value_enum, default_value_t = MapName::Auto)]
+    pub map: MapName,
+    /// Compensation of the bend sensors' hysteresis and creep
+    #[arg(long, value_enum, default_value_t = HysteresisName::Auto)]
+    pub hysteresis: HysteresisName,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum MapName {
+    /// For each sensor a curve where that lowers the held-back error
+    Auto,
+    /// Monotone curves
+    Curve,
+    /// The paper's quadratics
+    Quadratic,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum HysteresisName {
+    /// Where it lowers the error on held-back data
+    Auto,
+    /// Everywhere
+    Always,
+    /// Nowhere
+    Never,
+}
+
+#[derive(Debug, Args)]
+pub struct Tune {
+    /// Training sessions with truth, all of the same arm
+    #[arg(required = true, value_name = "SESSION")]
+    pub sessions: Vec<PathBuf>,
+    /// Table of the arm
+    #[arg(long, value_name = "TABLE.toml")]
+    pub table: PathBuf,
+    /// Table to write
+    #[arg(short, long, value_name = "TABLE.toml")]
+    pub output: PathBuf,
+}
+
+#[derive(Debug, Args)]
+pub struct Replay {
+    /// Sessions to replay, one after the other
+    #[arg(required = true, value_name = "SESSION")]
+    pub sessions: Vec<PathBuf>,
+    /// Table of the arm
+    #[arg(long, value_name = "TABLE.toml")]
+    pub table: PathBuf,
+    /// Write the estimates of the session: bend angles and world points of all methods
+    #[arg(long, value_name = "EST.csv")]
+    pub out: Option<PathBuf>,
+    /// Smooth: estimate every sample by the readings after it, too; takes a table with the bias filter
+    #[arg(long)]
+    pub smooth: bool,
+    /// Print the figures as JSON
+    #[arg(long)]
+    pub json: bool,
+    /// Run the 64-bit float reference instead of the board's fixed point
+    #[arg(long)]
+    pub float: bool,
+}
+
+#[derive(Debug, Args)]
+pub struct Report {
+    /// Sessions to show, with or without truth
+    #[arg(required = true, value_name = "SESSION")]
+    pub sessions: Vec<PathBuf>,
+    /// Table of the arm
+    #[arg(long, value_name = "TABLE.toml")]
+    pub table: PathBuf,
+    /// Page to write
+    #[arg(short, long, value_name = "REPORT.html")]
+    pub output: PathBuf,
+    /// Write the numbers behind the figures as JSON
+    #[arg(long, value_name = "FILE.json")]
+    pub json: Option<PathBuf>,
+    /// Write the numbers behind the figures as CSV, a row a number
+    #[arg(long, value_name = "FILE.csv")]
+    pub csv: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub struct Simulate {
+    /// What touches the arm, and how large its swings are
+    #[arg(long, value_enum)]
+    pub scenario: ScenarioName,
+    /// How the arm moves
+    #[arg(long, value_enum, default_value_t = MotionName::Swings)]
+    pub motion: MotionName,
+    /// Duration, s
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
+    pub seconds: f64,
+    /// Seed of the motion, the pushes and all noise of the session
+    #[arg(long, value_name = "K")]
+    pub seed: u64,
+    /// Seed of the arm's tolerances and its sensors' flaws; 0 is the reference arm
+    #[arg(long, value_name = "K", default_value_t = 0)]
+    pub arm_seed: u64,
+    /// Samples per second, 1 to 1000
+    #[arg(long, value_name = "HZ", default_value_t = 10.0, allow_negative_numbers = true)]
+    pub rate: f64,
+    /// Form of the IMU readings
+    #[arg(long, value_enum, default_value_t = ImuName::Deg)]
+    pub imu: ImuName,
+    /// Write the truth as a camera above the arm sees it, into a file of its own and by its own clock
+    #[arg(long, value_name = "CAMERA.csv")]
+    pub camera: Option<PathBuf>,
+    /// Session to write
+    #[arg(short, long, value_name = "SESSION.csv")]
+    pub output: PathBuf,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum ImuName {
+    /// The heading, imuK_deg
+    Deg,
+    /// The quaternion as the BNO055 gives it, imuK_qw to imuK_qz
+    Quaternion,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum ScenarioName {
+    /// Free swings
+    #[value(name = "1")]
+    One,
+    /// A stick pushes at random times
+    #[value(name = "2")]
+    Two,
+    /// An obstacle that the arm wraps around
+    #[value(name = "3")]
+    Three,
+    /// A slow sweep of every module, for calibration
+    Sweep,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum MotionName {
+    /// All modules swing without a pause, after 5 s at rest
+    Swings,
+    /// The same, twelve times as slow
+    Slow,
+    /// The same, four times as fast
+    Fast,
+    /// One module swings alone
+    OneModule,
+    /// Rests of two minutes to two hours between spells of swings
+    Rests,
+    /// Leans of two to ten minutes between spells of swings
+    Lean,
+    /// The arm starts bent, with scenario 3 in contact
+    BentStart,
+    /// The arm starts in motion
+    MovingStart,
+}
+
+#[derive(Debug, Args)]
+pub struct Completions {
+    /// The shell
+    pub shell: Shell,
+}

@@ -1,0 +1,142 @@
+//! What can be typed of a board and its line.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use proprio_link::Baud;
+use telemetry::REGULATORS;
+
+/// Which board.
+#[derive(Debug, Args)]
+pub struct LinkArgs {
+    /// Serial port [default: that of the one Due that is plugged in]
+    #[arg(long, value_name = "PORT", conflicts_with = "emulated")]
+    pub port: Option<String>,
+    /// Speed of the line
+    #[arg(long, value_name = "BD", default_value_t, conflicts_with = "emulated")]
+    pub baud: Baud,
+    /// An emulated Due with a simulated arm instead of a real one
+    #[arg(long = "virtual")]
+    pub emulated: bool,
+    /// Firmware of the emulated Due [default: where cargo leaves it]
+    #[arg(long, value_name = "ELF", requires = "emulated")]
+    pub firmware: Option<PathBuf>,
+    /// What the simulated arm does until the firmware drives it: 1 free swings, 2 pushes, 3 an obstacle
+    #[arg(long, value_name = "1|2|3", requires = "emulated", default_value_t = 1, value_parser = clap::value_parser!(u8).range(1..=3))]
+    pub scenario: u8,
+    /// Seed of the simulated arm's motion and noise
+    #[arg(long, value_name = "K", requires = "emulated", default_value_t = 1)]
+    pub seed: u64,
+    /// Table that the board should have
+    #[arg(long, value_name = "TABLE.toml")]
+    pub table: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub struct Flash {
+    /// Table of the arm
+    #[arg(long, value_name = "TABLE.toml")]
+    pub table: PathBuf,
+    /// The board's programming port [default: that of the one Due that is plugged in]
+    #[arg(long, value_name = "PORT")]
+    pub port: Option<String>,
+    /// Print the commands, and run none that builds or writes
+    #[arg(long)]
+    pub dry_run: bool,
+    /// Folder of the firmware's source, which is this project's
+    #[arg(long, value_name = "FOLDER", default_value = ".")]
+    pub source: PathBuf,
+}
+
+#[derive(Debug, Args)]
+pub struct Ports {
+    /// Print the list as JSON
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Debug, Args)]
+pub struct Status {
+    #[command(flatten)]
+    pub link: LinkArgs,
+    /// Print it as JSON
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Debug, Args)]
+pub struct Record {
+    #[command(flatten)]
+    pub link: LinkArgs,
+    /// Recording to write
+    #[arg(short, long, value_name = "FILE.mcap")]
+    pub output: PathBuf,
+    /// Duration, s [default: until Ctrl-C]
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
+    pub seconds: Option<f64>,
+}
+
+#[derive(Debug, Args)]
+pub struct Drive {
+    /// Profile: pressures over time, columns time_s and pressure1_kpa to pressure6_kpa
+    #[arg(value_name = "PROFILE.csv", required_unless_present = "kpa", conflicts_with = "kpa")]
+    pub profile: Option<PathBuf>,
+    /// Pressures to hold instead: module 1 right, left, module 2 right, left, module 3 right, left
+    #[arg(long, value_name = "KPA,KPA,KPA,KPA,KPA,KPA", value_parser = pressures_kpa, allow_negative_numbers = true)]
+    pub kpa: Option<[f64; REGULATORS]>,
+    /// How long to hold them, s [default: until Ctrl-C]
+    #[arg(long, value_name = "S", requires = "kpa", allow_negative_numbers = true)]
+    pub seconds: Option<f64>,
+    /// The fastest that a pressure changes, kPa/s
+    #[arg(long, value_name = "KPA/S", default_value_t = 100.0, allow_negative_numbers = true)]
+    pub ramp: f64,
+    /// Recording to write meanwhile
+    #[arg(short, long, value_name = "FILE.mcap")]
+    pub output: Option<PathBuf>,
+    #[command(flatten)]
+    pub link: LinkArgs,
+}
+
+fn pressures_kpa(text: &str) -> Result<[f64; REGULATORS], String> {
+    let pressures = text.split(',').map(|part| part.trim().parse().map_err(|_| format!("\"{part}\" is not a number")));
+    let pressures = pressures.collect::<Result<Vec<f64>, _>>()?;
+    pressures.try_into().map_err(|found: Vec<f64>| format!("{} pressures, expected {REGULATORS}", found.len()))
+}
+
+#[derive(Debug, Args)]
+pub struct Monitor {
+    /// Session to show instead of a board; takes a table
+    #[arg(conflicts_with_all = ["port", "emulated", "allow_control", "plain"])]
+    pub session: Option<PathBuf>,
+    #[command(flatten)]
+    pub link: LinkArgs,
+    /// Port of 127.0.0.1 that the page is on; 0: any that is free
+    #[arg(long, value_name = "PORT", default_value_t = 8642)]
+    pub listen: u16,
+    /// Folder that recordings are written to and sessions opened from
+    #[arg(long, value_name = "FOLDER", default_value = ".")]
+    pub folder: PathBuf,
+    /// Let who has the token that is printed drive the board
+    #[arg(long)]
+    pub allow_control: bool,
+    /// Print one line a second instead
+    #[arg(long, conflicts_with_all = ["listen", "folder", "allow_control"])]
+    pub plain: bool,
+}
+
+#[derive(Debug, Args)]
+pub struct Convert {
+    /// Session: CSV, recording or raw bytes (.bin)
+    pub input: PathBuf,
+    /// What to make of it: .csv, .mcap or .bin
+    pub output: PathBuf,
+}
+
+#[derive(Debug, Args)]
+pub struct Recover {
+    /// Recording that was cut
+    pub input: PathBuf,
+    /// Recording to write
+    #[arg(short, long, value_name = "WHOLE.mcap")]
+    pub output: PathBuf,
+}

@@ -1,0 +1,42 @@
+//! `proprio align`.
+
+use proprio_calibration::align::{AlignmentReport, Sensors, Written, align};
+use proprio_session::{LAST_LINE, NamedTable, OutputFile};
+
+use crate::args::Align;
+use crate::error::Error;
+use crate::progress_bar::Bar;
+use crate::terminal;
+
+pub fn run(args: &Align) -> Result<(), Error> {
+    let arm = NamedTable::load(&args.arm)?;
+    let mut file = OutputFile::create(&args.output, &[&args.session, &args.camera, &args.arm])?;
+    let alignment = align(&args.session, &args.camera, &arm, &mut Bar::new())?;
+    for (path, ends_with_line) in [&args.session, &args.camera].into_iter().zip(alignment.report.end_with_line) {
+        if !ends_with_line {
+            terminal::warn(&format_args!("{}: {LAST_LINE}", path.display()));
+        }
+    }
+    let written = alignment.write(&args.session, &mut file)?;
+    // Last, so that a command that fails leaves no file.
+    terminal::print(&text(&alignment.report, written))?;
+    Ok(file.finish()?)
+}
+
+fn text(report: &AlignmentReport, Written { rows, with_truth }: Written) -> String {
+    let sensors = match report.sensors {
+        Sensors::Imus => "IMUs",
+        Sensors::Bend => "bend sensors",
+    };
+    let AlignmentReport { offset_s, offset_error_ms, middle_s, skew_ppm, skew_error_ppm, .. } = report;
+    let AlignmentReport { residual_ms, correlation, matched, .. } = report;
+    let percent = with_truth as f64 / rows as f64 * 100.0;
+    format!(
+        "offset       {offset_s:.4} s ± {offset_error_ms:.1} ms: camera less session, at {middle_s:.1} s of the session\n\
+         skew         {skew_ppm:.1} ± {skew_error_ppm:.1} ppm: the camera's clock is faster\n\
+         residual     {residual_ms:.1} ms RMS: what offset and skew leave, in pieces of 20 s\n\
+         correlation  {correlation:.4}: {sensors} and camera\n\
+         matched      {matched} moments, ten a second\n\
+         truth        {with_truth} of {rows} rows, {percent:.1} %\n"
+    )
+}

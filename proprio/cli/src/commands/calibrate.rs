@@ -1,0 +1,53 @@
+//! `proprio calibrate`.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use proprio_calibration::calibrate::{CalibrationOptions, HysteresisMode, MapMode, calibrate};
+use proprio_session::{NamedTable, OutputFile};
+
+use crate::args::{Calibrate, HysteresisName, MapName};
+use crate::error::Error;
+use crate::progress_bar::Bar;
+use crate::terminal;
+use crate::text_tables as tables;
+
+pub fn run(args: &Calibrate) -> Result<(), Error> {
+    let arm = NamedTable::load(&args.arm)?;
+    let inputs: Vec<&Path> = args.sessions.iter().chain([&args.arm]).map(PathBuf::as_path).collect();
+    let mut file = OutputFile::create(&args.output, &inputs)?;
+    let options = CalibrationOptions { maps: args.map.into(), hysteresis: args.hysteresis.into() };
+    let calibration = calibrate(&args.sessions, &arm, options, &mut Bar::new())?;
+    let names: Vec<String> = args.sessions.iter().map(|session| session.display().to_string()).collect();
+    for warning in &calibration.warnings {
+        terminal::warn(&format_args!("{}: {warning}", names.join(", ")));
+    }
+    file.write_all(calibration.table.to_toml().as_bytes()).map_err(|error| file.error(error))?;
+    // Last, so that a command that fails leaves no file.
+    terminal::print(&tables::sensors(&calibration.sensors))?;
+    terminal::print(&tables::segments(&calibration.segments))?;
+    if let Some(held_out) = &calibration.held_out {
+        terminal::print(&tables::held_out(held_out))?;
+    }
+    Ok(file.finish()?)
+}
+
+impl From<MapName> for MapMode {
+    fn from(name: MapName) -> Self {
+        match name {
+            MapName::Auto => Self::Auto,
+            MapName::Curve => Self::Curve,
+            MapName::Quadratic => Self::Quadratic,
+        }
+    }
+}
+
+impl From<HysteresisName> for HysteresisMode {
+    fn from(name: HysteresisName) -> Self {
+        match name {
+            HysteresisName::Auto => Self::Auto,
+            HysteresisName::Always => Self::Always,
+            HysteresisName::Never => Self::Never,
+        }
+    }
+}

@@ -1,0 +1,13 @@
+//! `proprio completions`.
+
+use clap::CommandFactory;
+
+use crate::args::{Cli, Completions};
+use crate::error::Error;
+use crate::terminal;
+
+pub fn run(args: &Completions) -> Result<(), Error> {
+    let mut script = Vec::new();
+    clap_complete::generate(args.shell, &mut Cli::command(), "proprio", &mut script);
+    terminal::print(&String::from_utf8_lossy(&script))
+}

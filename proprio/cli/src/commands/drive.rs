@@ -1,0 +1,181 @@
+//! `proprio drive`.
+
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use board_core::FULL_SCALE_PA;
+use proprio_link::drive::{DriveError, Driver, PERIOD, Profile, Ramp};
+use proprio_link::status::Status;
+use proprio_link::{FileRecorder, Subscription, What};
+use telemetry::{Message, REGULATORS};
+
+use super::link;
+use crate::args::Drive;
+use crate::error::{Error, check_seconds};
+use crate::interrupt::ShutdownGuard;
+use crate::status_line::{StatusLine, time};
+use crate::terminal;
+
+/// The longest step of the ramp: after a pause of this program the pressures do not jump.
+const LONGEST_STEP: Duration = PERIOD.saturating_mul(2);
+
+pub fn run(args: &Drive) -> Result<(), Error> {
+    // All that can be wrong is said before the board is touched.
+    let profile = profile(args)?;
+    if args.ramp.is_nan() || args.ramp <= 0.0 {
+        return Err(Error::Ramp(args.ramp));
+    }
+    args.output.as_deref().map_or(Ok(()), check_new)?;
+    if let (Some(path), Some((pa_per_s, row))) = (&args.profile, profile.steepest())
+        && pa_per_s > args.ramp * 1e3
+    {
+        warn_of_slope(path, pa_per_s / 1e3, row, args.ramp);
+    }
+    let (table, link, events) = link::open(&args.link)?;
+    let shutdown = ShutdownGuard::new();
+    let status = Status::of(&link, &link.subscribe(), table.is_some())?;
+    // Nothing is written of a board that is not armed; an armed one stays vented until the first set-points.
+    let mut driver = Driver::arm(&link, &status)?;
+    let recorder = args.output.as_deref().map(|path| link::recorder(path, &link, table.as_ref()));
+    let mut drive = Session { recorder: recorder.transpose()?, events, screen: StatusLine::new(), board_kpa: None };
+    drive.catch_up()?;
+    let driven = drive.follow(&mut driver, &profile, Ramp::new(args.ramp * 1e3), &shutdown);
+    // However it ended: vented first.
+    let vented = driver.vent();
+    drop(link);
+    let driven = drive.finish(driven)?;
+    vented.map_err(DriveError::from)?;
+    let early = if driven.is_whole { "" } else { ", interrupted before the end" };
+    terminal::eprint_line(&format_args!("driven for {}, vented{early}", time(driven.passed)));
+    Ok(())
+}
+
+fn profile(args: &Drive) -> Result<Profile, Error> {
+    args.seconds.map_or(Ok(()), check_seconds)?;
+    match (&args.profile, args.kpa) {
+        (Some(path), _) => Ok(Profile::read(path)?),
+        (None, kpa) => {
+            let pressures_pa = kpa.unwrap_or_default().map(|kpa| kpa * 1e3);
+            match pressures_pa.iter().find(|pa| !(0.0..=f64::from(FULL_SCALE_PA)).contains(*pa)) {
+                Some(pa) => Err(Error::Pressure(pa / 1e3)),
+                None => Ok(Profile::constant(pressures_pa, args.seconds.unwrap_or(f64::INFINITY))),
+            }
+        }
+    }
+}
+
+fn warn_of_slope(path: &Path, steepest: f64, row: usize, ramp: f64) {
+    let steepest = if steepest.is_finite() { format!("by {steepest:.0} kPa/s") } else { "in a step".to_owned() };
+    terminal::warn(&format_args!(
+        "{}: the pressures change {steepest} before row {row}; they follow by {ramp} kPa/s, which --ramp allows",
+        path.display()
+    ));
+}
+
+/// Refuses the name of a file that exists, before the board is touched.
+fn check_new(path: &Path) -> Result<(), Error> {
+    if path.is_file() { Err(proprio_session::Error::Exists(path.to_owned()).into()) } else { Ok(()) }
+}
+
+/// A drive under way.
+struct Session {
+    recorder: Option<FileRecorder>,
+    events: Subscription,
+    screen: StatusLine,
+    /// The board's set-points, as it said last.
+    board_kpa: Option<String>,
+}
+
+/// How a drive ended.
+struct Driven {
+    passed: Duration,
+    is_whole: bool,
+}
+
+impl Session {
+    /// Takes what came until the board was known: it belongs into the recording, and is judged already.
+    fn catch_up(&mut self) -> Result<(), Error> {
+        if let Some(recorder) = &mut self.recorder {
+            return Ok(recorder.remaining_events(&self.events)?);
+        }
+        while self.events.next(Duration::ZERO).is_some() {}
+        Ok(())
+    }
+
+    /// Follows the profile, and goes down to nothing at its end.
+    fn follow(
+        &mut self,
+        driver: &mut Driver,
+        profile: &Profile,
+        mut ramp: Ramp,
+        shutdown: &ShutdownGuard,
+    ) -> Result<Driven, Error> {
+        let (start, mut last) = (Instant::now(), Instant::now());
+        loop {
+            let passed = start.elapsed();
+            let is_whole = passed.as_secs_f64() >= profile.end_s() && ramp.is_vented();
+            if is_whole || shutdown.is_requested() {
+                return Ok(Driven { passed, is_whole: is_whole || profile.end_s().is_infinite() });
+            }
+            let now = Instant::now();
+            let step = (now - last).min(LONGEST_STEP);
+            last = now;
+            let pressures_pa = ramp.step(profile.at(passed.as_secs_f64()), step.as_secs_f64());
+            let asked = driver.set(pressures_pa).map_err(DriveError::from)?;
+            if let Some(recorder) = &mut self.recorder {
+                recorder.set_points(&asked)?;
+            }
+            self.show(passed, profile.end_s(), pressures_pa);
+            self.listen(driver, now + PERIOD)?;
+        }
+    }
+
+    /// Takes what the board says until the next set-points are due.
+    fn listen(&mut self, driver: &Driver, until: Instant) -> Result<(), Error> {
+        loop {
+            let Some(event) = self.events.next(until.saturating_duration_since(Instant::now())) else { return Ok(()) };
+            if let Some(recorder) = &mut self.recorder {
+                recorder.event(&event)?;
+            }
+            match event.what {
+                What::Message(Message::Health(health)) => {
+                    self.board_kpa = Some(kpa(health.pressures_pa));
+                    driver.check(&health)?;
+                }
+                What::Lost(reason) | What::Ended(reason) => return Err(DriveError::Lost(reason).into()),
+                What::Restarted => return Err(DriveError::Restarted.into()),
+                what => self.screen.warn_of(&what),
+            }
+        }
+    }
+
+    fn show(&self, passed: Duration, end_s: f64, asked_pa: [u32; REGULATORS]) {
+        let end =
+            if end_s.is_finite() { format!(" of {}", time(Duration::from_secs_f64(end_s))) } else { String::new() };
+        let board = self.board_kpa.as_deref().unwrap_or("–");
+        self.screen.show(format!("{}{end}  asked {}  board {board} kPa", time(passed), kpa(asked_pa)));
+    }
+
+    /// Takes the line off the screen, and completes the recording, also of a drive that failed.
+    fn finish(self, driven: Result<Driven, Error>) -> Result<Driven, Error> {
+        drop(self.screen);
+        if let Some(mut recorder) = self.recorder {
+            let path = recorder.path().to_owned();
+            let written = recorder.remaining_events(&self.events).and_then(|()| {
+                let samples = recorder.samples();
+                recorder.finish().map(|()| samples)
+            });
+            match (written, &driven) {
+                (Ok(samples), _) => terminal::eprint_line(&format_args!("{}: {samples} samples", path.display())),
+                (Err(error), Ok(_)) => return Err(error.into()),
+                // The first error is the one to tell.
+                (Err(_), Err(_)) => {}
+            }
+        }
+        driven
+    }
+}
+
+fn kpa(pressures_pa: [u32; REGULATORS]) -> String {
+    pressures_pa.map(|pa| format!("{:.1}", f64::from(pa) / 1e3)).join(" ")
+}

@@ -1,0 +1,30 @@
+//! From the arguments to a link and its recording.
+
+use std::path::Path;
+
+use estimator_core::Q;
+use proprio_link::{FileRecorder, Link, PortSource, Source, Subscription, VirtualDue};
+use proprio_session::{HostClock, NamedTable};
+use telemetry::TICK_HZ;
+
+use crate::args::LinkArgs;
+use crate::error::Error;
+
+/// The table that was given, a link to the board that was, and all that it will say.
+pub fn open(args: &LinkArgs) -> Result<(Option<NamedTable<'_>>, Link, Subscription), Error> {
+    let table = args.table.as_deref().map(NamedTable::load).transpose()?;
+    let checksum = table.as_ref().map(|table| Ok::<_, Error>(table.bake::<Q>(TICK_HZ)?.checksum())).transpose()?;
+    let source: Box<dyn Source> = if args.emulated {
+        Box::new(VirtualDue { firmware: args.firmware.clone(), scenario: args.scenario, seed: args.seed })
+    } else {
+        Box::new(PortSource::new(args.port.clone(), args.baud))
+    };
+    let (link, events) = Link::start(source, checksum)?;
+    Ok((table, link, events))
+}
+
+/// Begins a recording of the link in a new file, with the table attached.
+pub fn recorder(path: &Path, link: &Link, table: Option<&NamedTable>) -> Result<FileRecorder, Error> {
+    let toml = table.map(NamedTable::toml).transpose()?;
+    Ok(FileRecorder::create(path, link, HostClock::new(), toml.as_deref())?)
+}

@@ -1,0 +1,43 @@
+//! One file a command.
+
+mod align;
+mod calibrate;
+mod completions;
+mod convert;
+mod drive;
+mod flash;
+mod link;
+mod monitor;
+mod ports;
+mod record;
+mod recover;
+mod replay;
+mod report;
+mod simulate;
+mod status;
+mod tune;
+
+use crate::args::Command;
+use crate::error::Error;
+
+impl Command {
+    pub fn run(self) -> Result<(), Error> {
+        match self {
+            Self::Align(args) => align::run(&args),
+            Self::Calibrate(args) => calibrate::run(&args),
+            Self::Tune(args) => tune::run(&args),
+            Self::Replay(args) => replay::run(&args),
+            Self::Report(args) => report::run(&args),
+            Self::Simulate(args) => simulate::run(&args),
+            Self::Flash(args) => flash::run(&args),
+            Self::Ports(args) => ports::run(&args),
+            Self::Status(args) => status::run(&args),
+            Self::Record(args) => record::run(&args),
+            Self::Drive(args) => drive::run(&args),
+            Self::Monitor(args) => monitor::run(&args),
+            Self::Convert(args) => convert::run(&args),
+            Self::Recover(args) => recover::run(&args),
+            Self::Completions(args) => completions::run(&args),
+        }
+    }
+}

@@ -1,0 +1,100 @@
+//! `proprio monitor`.
+
+use std::time::{Duration, Instant};
+
+use proprio_link::{Link, LinkError, Subscription, What};
+use proprio_monitor::{Monitor, Options, Plain, Token};
+use proprio_session::{HostClock, NamedTable, SessionReader};
+
+use super::link;
+use crate::error::Error;
+use crate::help::Help;
+use crate::interrupt::ShutdownGuard;
+use crate::{args, terminal};
+
+/// Longest time from one look at Ctrl-C to the next.
+const LOOK: Duration = Duration::from_millis(50);
+/// Time from one line of `--plain` to the next.
+const LINE: Duration = Duration::from_secs(1);
+
+pub fn run(args: &args::Monitor) -> Result<(), Error> {
+    if args.session.is_some() {
+        return show(args);
+    }
+    let (table, link, events) = link::open(&args.link)?;
+    let shutdown = ShutdownGuard::new();
+    if args.plain {
+        return plain(&link, &events, &shutdown);
+    }
+    let told = link.subscribe();
+    let monitor = start(args, Some((link, events)), table)?;
+    // Nothing follows an end, but what came until then can still be looked at.
+    while !shutdown.is_requested() {
+        if let Some(warning) = told.next(LOOK).and_then(|event| event.what.warning()) {
+            terminal::warn(&warning);
+        }
+    }
+    if let Some(file) = monitor.finish()? {
+        terminal::eprint_line(&format_args!("{file}: recorded"));
+    }
+    Ok(())
+}
+
+/// A session without a board.
+fn show(args: &args::Monitor) -> Result<(), Error> {
+    let table = args.link.table.as_deref().ok_or(Error::SessionWithoutTable)?;
+    let table = NamedTable::load(table)?;
+    if let Some(session) = &args.session {
+        // What is wrong with it is better said here than on the page.
+        SessionReader::open(session, &table.needs()?)?;
+    }
+    let shutdown = ShutdownGuard::new();
+    let monitor = start(args, None, Some(table))?;
+    while !shutdown.is_requested() {
+        std::thread::sleep(LOOK);
+    }
+    drop(monitor);
+    Ok(())
+}
+
+/// Starts the server, and prints where it is.
+fn start(
+    args: &args::Monitor,
+    live: Option<(Link, Subscription)>,
+    table: Option<NamedTable>,
+) -> Result<Monitor, Error> {
+    let token = args.allow_control.then(Token::new).transpose().map_err(proprio_monitor::Error::Random)?;
+    let address = |port: u16| match &token {
+        Some(token) => format!("http://127.0.0.1:{port}/#token={token}\n"),
+        None => format!("http://127.0.0.1:{port}/\n"),
+    };
+    let options = Options {
+        port: args.listen,
+        table,
+        folder: args.folder.clone(),
+        token: token.clone(),
+        session: args.session.clone(),
+        help: Help::help,
+    };
+    let monitor = Monitor::start(live, options)?;
+    terminal::print(&address(monitor.address().port()))?;
+    Ok(monitor)
+}
+
+fn plain(link: &Link, events: &Subscription, shutdown: &ShutdownGuard) -> Result<(), Error> {
+    let (mut plain, clock) = (Plain::new(), HostClock::new());
+    let mut due = Instant::now() + LINE;
+    while !shutdown.is_requested() {
+        if let Some(event) = events.next(due.saturating_duration_since(Instant::now()).min(LOOK)) {
+            plain.take(&event);
+            if let What::Ended(reason) = event.what {
+                return Err(LinkError::Ended(reason).into());
+            }
+        }
+        if Instant::now() >= due {
+            due += LINE;
+            terminal::print(&(plain.line(clock.now(), &link.state()) + "\n"))?;
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,58 @@
+//! `proprio report`.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use estimator_core::saturations;
+use proprio_analysis::report::Gathering;
+use proprio_session::{LAST_LINE, NamedTable, OutputFile};
+
+use crate::args::Report;
+use crate::error::Error;
+use crate::progress_bar::Bar;
+use crate::terminal;
+
+pub fn run(args: &Report) -> Result<(), Error> {
+    let table = NamedTable::load(&args.table)?;
+    let inputs: Vec<&Path> = args.sessions.iter().map(PathBuf::as_path).chain([table.path]).collect();
+    let outputs = [Some(&args.output), args.json.as_ref(), args.csv.as_ref()].into_iter().flatten();
+    let outputs: Vec<PathBuf> =
+        outputs.map(|path| std::path::absolute(path).unwrap_or_else(|_| path.clone())).collect();
+    if let Some(twice) = (1..outputs.len()).find(|i| outputs[..*i].contains(&outputs[*i])) {
+        return Err(Error::OutputTwice(outputs[twice].clone()));
+    }
+    let create = |path: &PathBuf| OutputFile::create(path, &inputs);
+    let page = create(&args.output)?;
+    let json = args.json.as_ref().map(create).transpose()?;
+    let csv = args.csv.as_ref().map(create).transpose()?;
+
+    let mut progress = Bar::new();
+    let mut gathering = Gathering::new(&table);
+    for path in &args.sessions {
+        if !gathering.add(path, &mut progress)?.ends_with_line {
+            terminal::warn(&format_args!("{}: {LAST_LINE}", path.display()));
+        }
+    }
+    drop(progress);
+    match saturations() {
+        0 => {}
+        times => terminal::warn(&format_args!(
+            "fixed point saturated {times} times: a reading or the table is out of range; compare with replay --float"
+        )),
+    }
+    let report = gathering.finish()?;
+    let mut files = vec![written(page, &report.html())?];
+    if let Some(json) = json {
+        files.push(written(json, &report.json())?);
+    }
+    if let Some(csv) = csv {
+        files.push(written(csv, &report.csv())?);
+    }
+    // The files get their names last, so that a command that fails leaves none.
+    Ok(files.into_iter().try_for_each(OutputFile::finish)?)
+}
+
+fn written(mut file: OutputFile, text: &str) -> Result<OutputFile, Error> {
+    file.write_all(text.as_bytes()).and_then(|()| file.flush()).map_err(|error| file.error(error))?;
+    Ok(file)
+}

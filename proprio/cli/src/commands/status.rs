@@ -1,0 +1,103 @@
+//! `proprio status`.
+
+use proprio_link::status::{KnownShape, Status};
+use proprio_session::Ellipse;
+use proprio_session::recording::chip_number;
+use telemetry::{SensorHealth, SensorState};
+
+use super::link;
+use crate::error::Error;
+use crate::terminal;
+use crate::{args, text_tables as tables};
+
+pub fn run(args: &args::Status) -> Result<(), Error> {
+    let (table, link, events) = link::open(&args.link)?;
+    let status = Status::of(&link, &events, table.is_some())?;
+    terminal::print(&if args.json { terminal::json(&status) } else { screen(&status) })
+}
+
+/// Everything on one screen.
+fn screen(status: &Status) -> String {
+    let Status { hello, health, rates, received, .. } = status;
+    let table = match status.table_matches {
+        Some(true) => ", the one given",
+        Some(false) => ", NOT the one given",
+        None => "",
+    };
+    let pressures = health.pressures_pa.map(|pressure_pa| format!("{:.1}", f64::from(pressure_pa) / 1e3)).join(" ");
+    let lines = [
+        ("line", format!("{}, {}", status.port, if status.answers { "answers" } else { "does NOT answer requests" })),
+        ("firmware", format!("{} ({}), proprio {}", hello.firmware, hello.revision, status.proprio)),
+        ("arm", format!("{}, table {:08x}{table}", hello.arm, hello.table)),
+        ("chip", chip_number(&hello.chip)),
+        ("boot", format!("number {} since power-on, by {:?}, {}", hello.boot, hello.reset, up(health.tick))),
+        ("last panic", hello.last_panic.as_deref().unwrap_or("none").to_owned()),
+        (
+            "rates",
+            format!(
+                "{:.1} samples/s, {:.1} estimates/s, {:.1} kB/s",
+                rates.samples_hz,
+                rates.estimates_hz,
+                rates.bytes_per_s / 1e3
+            ),
+        ),
+        ("received", format!("{} frames, {} damaged, {} lost", received.frames, received.damaged, received.lost)),
+        (
+            "load",
+            format!(
+                "{:.1} %, estimate {} µs and IMUs {} µs after the tick at most",
+                f64::from(health.load_permille) / 10.0,
+                health.longest_tick_us,
+                health.longest_imu_read_us
+            ),
+        ),
+        (
+            "counters",
+            format!(
+                "{} overruns, {} stale scans, {} dropped and {} damaged frames, {} bus recoveries, {} saturations",
+                health.overruns,
+                health.stale_scans,
+                health.dropped_frames,
+                health.damaged_frames,
+                health.bus_recoveries,
+                health.saturations
+            ),
+        ),
+        ("tip", tip(status.shape.as_ref())),
+        ("contact", contact(status.shape.as_ref())),
+        ("pressures", format!("{:?}, {pressures} kPa", health.actuation)),
+        ("bend sensors", sensors(&health.bend, |i| format!("{}{}", i / 2 + 1, ['a', 'b'][i % 2]))),
+        ("IMUs", sensors(&health.imu, |i| (i + 1).to_string())),
+    ];
+    let notes = status.mismatches.iter().map(|mismatch| format!("\nnote: {mismatch}\n"));
+    tables::pairs(&lines) + &notes.collect::<String>()
+}
+
+fn up(tick: u32) -> String {
+    format!("up for {:.1} s", f64::from(tick) / telemetry::TICK_HZ)
+}
+
+/// How far the tip may be off.
+fn tip(shape: Option<&KnownShape>) -> String {
+    match shape.and_then(|shape| shape.tip) {
+        Some(Ellipse { major_mm, minor_mm }) => {
+            format!("95 % within an ellipse of {major_mm:.1} mm by {minor_mm:.1} mm about the estimate")
+        }
+        None => "the board does not say how far it may be off".to_owned(),
+    }
+}
+
+/// Which segments something touches.
+fn contact(shape: Option<&KnownShape>) -> String {
+    let touched = (1..).zip(shape.iter().flat_map(|shape| shape.touched)).filter(|(_, touched)| *touched);
+    let numbers: Vec<String> = touched.map(|(number, _): (u32, _)| number.to_string()).collect();
+    if numbers.is_empty() { "none".to_owned() } else { format!("segment {}", numbers.join(", ")) }
+}
+
+/// All that are well in one word, each other one by its name, state and how often it was missed.
+fn sensors(sensors: &[SensorHealth], name: impl Fn(usize) -> String) -> String {
+    let ok = sensors.iter().filter(|sensor| sensor.state == SensorState::Ok).count();
+    let others = sensors.iter().enumerate().filter(|(_, sensor)| sensor.state != SensorState::Ok);
+    let others = others.map(|(i, sensor)| format!("{} {:?} ({} missed)", name(i), sensor.state, sensor.missed));
+    [format!("{ok} of {} ok", sensors.len())].into_iter().chain(others).collect::<Vec<_>>().join(", ")
+}

@@ -1,0 +1,75 @@
+//! Errors that stop a command, and their remedies.
+
+use std::io;
+use std::path::PathBuf;
+
+use board_core::FULL_SCALE_PA;
+use proprio_link::LinkError;
+use proprio_link::drive::DriveError;
+use proprio_simulation::SimulationError;
+
+use crate::flash::FlashError;
+
+/// An error that stops a command.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    /// A session, a table or an output.
+    #[error(transparent)]
+    File(#[from] proprio_session::Error),
+    /// A replay or a report.
+    #[error(transparent)]
+    Analysis(#[from] proprio_analysis::Error),
+    /// Calibration, tuning or alignment.
+    #[error(transparent)]
+    Calibration(#[from] proprio_calibration::Error),
+    /// The live page.
+    #[error(transparent)]
+    Monitor(#[from] proprio_monitor::Error),
+    /// A board cannot be reached.
+    #[error(transparent)]
+    Link(#[from] LinkError),
+    /// A board is not driven, or not any more.
+    #[error(transparent)]
+    Drive(#[from] DriveError),
+    /// A board is not flashed.
+    #[error(transparent)]
+    Flash(#[from] FlashError),
+    /// A session cannot be simulated.
+    #[error(transparent)]
+    Simulation(#[from] SimulationError),
+    /// Two outputs of one name.
+    #[error("{}: cannot hold two outputs of this command", .0.display())]
+    OutputTwice(PathBuf),
+    /// Standard output cannot be written.
+    #[error("standard output cannot be written: {0}")]
+    Stdout(io::Error),
+    /// The monitor is given a session and no table.
+    #[error("a session is shown by what the estimator makes of it, and that takes a table")]
+    SessionWithoutTable,
+    /// `--out` with several sessions.
+    #[error("--out takes the estimates of one session, found {0} sessions")]
+    OneSession(usize),
+    /// A duration that cannot be recorded or driven.
+    #[error("--seconds {0}, expected more than 0 and at most 10 million")]
+    Seconds(f64),
+    /// A pressure over the regulators' full scale.
+    #[error("--kpa {0}, expected 0 to {most}", most = FULL_SCALE_PA / 1000)]
+    Pressure(f64),
+    /// A rate of change of pressures that is not positive.
+    #[error("--ramp {0} kPa/s, expected more than 0")]
+    Ramp(f64),
+}
+
+impl From<proprio_session::SessionError> for Error {
+    fn from(error: proprio_session::SessionError) -> Self {
+        Self::File(error.into())
+    }
+}
+
+/// Checks a duration that is recorded or driven, s.
+///
+/// # Errors
+/// [`Error::Seconds`].
+pub fn check_seconds(seconds: f64) -> Result<(), Error> {
+    if seconds > 0.0 && seconds <= 1e7 { Ok(()) } else { Err(Error::Seconds(seconds)) }
+}

@@ -1,0 +1,50 @@
+//! Remedies of errors of flashing.
+
+use proprio_link::LinkError;
+
+use super::Help;
+use crate::flash::FlashError;
+
+impl Help for FlashError {
+    fn help(&self) -> String {
+        let help = match self {
+            Self::NoSource(_) => "run it in the folder of the source, or name that with --source",
+            Self::Port(LinkError::NoDue) => "plug it in by its programming port, or name another port with --port",
+            Self::Port(error) | Self::Unheard(error) => return error.help(),
+            Self::Missing(program) | Self::Start { program, .. } => install(program),
+            Self::NoObjcopy(_) => {
+                "let rustup install the pinned toolchain: `rustup toolchain install` in the source's folder"
+            }
+            Self::Failed { program, .. } => look(program),
+            Self::Temporary(_) => "make room, or let TMPDIR name a folder that can be written to",
+            Self::Silent { .. } => "press RESET, then `proprio status`; docs/FLASHING.md, Trouble",
+            Self::OtherTable { .. } => "see that the probe and the port are of one board, and flash again",
+            Self::Other(_) => {
+                "give this release's source with --source, and see that the probe and the port are of one board"
+            }
+        };
+        help.to_owned()
+    }
+}
+
+fn install(program: &str) -> &'static str {
+    match program {
+        "bossac" => {
+            "install BOSSA 1.9 (Debian, Ubuntu: apt install bossa-cli; https://github.com/shumatech/BOSSA), or plug in a \
+             debug probe and install probe-rs (https://probe.rs)"
+        }
+        "probe-rs" => "install it again (https://probe.rs)",
+        _ => "install Rust by rustup (https://rustup.rs)",
+    }
+}
+
+fn look(program: &str) -> &'static str {
+    match program {
+        "bossac" => {
+            "close what has the port open; docs/FLASHING.md, Trouble, tells what each of its errors means. The flash may be \
+             erased, which flashing again mends"
+        }
+        "probe-rs" => "check the probe's cable and the board's supply; docs/FLASHING.md, Trouble",
+        _ => "what it says above tells why; `rustup target add thumbv7m-none-eabi` if the target is missing",
+    }
+}

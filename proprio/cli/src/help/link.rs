@@ -1,0 +1,62 @@
+//! Remedies of errors of the link to a board and its pressures.
+
+use std::io;
+
+use proprio_link::drive::DriveError;
+use proprio_link::{LinkError, RequestError};
+
+use super::Help;
+
+impl Help for LinkError {
+    fn help(&self) -> String {
+        let help = match self {
+            Self::List(_) => "name the port with --port",
+            Self::NoDue => "plug it in by its programming port, name another port with --port, or use --virtual",
+            Self::SeveralDues(_) => "name one with --port; `proprio ports` lists them",
+            Self::Gone => "plug it in again",
+            Self::Open { source, .. } => open_remedy(source),
+            Self::NoVirtualDue => "build it: cargo build --ignore-rust-version -p virtual-due",
+            Self::NoFirmware(_) => {
+                "build it: cargo build --release -p firmware --target thumbv7m-none-eabi, or name one with --firmware"
+            }
+            Self::Start { .. } => "build it again, or let PROPRIO_VIRTUAL_DUE name it",
+            Self::Thread(_) => "close other programs",
+            Self::Ended(_) => "look at what the board or its program says",
+            Self::Silent { .. } => {
+                "check that the firmware is on the board (docs/FLASHING.md) and that this is its programming port"
+            }
+            Self::Request(RequestError::Refused(_)) => "do what the board asks for first",
+            Self::Request(_) => "try again; `proprio status` tells how the board is",
+        };
+        help.to_owned()
+    }
+}
+
+fn open_remedy(source: &serialport::Error) -> &'static str {
+    match source.kind() {
+        serialport::ErrorKind::Io(io::ErrorKind::PermissionDenied) if cfg!(target_os = "linux") => {
+            "join the group that the port belongs to (sudo usermod -aG dialout $USER), and log in again"
+        }
+        serialport::ErrorKind::NoDevice => {
+            "check the name (`proprio ports` lists them), and close other programs that have the port open"
+        }
+        _ => "check the name and the cable, and close other programs that have the port open",
+    }
+}
+
+impl Help for DriveError {
+    fn help(&self) -> String {
+        let help = match self {
+            Self::OtherTable(_) => "put this table onto the board with `proprio flash --table`, or give the board's",
+            Self::Crashed(_) => "air off until it is understood; a second `proprio drive` takes it for understood",
+            Self::Blind => "`proprio status` tells how each of them is",
+            Self::HeldBack { .. } => {
+                "see whether sensors are lost (`proprio status`); after three crashes a power cycle ends the safe mode"
+            }
+            Self::Restarted => "`proprio status` tells what restarted it",
+            Self::Lost(_) => "check the cable",
+            Self::Link(error) => return error.help(),
+        };
+        help.to_owned()
+    }
+}

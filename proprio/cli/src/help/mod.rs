@@ -1,0 +1,13 @@
+//! Remedies: what to do about each error of the libraries.
+
+mod calibration;
+mod flash;
+mod link;
+mod program;
+mod session;
+
+/// An error with a remedy.
+pub trait Help {
+    /// The remedy, as a request to the user.
+    fn help(&self) -> String;
+}

@@ -1,0 +1,72 @@
+//! Remedies of the errors that join those of the libraries.
+
+use super::Help;
+use crate::error::Error;
+
+impl Help for Error {
+    fn help(&self) -> String {
+        let help = match self {
+            Self::File(error) => return error.help(),
+            Self::Analysis(error) => return error.help(),
+            Self::Calibration(error) => return error.help(),
+            Self::Monitor(error) => return error.help(),
+            Self::Link(error) => return error.help(),
+            Self::Drive(error) => return error.help(),
+            Self::Flash(error) => return error.help(),
+            Self::OutputTwice(_) => "give the output another name",
+            Self::Stdout(_) => "write to a place that has room, or use --out",
+            Self::SessionWithoutTable => "give the arm's table with --table",
+            Self::OneSession(_) => "replay the sessions one by one",
+            Self::Simulation(_) | Self::Seconds(_) | Self::Pressure(_) | Self::Ramp(_) => "give a value in this range",
+        };
+        help.to_owned()
+    }
+}
+
+impl Help for proprio_session::Error {
+    fn help(&self) -> String {
+        let help = match self {
+            Self::Session(error) => return error.problem.help(),
+            Self::Table { source, .. } => source.remedy(),
+            Self::Output { .. } => "choose a folder that exists, can be written to and has room",
+            Self::Overwrite(_) | Self::Exists(_) => "give the output another name",
+            Self::OutputKind(_) => "give the output one of these endings",
+            Self::SameKind(_) => "copy the file, or give the output another ending",
+        };
+        help.to_owned()
+    }
+}
+
+impl Help for proprio_analysis::Error {
+    fn help(&self) -> String {
+        match self {
+            Self::File(error) => error.help(),
+            Self::NotSmoothed(_) => {
+                "calibrate a table with the bias filter, `[drift] kind = \"kalman\"`, or leave out --smooth".to_owned()
+            }
+        }
+    }
+}
+
+impl Help for proprio_calibration::Error {
+    fn help(&self) -> String {
+        match self {
+            Self::File(error) => error.help(),
+            Self::Replay(error) => error.help(),
+            Self::Calibration { source, .. } => source.help(),
+            Self::Tuning { source, .. } => source.help(),
+            Self::Alignment { source, .. } => source.help(),
+        }
+    }
+}
+
+impl Help for proprio_monitor::Error {
+    fn help(&self) -> String {
+        match self {
+            Self::File(error) => error.help(),
+            Self::Link(error) => error.help(),
+            Self::Listen { .. } => "give another with --listen; is a monitor running already?".to_owned(),
+            Self::Random(_) => "watch without --allow-control".to_owned(),
+        }
+    }
+}

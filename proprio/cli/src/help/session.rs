@@ -1,0 +1,56 @@
+//! Remedies of errors of sessions.
+
+use proprio_session::Problem;
+use proprio_session::recording::ReadError;
+
+use super::Help;
+
+impl Help for Problem {
+    fn help(&self) -> String {
+        let help = match self {
+            Self::Read(_) | Self::Recording(ReadError::Read(_)) => "check the name and that you may read it",
+            Self::Directory => "name the .csv file in it",
+            Self::NoHeader | Self::NoSamples | Self::NothingWhole => "record the session again, or take another",
+            Self::NotText => "save it as CSV in UTF-8",
+            Self::MissingColumn(_) => {
+                "take the arm or table of this session, or add the column; names are as in docs/FORMATS.md, between commas"
+            }
+            Self::DuplicateColumn(_) => "remove or rename one of them",
+            Self::OtherArm { .. } | Self::RecordedSegments(_) => {
+                "take the arm description or table of the arm that was recorded"
+            }
+            Self::RowLength { .. } => {
+                "the file was cut or edited, or has decimal commas: remove the row, copy the file again, or use points"
+            }
+            Self::NotCsv => "make a CSV of it with `proprio convert`",
+            Self::HasTruth(_) => "take the session as it was recorded, or use it as it is: it is aligned",
+            Self::NoTime | Self::Time(_) | Self::Clock(_) => "give every row its time in seconds",
+            Self::NoPressure => "give every regulator its pressure in every row; 0 is vented",
+            Self::Pressure(_) => "write pressures over the atmosphere's: in kPa in _kpa, in Pa in _pa",
+            Self::NoMoments => "give at least one row",
+            Self::NotANumber(_) => "write numbers with a decimal point, and leave the cell of a missing reading empty",
+            Self::NotFinite(_) => "leave the cell empty",
+            Self::Counts(_) => "write raw ADC counts, and leave the cell of a missing reading empty",
+            Self::Truth(_) => "correct the value, or leave all cells of this truth empty",
+            Self::NotAFile => "save it as a file first",
+            Self::Tare(_) => "write the number, or remove the column",
+            Self::Recording(ReadError::Cut) => "save what is whole of it with `proprio recover`",
+            Self::Recording(ReadError::OtherForm(_) | ReadError::OtherProtocol(_)) => {
+                "read it with the proprio of that version"
+            }
+            Self::Recording(ReadError::Compressed(_)) => "decompress it (`mcap decompress`)",
+            Self::Recording(ReadError::Damaged(_)) => {
+                "save what is whole of it with `proprio recover`, or take another"
+            }
+            Self::TooManySegments(_) => "keep it as CSV",
+            Self::NoTruth => "give a session with the camera's truth, as docs/FORMATS.md has it",
+            Self::Heading(_) => "write headings from 0 up to a full turn: 360 in _deg, 2π in _rad",
+            Self::Backwards { .. } => "sort the rows by time; two sessions in one file must be split",
+            Self::PartialQuaternion | Self::NotUnit(_) => {
+                "write unit quaternions w, x, y, z, and leave all four cells of a missing reading empty"
+            }
+            Self::PartialTruth => "leave all its cells empty where the camera did not see the segment",
+        };
+        help.to_owned()
+    }
+}

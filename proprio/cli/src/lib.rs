@@ -1,0 +1,53 @@
+//! The program `proprio`: its commands over the libraries of this workspace.
+//!
+//! | file or folder | purpose |
+//! |---|---|
+//! | `args/` | everything that can be typed |
+//! | `commands/` | one file for each command |
+//! | `flash/` | the firmware onto a board |
+//! | `error.rs`, `help/` | errors that stop a command, and their remedies |
+//! | `terminal.rs`, `text_tables.rs`, `status_line.rs`, `progress_bar.rs` | output for people |
+//! | `interrupt.rs` | Ctrl-C |
+
+mod args;
+mod commands;
+mod error;
+pub mod flash;
+mod help;
+mod interrupt;
+mod progress_bar;
+mod status_line;
+mod terminal;
+mod text_tables;
+
+use std::panic::catch_unwind;
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use crate::help::Help;
+
+/// Runs the command of the program's arguments. Its exit status: 0 done, 1 a fault of proprio, 2 an input or a command that
+/// cannot be used.
+#[must_use]
+pub fn run() -> ExitCode {
+    let command = args::Cli::parse().command;
+    interrupt::install();
+    match catch_unwind(|| command.run()) {
+        Ok(Ok(())) => ExitCode::SUCCESS,
+        Ok(Err(error)) => {
+            let (error_style, help_style) = (args::STYLES.get_error(), args::STYLES.get_valid());
+            let help = error.help();
+            terminal::eprint_line(&format_args!(
+                "{error_style}error:{error_style:#} {error}\n{help_style}  help:{help_style:#} {help}"
+            ));
+            ExitCode::from(2)
+        }
+        Err(_) => {
+            terminal::eprint_line(
+                &"This is a fault of proprio. Please report it, with the message above and the command.",
+            );
+            ExitCode::from(1)
+        }
+    }
+}

@@ -1,0 +1,7 @@
+//! The program `proprio`.
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    proprio::run()
+}

@@ -1,0 +1,63 @@
+//! Progress of long work: a bar on standard error, on a terminal only, for work that takes over a second.
+
+use std::time::{Duration, Instant};
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use proprio_session::Progress;
+
+/// Delay before the bar is shown.
+const DELAY: Duration = Duration::from_secs(1);
+
+/// Calls of [`Progress::advance`] for one look at the clock.
+const CALLS: u64 = 1024;
+
+/// A bar for one piece of work after the other.
+pub struct Bar {
+    bar: ProgressBar,
+    work: String,
+    hidden_since: Option<Instant>,
+    calls: u64,
+}
+
+impl Bar {
+    /// A bar that is hidden.
+    pub fn new() -> Self {
+        Self { bar: ProgressBar::hidden(), work: String::new(), hidden_since: Some(Instant::now()), calls: 0 }
+    }
+
+    fn set(&mut self, work: &str, done: u64, total: u64) {
+        if self.hidden_since.is_some_and(|since| since.elapsed() > DELAY) {
+            self.hidden_since = None;
+            let style = ProgressStyle::with_template("{msg} [{bar:40}] {percent} % {eta} left");
+            self.bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+            self.bar.set_draw_target(ProgressDrawTarget::stderr());
+        }
+        self.bar.set_length(total);
+        self.bar.set_message(work.to_owned());
+        self.bar.set_position(done);
+    }
+}
+
+impl Progress for Bar {
+    fn advance(&mut self, work: &str, done: u64, total: u64) {
+        self.calls += 1;
+        if work != self.work {
+            // The next piece of work has a delay and an estimate of its own.
+            work.clone_into(&mut self.work);
+            self.bar.finish_and_clear();
+            (self.bar, self.hidden_since, self.calls) = (ProgressBar::hidden(), Some(Instant::now()), 0);
+        } else if self.calls.is_multiple_of(CALLS) {
+            self.set(work, done, total);
+        }
+    }
+
+    fn complete(&mut self, work: &str, done: u64, total: u64) {
+        self.set(work, done, total);
+    }
+}
+
+impl Drop for Bar {
+    fn drop(&mut self) {
+        self.bar.finish_and_clear();
+    }
+}

@@ -1,0 +1,211 @@
+//! Tables for people.
+
+use std::time::Duration;
+
+use calibration_tables::{DriftTuningKeys, RmseKeys, Stopped, TuningKeys};
+use comfy_table::presets::NOTHING;
+use comfy_table::{CellAlignment, Table};
+use estimator_core::Method;
+use proprio_analysis::consistency::HonestyFigures;
+use proprio_analysis::figures::{AllFigures, ByMethod};
+use proprio_analysis::metrics::Figures;
+use proprio_calibration::calibrate::{HeldOut, MapKind, SegmentReport, SensorReport};
+use proprio_link::Port;
+
+/// One line a bend sensor.
+pub fn sensors(sensors: &[SensorReport]) -> String {
+    let mut table = table(&["sensor", "samples", "RMSE deg", "range deg", "range V"]);
+    for sensor in sensors {
+        let [lo_deg, hi_deg] = sensor.range_deg;
+        let [lo_v, hi_v] = sensor.volts;
+        table.add_row([
+            sensor.name.clone(),
+            sensor.samples.to_string(),
+            format!("{:.2}", sensor.rmse_deg),
+            format!("{lo_deg:.1} to {hi_deg:.1}"),
+            format!("{lo_v:.3} to {hi_v:.3}"),
+        ]);
+    }
+    let mean = sensors.iter().map(|sensor| sensor.rmse_deg).sum::<f64>() / sensors.len() as f64;
+    format!("{}\nmean RMSE of the V–Orient maps: {mean:.2} deg\n", text(&mut table))
+}
+
+/// Expected errors of the segments' bend angles.
+pub fn segments(segments: &[SegmentReport]) -> String {
+    let mut table = table(&["segment", "expected error deg", "maps", "memory", "IMU scale"]);
+    for segment in segments {
+        let kind = |(kind, _): &(MapKind, bool)| match kind {
+            MapKind::Quadratic => "quadratic",
+            MapKind::Curve => "curve",
+        };
+        let memory = |(_, memory): &(MapKind, bool)| if *memory { "yes" } else { "no" };
+        table.add_row([
+            segment.segment.to_string(),
+            format!("{:.2}", segment.held_back_rmse_deg),
+            joined(segment.maps.iter().map(kind)),
+            joined(segment.maps.iter().map(memory)),
+            segment.imu_scale.map_or_else(|| "-".to_owned(), |scale| format!("{scale:.4}")),
+        ]);
+    }
+    format!("\n{}\n", text(&mut table))
+}
+
+/// Errors on the last fifth of the sweep.
+pub fn held_out(held_out: &HeldOut) -> String {
+    let mut table = table(&["method", "tip RMSE mm"]);
+    for (method, tip_rmse_mm) in Method::ALL.iter().zip(held_out.tip_rmse_mm) {
+        let cell = tip_rmse_mm.map_or_else(|| "-".to_owned(), |rmse_mm| format!("{rmse_mm:.2}"));
+        table.add_row([method.name().to_owned(), cell]);
+    }
+    format!("\non the last fifth, by a table of the rest:\n{}\n", text(&mut table))
+}
+
+/// A word for both sensors where they agree.
+fn joined<'w>(words: impl Iterator<Item = &'w str>) -> String {
+    let mut words: Vec<&str> = words.collect();
+    words.dedup();
+    words.join(", ")
+}
+
+/// What a tuning has brought, of which each iteration took `iteration_time`.
+pub fn tuning(record: &TuningKeys, iteration_time: Duration) -> String {
+    let mut table = table(&["RMSE", "before", "after", "held back, before", "after"]);
+    let parts = [&record.before, &record.after, &record.held_back_before, &record.held_back_after];
+    let mut add = |name: &str, figure: fn(&RmseKeys) -> f64| {
+        table.add_row([name.to_owned()].into_iter().chain(parts.map(|of| format!("{:.2}", figure(of)))));
+    };
+    add("tip, mm", |of| of.tip_rmse_mm);
+    add("all ends, mm", |of| of.position_rmse_mm);
+    add("headings, deg", |of| of.heading_rmse_deg);
+    let stopped = match record.stopped {
+        Stopped::Converged => "converged",
+        Stopped::Interrupted => "interrupted",
+    };
+    let each_s = iteration_time.as_secs_f64();
+    let (iterations, kept) = (record.iterations, record.kept);
+    let filters = format!(
+        "{}\n{stopped} after {iterations} iterations of {each_s:.3} s; the table has iteration {kept}\n",
+        text(&mut table)
+    );
+    filters + &record.drift.as_ref().map_or_else(String::new, bias_filter) + &variances(record)
+}
+
+/// The bias filter's parameters, before and after.
+fn bias_filter(of: &DriftTuningKeys) -> String {
+    let mut table = table(&["bias filter", "before", "after"]);
+    let keys = [
+        ("rate_deg_per_s", of.rate_deg_per_s),
+        ("rate_random_walk_deg_per_s_sqrt_s", of.rate_random_walk_deg_per_s_sqrt_s),
+        ("angle_random_walk_deg_per_sqrt_s", of.angle_random_walk_deg_per_sqrt_s),
+        ("offset_deg", of.offset_deg),
+        ("offset_s", of.offset_s),
+    ];
+    for (name, values) in keys {
+        table.add_row([name.to_owned()].into_iter().chain(values.map(|value| format!("{value:.3e}"))));
+    }
+    format!("\n{}\nafter {} runs of the estimator\n", text(&mut table), of.runs)
+}
+
+/// What became of the variances, where the table has any.
+fn variances(record: &TuningKeys) -> String {
+    match record.variances {
+        None => String::new(),
+        Some(factor) if factor > 1.0 => format!("\nvariances are {factor:.2} times as large\n"),
+        Some(_) => "\nvariances are as they were\n".to_owned(),
+    }
+}
+
+/// Picks one figure of a method.
+type Pick = fn(&Figures) -> Option<f64>;
+
+/// A table for each figure: a line a session, a column a method, and one of the smoothed estimates where there are any.
+pub fn replay(all: &AllFigures) -> String {
+    let length = all.length_mm;
+    let parts: [(String, Pick); 4] = [
+        ("Tip error, RMSE in mm".to_owned(), |figures| figures.tip_rmse_mm),
+        (format!("Tip error, RMSE in % of {length} mm"), |figures| figures.tip_rmse_percent),
+        ("Tip error, 75th percentile in mm".to_owned(), |figures| figures.tip_p75_mm),
+        ("Bend angles, RMSE in deg".to_owned(), |figures| figures.theta_rmse_deg),
+    ];
+    let figures = parts.map(|(title, figure)| format!("{title}\n{}\n", figures(all, figure))).join("\n");
+    figures
+        + &honesty(all, "fusion", |figures| figures.uncertainty)
+        + &honesty(all, "the smoothed estimates", |figures| figures.smoothed.and_then(|smoothed| smoothed.uncertainty))
+}
+
+/// How honest the covariances are: a line a session; nothing where there are none.
+fn honesty(all: &AllFigures, of_what: &str, pick: fn(&ByMethod) -> Option<HonestyFigures>) -> String {
+    if pick(&all.all).is_none() {
+        return String::new();
+    }
+    let mut table =
+        table(&["session", "tip, NEES", "in 95 % ellipse", "all ends, NEES", "in 95 % ellipse", "angles, NEES"]);
+    let sessions = all.sessions.iter().map(|session| (session.path.as_str(), &session.figures));
+    for (name, figures) in sessions.chain([("all", &all.all)]) {
+        let Some(of) = pick(figures) else { continue };
+        let nees = |value: Option<f64>| value.map_or("–".to_owned(), |value| format!("{value:.2}"));
+        let inside = |value: Option<f64>| value.map_or("–".to_owned(), |value| format!("{value:.1} %"));
+        table.add_row([
+            name.to_owned(),
+            nees(of.tip_nees),
+            inside(of.tip_inside_percent),
+            nees(of.end_nees),
+            inside(of.end_inside_percent),
+            nees(of.theta_nees),
+        ]);
+    }
+    format!("\nErrors of {of_what} over what the covariances expect\n{}\n", text(&mut table))
+}
+
+fn figures(all: &AllFigures, figure: Pick) -> String {
+    let mut heads = vec!["session", "samples", "seconds"];
+    heads.extend(Method::ALL.map(Method::name));
+    let is_smoothed = all.all.smoothed.is_some();
+    heads.extend(is_smoothed.then_some("smoothed"));
+    let mut table = table(&heads);
+    let mut add = |name: String, samples: u64, seconds: f64, of: &ByMethod| {
+        let smoothed = is_smoothed.then(|| of.smoothed.and_then(|of| figure(&of.figures)));
+        let cells = of.methods.iter().map(figure).chain(smoothed);
+        let cells = cells.map(|value| value.map_or("–".to_owned(), |value| format!("{value:.2}")));
+        table.add_row([name, samples.to_string(), format!("{seconds:.1}")].into_iter().chain(cells));
+    };
+    for session in &all.sessions {
+        add(session.path.clone(), session.samples, session.seconds, &session.figures);
+    }
+    let samples = all.sessions.iter().map(|session| session.samples).sum();
+    let seconds = all.sessions.iter().map(|session| session.seconds).sum();
+    add("all".to_owned(), samples, seconds, &all.all);
+    text(&mut table)
+}
+
+/// One line a port.
+pub fn ports(ports: &[Port]) -> String {
+    if ports.is_empty() {
+        return "no serial port\n".to_owned();
+    }
+    let mut table = table(&["port", "what", "USB", "serial number", "product"]);
+    for Port { name, kind, usb, serial_number, product } in ports {
+        let [usb, serial_number, product] = [usb, serial_number, product].map(|text| text.as_deref().unwrap_or("–"));
+        table.add_row([name, kind.name(), usb, serial_number, product]);
+    }
+    table.trim_fmt() + "\n"
+}
+
+/// Names to the left of what they mean.
+pub fn pairs(lines: &[(&str, String)]) -> String {
+    lines.iter().map(|(name, value)| format!("{name:<13} {value}\n")).collect::<Vec<_>>().concat()
+}
+
+fn table(heads: &[&str]) -> Table {
+    let mut table = Table::new();
+    table.load_style(NOTHING).set_header(heads);
+    table
+}
+
+/// Names to the left, numbers to the right, no trailing space.
+fn text(table: &mut Table) -> String {
+    for column in table.column_iter_mut().skip(1) {
+        column.set_cell_alignment(CellAlignment::Right);
+    }
+    table.trim_fmt()
+}

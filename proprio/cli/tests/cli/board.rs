@@ -1,0 +1,120 @@
+//! A board that is none: the firmware's own estimator and frames, over what the twin's sensors read.
+
+use board_core::Arm;
+use calibration_tables::ArmFile;
+use estimator_core::Q;
+use proprio_simulation::Simulation;
+use rig_twin::Scenario;
+use telemetry::{
+    Actuation, BEND_SENSORS, Encoder, Estimate, Health, Hello, MAX_FRAME, Message, PROTOCOL_VERSION, REGULATORS,
+    ResetCause, SCHEMA, SEGMENTS, Sample, SensorHealth, SensorState, TICK_HZ, Text,
+};
+
+use super::common::table;
+
+/// Tick at which the IMUs come up.
+const IMUS_UP: u32 = 80;
+
+/// A board, from its boot on, frame by frame.
+pub struct SyntheticBoard {
+    arm: Arm,
+    encoder: Encoder,
+    simulation: Simulation,
+    boot: u32,
+    tick: u32,
+    table: u32,
+}
+
+impl SyntheticBoard {
+    /// The boot number of a board that then runs for some seconds.
+    pub fn new(boot: u32, seconds: f64) -> Self {
+        let file = ArmFile::load(table().as_ref()).expect("the reference table");
+        let baked = Box::leak(Box::new(file.bake::<Q>(TICK_HZ).expect("it bakes")));
+        let checksum = baked.checksum();
+        let mut arm = Arm::new(Box::leak(Box::new(baked.config())));
+        arm.start();
+        let simulation = Simulation::new(Scenario::One, 77 + u64::from(boot), seconds, TICK_HZ).expect("a valid run");
+        Self { arm, encoder: Encoder::new(), simulation, boot, tick: 0, table: checksum }
+    }
+
+    /// The arm is tared before the next sample.
+    pub fn tare(&mut self) {
+        self.arm.tare();
+    }
+
+    /// The frames of the next tick, with the estimate that is in them.
+    pub fn tick(&mut self) -> Option<(Vec<Vec<u8>>, Estimate)> {
+        let read = self.simulation.next()?;
+        let tick = self.tick;
+        self.tick += 1;
+        let imu = if tick < IMUS_UP { [None; SEGMENTS] } else { read.quaternions };
+        if self.arm.is_due(tick, imu.iter().all(Option::is_some)) {
+            self.arm.tare();
+        }
+        let mut bend = read.counts;
+        if tick % 50 == 7 {
+            bend[(tick / 50) as usize % BEND_SENSORS] = None;
+        }
+        let sample = Sample { tick, time_us: u64::from(tick) * 10_000 + 137, tare: self.arm.tares(), bend, imu };
+        let estimate = self.arm.step(&sample);
+        let contact = self.arm.contact(tick);
+        let mut messages = Vec::new();
+        messages.extend(tick.is_multiple_of(100).then(|| Message::Hello(self.hello())));
+        messages.extend([Message::Sample(sample), Message::Estimate(estimate)]);
+        messages.extend(contact.map(Message::Event));
+        messages.extend(tick.is_multiple_of(25).then(|| Message::Uncertainty(self.arm.uncertainty(tick))));
+        messages.extend(tick.is_multiple_of(20).then(|| Message::Health(health(tick))));
+        let mut buffer = [0; MAX_FRAME];
+        let frame = |message: &Message| self.encoder.encode(message, &mut buffer).expect("it fits").to_vec();
+        Some((messages.iter().map(frame).collect(), estimate))
+    }
+
+    fn hello(&self) -> Hello {
+        let text = |text: &str| Text::try_from(text).expect("it is short");
+        Hello {
+            protocol: PROTOCOL_VERSION,
+            schema: SCHEMA,
+            firmware: text(env!("CARGO_PKG_VERSION")),
+            revision: text("synthetic"),
+            arm: Text::try_from("planar-6").expect("it is short"),
+            table: self.table,
+            chip: *b"a synthetic Due!",
+            reset: ResetCause::Pin,
+            boot: self.boot,
+            last_panic: None,
+        }
+    }
+
+    /// All that it says.
+    pub fn bytes(self) -> Vec<u8> {
+        self.flat_map(|(frames, _)| frames.concat()).collect()
+    }
+}
+
+impl Iterator for SyntheticBoard {
+    type Item = (Vec<Vec<u8>>, Estimate);
+
+    fn next(&mut self) -> Option<Self::Item> {
+        self.tick()
+    }
+}
+
+fn health(tick: u32) -> Health {
+    let ok = SensorHealth { state: SensorState::Ok, missed: 0 };
+    Health {
+        tick,
+        bend: [ok; BEND_SENSORS],
+        imu: [ok; SEGMENTS],
+        longest_tick_us: 3000,
+        longest_imu_read_us: 2000,
+        load_permille: 100,
+        overruns: 0,
+        stale_scans: 0,
+        dropped_frames: 0,
+        damaged_frames: 0,
+        bus_recoveries: 0,
+        saturations: 0,
+        actuation: Actuation::Disarmed,
+        pressures_pa: [0; REGULATORS],
+    }
+}

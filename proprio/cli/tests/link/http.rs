@@ -1,0 +1,157 @@
+//! A monitor over a line in memory, and a client of its page.
+
+use std::io::{Read, Write};
+use std::net::TcpStream;
+use std::time::Duration;
+
+use proprio_link::Link;
+use proprio_monitor::{Monitor, Options, Token};
+use proprio_session::NamedTable;
+use serde_json::Value;
+use tempfile::TempDir;
+use tungstenite::client::IntoClientRequest;
+use tungstenite::{Message, WebSocket};
+
+use super::line::{Line, PATIENCE};
+
+/// The monitor, and the folder that it records to.
+pub struct Page {
+    pub monitor: Monitor,
+    pub folder: TempDir,
+}
+
+/// What a server answers.
+#[derive(Debug)]
+pub struct Answer {
+    pub status: u16,
+    pub head: String,
+    pub body: Vec<u8>,
+}
+
+impl Answer {
+    pub fn text(&self) -> String {
+        String::from_utf8_lossy(&self.body).into_owned()
+    }
+
+    /// The line of JSON in front of rows.
+    pub fn about(&self) -> Value {
+        let line = self.body.split(|byte| *byte == b'\n').next().expect("there is a first line");
+        serde_json::from_slice(line).unwrap_or_else(|error| panic!("{error}: {}", self.text()))
+    }
+}
+
+impl Answer {
+    /// One column of its rows, as bits.
+    pub fn column(&self, columns: &Value, name: &str) -> Vec<u32> {
+        let rows = self.about()["rows"].as_u64().expect("a number") as usize;
+        let place = columns.as_array().and_then(|names| names.iter().position(|column| column == name));
+        let begin = self.body.iter().position(|byte| *byte == b'\n').expect("a line") + 1;
+        let floats = &self.body[begin + 8 * rows..][place.expect("a column") * 4 * rows..][..4 * rows];
+        floats.as_chunks().0.iter().map(|bytes| u32::from_le_bytes(*bytes)).collect()
+    }
+}
+
+impl Page {
+    /// Of a board on this line.
+    pub fn of(line: &Line, token: Option<Token>) -> Self {
+        Self::with_table(line, token, None)
+    }
+
+    pub fn with_table(line: &Line, token: Option<Token>, table: Option<NamedTable>) -> Self {
+        let live = Link::start(Box::new(line.clone()), None).expect("memory opens");
+        let folder = tempfile::tempdir().expect("there is room for a temporary folder");
+        let options = Options { port: 0, table, folder: folder.path().to_owned(), token, session: None };
+        Self { monitor: Monitor::start(Some(live), options).expect("a free port"), folder }
+    }
+
+    pub fn port(&self) -> u16 {
+        self.monitor.address().port()
+    }
+
+    pub fn host(&self) -> String {
+        format!("127.0.0.1:{}", self.port())
+    }
+
+    pub fn origin(&self) -> String {
+        format!("http://{}", self.host())
+    }
+
+    /// Sends a request as it is written here.
+    pub fn ask(&self, method: &str, path: &str, headers: &[(&str, &str)], body: &str) -> Answer {
+        let mut stream = TcpStream::connect(self.monitor.address()).expect("it listens");
+        stream.set_read_timeout(Some(PATIENCE)).expect("a timeout");
+        let headers: Vec<String> = headers.iter().map(|(name, value)| format!("{name}: {value}\r\n")).collect();
+        let headers = headers.concat();
+        let length = body.len();
+        let request =
+            format!("{method} {path} HTTP/1.1\r\n{headers}Content-Length: {length}\r\nConnection: close\r\n\r\n{body}");
+        stream.write_all(request.as_bytes()).expect("it listens");
+        let mut answer = Vec::new();
+        stream.read_to_end(&mut answer).expect("it answers");
+        let end = answer.windows(4).position(|bytes| bytes == b"\r\n\r\n").expect("the head has an end");
+        let head = String::from_utf8_lossy(&answer[..end]).into_owned();
+        let status = head.split(' ').nth(1).and_then(|status| status.parse().ok()).expect("a status");
+        Answer { status, head, body: answer[end + 4..].to_vec() }
+    }
+
+    pub fn get(&self, path: &str) -> Answer {
+        self.ask("GET", path, &[("Host", &self.host())], "")
+    }
+
+    /// As the page itself asks.
+    pub fn post(&self, path: &str, body: &str) -> Answer {
+        let (host, origin) = (self.host(), self.origin());
+        self.ask("POST", path, &[("Host", &host), ("Origin", &origin), ("Content-Type", "application/json")], body)
+    }
+
+    /// The WebSocket, from a page of this origin; or the status with which it is refused.
+    pub fn socket(&self, origin: Option<&str>) -> Result<Socket, u16> {
+        let stream = TcpStream::connect(self.monitor.address()).expect("it listens");
+        stream.set_read_timeout(Some(PATIENCE)).expect("a timeout");
+        let mut request = format!("ws://{}/feed", self.host()).into_client_request().expect("an address");
+        if let Some(origin) = origin {
+            request.headers_mut().insert("Origin", origin.parse().expect("a header's value"));
+        }
+        match tungstenite::client(request, stream) {
+            Ok((socket, _)) => Ok(Socket(socket)),
+            Err(tungstenite::HandshakeError::Failure(tungstenite::Error::Http(refused))) => {
+                Err(refused.status().as_u16())
+            }
+            Err(other) => panic!("{other}"),
+        }
+    }
+
+    /// Waits until the status says so.
+    pub fn wait_for_status(&self, is_so: impl Fn(&Value) -> bool) -> Value {
+        let end = std::time::Instant::now() + PATIENCE;
+        loop {
+            let status = serde_json::from_slice(&self.get("/status").body).unwrap_or_default();
+            if is_so(&status) {
+                return status;
+            }
+            assert!(std::time::Instant::now() < end, "{status}");
+            std::thread::sleep(Duration::from_millis(20));
+        }
+    }
+}
+
+/// A page's feed.
+pub struct Socket(WebSocket<TcpStream>);
+
+impl Socket {
+    /// The next message of this type.
+    pub fn next(&mut self, kind: &str) -> Value {
+        loop {
+            if let Message::Text(text) = self.0.read().expect("it goes on") {
+                let message: Value = serde_json::from_str(&text).expect("it is JSON");
+                if message["type"] == kind {
+                    return message;
+                }
+            }
+        }
+    }
+
+    pub fn say(&mut self, text: &str) {
+        self.0.send(Message::from(text)).expect("it listens");
+    }
+}

@@ -1,0 +1,177 @@
+//! A line in memory with a board at its other end, whose requests are judged as the firmware judges them.
+
+use std::collections::VecDeque;
+use std::io;
+use std::sync::{Arc, Mutex, MutexGuard};
+use std::time::{Duration, Instant};
+
+use proprio_link::{Event, LinkError, Source, Subscription, Transport, What};
+use telemetry::{
+    Command, Decoder, Encoder, Hello, MAX_FRAME, Message, PROTOCOL_VERSION, Request, ResetCause, SCHEMA, Sample, Text,
+};
+
+/// Long enough for what comes at all.
+pub const PATIENCE: Duration = Duration::from_secs(20);
+
+/// The board and its end of the line.
+pub struct Board {
+    encoder: Encoder,
+    requests: Decoder<Request>,
+    link: board_core::Link,
+    /// Answers that are lost on their way.
+    pub answers_lost: usize,
+    /// Whether a command is refused.
+    pub refuses: bool,
+    /// What was done, in order.
+    pub done: Vec<Command>,
+    /// Every request that came, done or not.
+    pub asked: Vec<Request>,
+    to_host: VecDeque<u8>,
+    /// The cable is out.
+    pub unplugged: bool,
+    began: Instant,
+}
+
+impl Board {
+    pub fn say(&mut self, message: &Message) {
+        let mut buffer = [0; MAX_FRAME];
+        let frame = self.encoder.encode(message, &mut buffer).expect("it fits");
+        self.to_host.extend(frame);
+    }
+
+    /// Numbers start anew, and no request is remembered.
+    pub fn restart(&mut self, boot: u32) {
+        (self.encoder, self.link) = (Encoder::new(), board_core::Link::new());
+        self.to_host.push_back(0);
+        self.say(&Message::Hello(hello(boot)));
+    }
+
+    fn hear(&mut self, byte: u8) {
+        let Some(Ok(request)) = self.requests.push(byte) else { return };
+        self.asked.push(request);
+        let tick = (self.began.elapsed().as_millis() / 10) as u32;
+        let (done, refuses) = (&mut self.done, self.refuses);
+        let reply = self.link.answer(&request, tick, |command| {
+            if refuses && command != Command::Ping {
+                return Err(telemetry::Refusal::Disarmed);
+            }
+            done.push(command);
+            Ok(())
+        });
+        let Some(reply) = reply else { return };
+        if self.answers_lost > 0 {
+            self.answers_lost -= 1;
+        } else {
+            self.say(&Message::Reply(reply));
+        }
+    }
+}
+
+/// The line's source: opened again, it has another name.
+#[derive(Clone)]
+pub struct Line {
+    board: Arc<Mutex<Board>>,
+    opened: u32,
+}
+
+impl Line {
+    pub fn new() -> Self {
+        let board = Board {
+            encoder: Encoder::new(),
+            requests: Decoder::new(),
+            link: board_core::Link::new(),
+            answers_lost: 0,
+            refuses: false,
+            done: Vec::new(),
+            asked: Vec::new(),
+            to_host: VecDeque::new(),
+            unplugged: false,
+            began: Instant::now(),
+        };
+        Self { board: Arc::new(Mutex::new(board)), opened: 0 }
+    }
+
+    pub fn board(&self) -> MutexGuard<'_, Board> {
+        self.board.lock().expect("no thread panics with it")
+    }
+}
+
+impl Source for Line {
+    fn open(&mut self) -> Result<(String, Box<dyn Transport>), LinkError> {
+        if self.board().unplugged {
+            return Err(LinkError::Gone);
+        }
+        self.opened += 1;
+        Ok((format!("line {}", self.opened), Box::new(self.clone())))
+    }
+
+    fn comes_back(&self) -> bool {
+        true
+    }
+}
+
+impl Transport for Line {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        if self.board().unplugged {
+            return Err(io::ErrorKind::BrokenPipe.into());
+        }
+        let count = buffer.len().min(self.board().to_host.len());
+        if count == 0 {
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        buffer.iter_mut().zip(self.board().to_host.drain(..count)).for_each(|(place, byte)| *place = byte);
+        Ok(count)
+    }
+
+    fn write(&mut self, bytes: &[u8]) -> io::Result<()> {
+        let mut board = self.board();
+        for byte in bytes {
+            board.hear(*byte);
+        }
+        Ok(())
+    }
+}
+
+pub fn hello(boot: u32) -> Hello {
+    Hello {
+        protocol: PROTOCOL_VERSION,
+        schema: SCHEMA,
+        firmware: text(env!("CARGO_PKG_VERSION")),
+        revision: text("abc"),
+        arm: text("planar-6"),
+        table: 7,
+        chip: [1; 16],
+        reset: ResetCause::Pin,
+        boot,
+        last_panic: None,
+    }
+}
+
+pub fn text<const N: usize>(text: &str) -> Text<N> {
+    Text::try_from(text).expect("it is short")
+}
+
+/// All of its content tells its tick.
+pub fn sample(tick: u32) -> Sample {
+    let time_us = u64::from(tick) * 10_000;
+    let counts = |i: u32| Some(((tick * 7 + i) % 4096) as u16);
+    let quaternion = |i: u32| Some([tick, i, tick / 3, 0].map(|part| (part % 16_384) as i16));
+    Sample {
+        tick,
+        time_us,
+        tare: 0,
+        bend: [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11].map(counts),
+        imu: [0, 1, 2, 3, 4, 5].map(quaternion),
+    }
+}
+
+/// The first event that `pick` wants.
+pub fn wait_for<T>(events: &Subscription, mut pick: impl FnMut(&What) -> Option<T>) -> T {
+    let end = Instant::now() + PATIENCE;
+    while Instant::now() < end {
+        if let Some(found) = events.next(Duration::from_millis(50)).and_then(|Event { what, .. }| pick(&what)) {
+            return found;
+        }
+    }
+    panic!("it never came");
+}

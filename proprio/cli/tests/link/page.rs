@@ -1,0 +1,278 @@
+//! What the live page is told, and recorded from it.
+
+use std::path::Path;
+
+use proprio_link::{Event, Link, What};
+use proprio_monitor::Plain;
+use proprio_session::{HostClock, NamedTable};
+use proprio_simulation::Simulation;
+use rig_twin::Scenario;
+use telemetry::{
+    Actuation, BEND_SENSORS, Estimate, Health, Message, REGULATORS, SEGMENTS, Sample, SegmentEstimate, SensorHealth,
+    SensorState,
+};
+
+use super::http::Page;
+use super::line::{Line, sample, wait_for};
+
+/// 2⁻²⁶ rad or m.
+fn bits(value: f64) -> i32 {
+    (value * f64::from(1 << 26)) as i32
+}
+
+fn estimate(tick: u32) -> Estimate {
+    let segment = |i: usize| SegmentEstimate { theta: bits(0.1 * i as f64), end: [bits(0.01 * i as f64), bits(0.1)] };
+    Estimate { tick, segments: std::array::from_fn(|i| Some(segment(i))) }
+}
+
+pub fn health(tick: u32, imu_3: SensorState) -> Health {
+    let sensor = |state| SensorHealth { state, missed: 5 };
+    let mut imu = [sensor(SensorState::Ok); SEGMENTS];
+    imu[2] = sensor(imu_3);
+    Health {
+        tick,
+        bend: [sensor(SensorState::Ok); BEND_SENSORS],
+        imu,
+        longest_tick_us: 5000,
+        longest_imu_read_us: 2000,
+        load_permille: 123,
+        overruns: 0,
+        stale_scans: 0,
+        dropped_frames: 0,
+        damaged_frames: 0,
+        bus_recoveries: 0,
+        saturations: 0,
+        actuation: Actuation::Disarmed,
+        pressures_pa: [0; REGULATORS],
+    }
+}
+
+pub fn say(line: &Line, ticks: std::ops::Range<u32>) {
+    for tick in ticks {
+        let mut board = line.board();
+        board.say(&Message::Sample(sample(tick)));
+        board.say(&Message::Estimate(estimate(tick)));
+    }
+}
+
+#[test]
+fn the_page_and_all_it_is_made_of_come_from_the_program_alone() {
+    let page = Page::of(&Line::new(), None);
+    let index = page.get("/");
+    assert_eq!(index.status, 200);
+    assert!(index.head.contains("content-security-policy: default-src 'none'"), "{}", index.head);
+    let mut wanted = vec!["/style.css".to_owned(), "/main.js".to_owned()];
+    let mut seen = 0;
+    while let Some(path) = wanted.get(seen).cloned() {
+        seen += 1;
+        let text = page.get(&path);
+        assert_eq!(text.status, 200, "{path}");
+        let text = text.text();
+        assert!(!text.contains("http://") && !text.contains("https://") || path == "/export.js", "{path}");
+        for import in text.lines().filter(|line| line.starts_with("import ")) {
+            let module = import.split('\'').nth(1).and_then(|name| name.strip_prefix('.')).expect("a module of ours");
+            if !wanted.iter().any(|known| known == module) {
+                wanted.push(module.to_owned());
+            }
+        }
+    }
+    assert!(seen > 10, "{wanted:?}");
+}
+
+#[test]
+fn samples_and_estimates_come_as_rows_with_named_columns() {
+    let line = Line::new();
+    let page = Page::of(&line, None);
+    line.board().restart(1);
+    let mut socket = page.socket(Some(&page.origin())).expect("its own page");
+    let arm = socket.next("arm");
+    say(&line, 0..1);
+    let rows = socket.next("rows");
+    let value = |name: &str| {
+        let columns = arm["columns"].as_array().expect("names");
+        let place = columns.iter().position(|column| column == name).unwrap_or_else(|| panic!("{name}"));
+        rows["rows"][0][1][place].clone()
+    };
+    let number = |name: &str| value(name).as_f64().unwrap_or_else(|| panic!("{name}: {}", value(name)));
+    assert!((number("theta3_deg") - 0.2_f64.to_degrees()).abs() < 1e-3);
+    assert!((number("x6_mm") - 50.0).abs() < 1e-3 && (number("y6_mm") - 100.0).abs() < 1e-3);
+    assert_eq!(value("bend2b_adc"), 3.0);
+    // Without a table there is no estimator beside the board's, and there is no camera.
+    assert!(value("drift1_deg").is_null() && value("truth1_x_mm").is_null());
+    assert!(rows["newest_us"].as_u64().is_some());
+}
+
+#[test]
+fn the_state_of_every_sensor_and_the_board_s_load_are_told() {
+    let line = Line::new();
+    let page = Page::of(&line, None);
+    line.board().restart(1);
+    line.board().say(&Message::Health(health(0, SensorState::Off)));
+    let status = page.wait_for_status(|status| status["sensors"][14]["state"] == "Off");
+    assert_eq!(status["sensors"].as_array().map(Vec::len), Some(BEND_SENSORS + SEGMENTS));
+    assert_eq!(status["sensors"][14]["reason"], "does not answer, or reads at a rail");
+    assert_eq!((&status["sensors"][0]["state"], &status["health"]["load_percent"]), (&"Ok".into(), &12.3.into()));
+
+    // An event tells it before the next Health does.
+    line.board().say(&Message::Event(telemetry::Event::Bend(4, SensorState::Stuck)));
+    page.wait_for_status(|status| status["sensors"][4]["state"] == "Stuck");
+}
+
+#[test]
+fn a_page_that_is_opened_later_gets_what_came_before() {
+    let line = Line::new();
+    let page = Page::of(&line, None);
+    line.board().restart(1);
+    say(&line, 0..500);
+    page.wait_for_status(|_| page.get("/history").about()["rows"] == 500);
+    let history = page.get("/history");
+    let about = history.about();
+    assert_eq!((&about["rows"], &about["columns"]), (&500.into(), &72.into()));
+    let begin = history.body.iter().position(|byte| *byte == b'\n').expect("a line") + 1;
+    assert_eq!((begin % 8, history.body.len() - begin), (0, 500 * (8 + 4 * 72)));
+    let last = &history.body[begin + 499 * 8..][..8];
+    assert_eq!(last, 4.99_f64.to_le_bytes());
+}
+
+#[test]
+fn the_time_goes_on_over_a_restart_of_the_board() {
+    let line = Line::new();
+    let page = Page::of(&line, None);
+    line.board().restart(1);
+    let mut socket = page.socket(Some(&page.origin())).expect("its own page");
+    say(&line, 100..103);
+    line.board().restart(2);
+    say(&line, 0..3);
+    let mut times = Vec::new();
+    while times.len() < 6 {
+        let rows = socket.next("rows");
+        times.extend(rows["rows"].as_array().expect("rows").iter().map(|row| row[0].as_f64().expect("a time")));
+    }
+    assert!(times.is_sorted_by(|a, b| a < b), "{times:?}");
+    let notes = page.wait_for_status(|status| status["restarts"] == 1)["notes"].to_string();
+    assert!(notes.contains("the board has restarted"), "{notes}");
+}
+
+#[test]
+fn the_time_from_sample_to_screen_is_measured_from_what_pages_report() {
+    let line = Line::new();
+    let page = Page::of(&line, None);
+    line.board().restart(1);
+    let mut socket = page.socket(Some(&page.origin())).expect("its own page");
+    say(&line, 0..1);
+    let newest_us = socket.next("rows")["newest_us"].as_u64().expect("a time");
+    std::thread::sleep(std::time::Duration::from_millis(120));
+    socket.say(&format!(r#"{{"shown_us":{newest_us}}}"#));
+    socket.say("nonsense");
+    let status = page.wait_for_status(|status| !status["latency"].is_null());
+    let latency_ms = status["latency"]["p50_ms"].as_f64().expect("a number");
+    assert!(latency_ms >= 120.0 && status["latency"]["reports"] == 1, "{status}");
+}
+
+#[test]
+fn what_is_recorded_from_the_page_is_all_that_came_even_if_no_page_keeps_up() {
+    let line = Line::new();
+    let page = Page::of(&line, None);
+    line.board().restart(1);
+    // A page that never reads.
+    let _slow = page.socket(Some(&page.origin())).expect("its own page");
+    let begun = page.post("/record", r#"{"on":true}"#);
+    assert_eq!(begun.status, 200, "{}", begun.text());
+    assert_eq!(page.post("/mark", r#"{"text":"push"}"#).status, 200);
+    for round in 0..20 {
+        say(&line, round * 1000..round * 1000 + 1000);
+        let frames = u64::from(round + 1) * 2000;
+        page.wait_for_status(|status| status["frames"].as_u64() >= Some(frames));
+    }
+    page.wait_for_status(|status| status["recording"]["samples"] == 20_000);
+    let done: serde_json::Value = serde_json::from_slice(&page.post("/record", r#"{"on":false}"#).body).expect("JSON");
+    assert_eq!((&done["dropped_events"], &done["marks"]), (&0.into(), &1.into()), "{done}");
+
+    let path = std::path::PathBuf::from(done["file"].as_str().expect("a name"));
+    let recording = std::fs::read(&path).expect("it is there");
+    let mut ticks = 0;
+    let mut marks = Vec::new();
+    for message in mcap::MessageStream::new(&recording).expect("it is whole") {
+        let message = message.expect("it is whole");
+        match message.channel.topic.as_str() {
+            "/proprio/samples" => ticks += 1,
+            "/proprio/marks" => marks.push(message.data.into_owned()),
+            _ => {}
+        }
+    }
+    assert_eq!(ticks, 20_000);
+    // CDR: four bytes of what it is, the length with its zero, the text.
+    assert_eq!(marks, [b"\0\x01\0\0\x05\0\0\0push\0".to_vec()]);
+}
+
+#[test]
+fn a_recording_is_completed_when_the_monitor_ends() {
+    let line = Line::new();
+    let page = Page::of(&line, None);
+    line.board().restart(1);
+    page.post("/record", r#"{"on":true}"#);
+    say(&line, 0..50);
+    page.wait_for_status(|status| status["recording"]["samples"] == 50);
+    let file = page.monitor.finish().expect("it can be written").expect("it was recorded");
+    let recording = std::fs::read(file).expect("it is there");
+    let summary = mcap::Summary::read(&recording).expect("it is whole").expect("it has an index");
+    assert!(summary.stats.expect("it has statistics").message_count > 100);
+}
+
+#[test]
+fn a_line_for_a_terminal_has_the_shape_the_rates_and_what_is_wrong() {
+    let line = Line::new();
+    let (link, events) = Link::start(Box::new(line.clone()), None).expect("memory opens");
+    let (mut plain, clock) = (Plain::new(), HostClock::new());
+    assert!(plain.line(clock.now(), &link.state()).starts_with("no estimate yet  "));
+    line.board().restart(1);
+    line.board().say(&Message::Health(health(0, SensorState::Off)));
+    say(&line, 0..1);
+    wait_for(&events, |what| {
+        plain.take(&Event { at: clock.now(), what: what.clone() });
+        matches!(what, What::Message(Message::Estimate(_))).then_some(())
+    });
+    let said = plain.line(clock.now(), &link.state());
+    assert!(said.starts_with("θ +0.0 +5.7 +11.5 +17.2 +22.9 +28.6°  tip 50.0 100.0 mm  "), "{said}");
+    assert!(said.ends_with(" samples/s  0 lost  0 damaged  load 12.3 %  IMU 3 Off"), "{said}");
+    line.board().unplugged = true;
+    wait_for(&events, |what| matches!(what, What::Lost(_)).then_some(()));
+    assert!(plain.line(clock.now(), &link.state()).starts_with("the line is gone"));
+}
+
+#[test]
+fn drift_and_innovations_of_a_live_board_are_those_of_its_recording() {
+    let line = Line::new();
+    let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../calibration-tables/planar-6.toml"));
+    let page = Page::with_table(&line, None, Some(NamedTable::load(path).expect("the reference table")));
+    line.board().restart(1);
+    let columns = page.socket(Some(&page.origin())).expect("its own page").next("arm")["columns"].clone();
+    page.post("/record", r#"{"on":true}"#);
+    let simulation = Simulation::new(Scenario::Two, 7, 10.0, 100.0).expect("a valid run");
+    for (tick, read) in (0..).zip(simulation) {
+        let time_us = u64::from(tick) * 10_000;
+        let said = Sample { tick, time_us, tare: 0, bend: read.counts, imu: read.quaternions };
+        line.board().say(&Message::Sample(said));
+    }
+    page.wait_for_status(|status| status["recording"]["samples"] == 1000);
+    page.wait_for_status(|_| page.get("/history").about()["rows"] == 999);
+    let live = page.get("/history");
+    let done: serde_json::Value = serde_json::from_slice(&page.post("/record", r#"{"on":false}"#).body).expect("JSON");
+    let file = Path::new(done["file"].as_str().expect("a name")).file_name().expect("a name").display().to_string();
+    let recorded = page.get(&format!("/session?name={file}"));
+    assert_eq!(recorded.about()["rows"], 1000);
+    for name in ["drift6_deg", "innovation_imu2_deg", "innovation_bend3_deg", "bend1a_adc", "imu4_deg"] {
+        let (live, mut recorded) = (live.column(&columns, name), recorded.column(&columns, name));
+        // The last row waits for its estimate.
+        recorded.pop();
+        assert!(live.iter().filter(|bits| !f32::from_bits(**bits).is_nan()).count() > 800, "{name}");
+        assert_eq!(live, recorded, "{name}");
+    }
+}
+
+#[test]
+fn a_mark_without_a_recording_is_refused() {
+    let page = Page::of(&Line::new(), None);
+    let answer = page.post("/mark", r#"{"text":"push"}"#);
+    assert_eq!((answer.status, answer.text().contains("begin first")), (409, true), "{}", answer.text());
+}

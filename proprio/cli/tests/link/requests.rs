@@ -1,0 +1,122 @@
+//! Requests: acknowledged, repeated, refused, given up.
+
+use std::time::Duration;
+
+use proprio_link::{Link, LinkError, RequestError, What};
+use telemetry::{Command, Message, Refusal};
+
+use super::line::{Line, hello, sample, wait_for};
+
+fn start(line: &Line) -> (Link, proprio_link::Subscription) {
+    Link::start(Box::new(line.clone()), None).expect("memory opens")
+}
+
+#[test]
+fn a_link_begins_with_a_ping_and_repeats_it_until_it_is_acknowledged() {
+    let line = Line::new();
+    line.board().answers_lost = 3;
+    let (link, _events) = start(&line);
+    link.request(Command::Tare).expect("it is done");
+    let board = line.board();
+    assert_eq!(board.done, [Command::Ping, Command::Tare]);
+    let pings = board.asked.iter().filter(|request| request.command == Command::Ping);
+    assert_eq!(pings.map(|request| request.id).collect::<Vec<_>>(), [1; 4]);
+    drop(board);
+    assert!(link.state().greeted);
+}
+
+#[test]
+fn a_request_whose_answer_was_lost_is_sent_again_and_acts_once() {
+    let line = Line::new();
+    let (link, _events) = start(&line);
+    link.request(Command::Ping).expect("it is done");
+    line.board().answers_lost = 2;
+    link.request(Command::Tare).expect("it is done");
+    let board = line.board();
+    assert_eq!(board.asked.iter().filter(|request| request.command == Command::Tare).count(), 3);
+    assert_eq!(board.done.iter().filter(|command| **command == Command::Tare).count(), 1);
+}
+
+#[test]
+fn a_refusal_is_told_with_its_reason() {
+    let line = Line::new();
+    line.board().refuses = true;
+    let (link, _events) = start(&line);
+    let refused = link.request(Command::Arm);
+    assert!(matches!(refused, Err(LinkError::Request(RequestError::Refused(Refusal::Disarmed)))), "{refused:?}");
+}
+
+#[test]
+fn a_board_that_does_not_answer_is_given_up() {
+    let line = Line::new();
+    let (link, _events) = start(&line);
+    link.request(Command::Ping).expect("it is done");
+    line.board().answers_lost = usize::MAX;
+    let given_up = link.request(Command::Tare);
+    assert!(matches!(given_up, Err(LinkError::Request(RequestError::NoAnswer))), "{given_up:?}");
+}
+
+/// To arm must not outlive the run of the board that it was meant for.
+#[test]
+fn a_request_does_not_outlive_a_restart() {
+    let line = Line::new();
+    let (link, events) = start(&line);
+    line.board().say(&Message::Hello(hello(1)));
+    link.request(Command::Ping).expect("it is done");
+    line.board().answers_lost = usize::MAX;
+    std::thread::scope(|scope| {
+        let arming = scope.spawn(|| link.request(Command::Arm));
+        while !line.board().asked.iter().any(|request| request.command == Command::Arm) {
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        line.board().restart(2);
+        let interrupted = arming.join().expect("no panic");
+        assert!(matches!(interrupted, Err(LinkError::Request(RequestError::Interrupted))), "{interrupted:?}");
+    });
+    wait_for(&events, |what| matches!(what, What::Restarted).then_some(()));
+    let arms = || line.board().asked.iter().filter(|request| request.command == Command::Arm).count();
+    let before = arms();
+    line.board().answers_lost = 0;
+    link.request(Command::Tare).expect("the new run is greeted and answers");
+    assert_eq!(arms(), before);
+}
+
+/// As it is where the board was not restarted: another host's ids were higher.
+#[test]
+fn a_board_that_has_seen_higher_ids_is_greeted_after_its_pause() {
+    let line = Line::new();
+    let (first, _events) = start(&line);
+    for _ in 0..5 {
+        first.request(Command::Tare).expect("it is done");
+    }
+    drop(first);
+    let (second, _events) = start(&line);
+    second.request(Command::Disarm).expect("it is done");
+    assert_eq!(line.board().done.last(), Some(&Command::Disarm));
+}
+
+#[test]
+fn one_who_is_slow_loses_the_oldest_events_and_holds_up_nobody() {
+    let line = Line::new();
+    let (link, slow) = start(&line);
+    let fast = link.subscribe();
+    let mut heard = 0;
+    for tick in 0..10_000 {
+        line.board().say(&Message::Sample(sample(tick)));
+        if tick % 100 == 99 {
+            let is_last = |what: &What| matches!(what, What::Message(Message::Sample(last)) if last.tick == tick);
+            wait_for(&fast, |what| {
+                heard += u32::from(matches!(what, What::Message(Message::Sample(_))));
+                is_last(what).then_some(())
+            });
+        }
+    }
+    assert_eq!((heard, fast.dropped()), (10_000, 0));
+    assert!(slow.dropped() > 0);
+    // What is left are the newest.
+    let first = wait_for(&slow, |what| match what {
+        What::Message(Message::Sample(sample)) => Some(sample.tick),
+        _ => None,
+    });
+    assert!(first > 1000, "{first}");
+}

@@ -1,0 +1,106 @@
+//! What the link's thread says.
+
+use std::fmt;
+use std::sync::Arc;
+
+use proprio_session::HostNs;
+use telemetry::{DecodeError, Message, PROTOCOL_VERSION, SCHEMA};
+
+/// Something that happened on the link.
+#[derive(Debug, Clone)]
+pub struct Event {
+    /// When; for bytes and what is in them, when they came.
+    pub at: HostNs,
+    /// What.
+    pub what: What,
+}
+
+/// What happened.
+#[derive(Debug, Clone)]
+pub enum What {
+    /// The line is open: its name.
+    Opened(String),
+    /// The line is gone, and why. It is opened again when it comes back.
+    Lost(String),
+    /// The line is gone for good, and why. Nothing follows.
+    Ended(String),
+    /// Bytes, as they came. What they decode to follows.
+    Bytes(Arc<[u8]>),
+    /// A message of the board.
+    Message(Message),
+    /// A frame that is no message.
+    Undecoded(DecodeError),
+    /// The board has restarted, which is no loss of frames. Its `Hello` follows, or was lost.
+    Restarted,
+    /// Board and host do not belong together.
+    Mismatch(Mismatch),
+}
+
+impl What {
+    /// What a person should be told of it, where it is out of the ordinary.
+    #[must_use]
+    pub fn warning(&self) -> Option<String> {
+        match self {
+            Self::Lost(reason) => Some(format!("{reason}; waiting for it to come back")),
+            Self::Ended(reason) => Some(reason.clone()),
+            Self::Restarted => Some("the board has restarted".to_owned()),
+            Self::Mismatch(mismatch) => Some(mismatch.to_string()),
+            Self::Opened(_) | Self::Bytes(_) | Self::Message(_) | Self::Undecoded(_) => None,
+        }
+    }
+}
+
+/// In what board and host differ.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Mismatch {
+    /// The board speaks another version of the protocol; nothing else that it says is understood.
+    Protocol(u8),
+    /// Its messages have another form; none of them is handed on but its `Hello`.
+    Schema {
+        /// The board's, where its `Hello` could be read.
+        board: Option<u32>,
+        /// The version of its firmware, likewise.
+        firmware: Option<String>,
+    },
+    /// Its firmware is of another version, but says the same messages.
+    Firmware(String),
+    /// Its table is not the one that was given.
+    Table {
+        /// Name of the arm that the board's table is for.
+        arm: String,
+        /// Checksum of the board's table.
+        board: u32,
+        /// Checksum of the table that was given.
+        given: u32,
+    },
+}
+
+impl fmt::Display for Mismatch {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let host = env!("CARGO_PKG_VERSION");
+        match self {
+            Self::Protocol(version) => write!(
+                f,
+                "the board speaks protocol version {version}, proprio {host} version {PROTOCOL_VERSION}: flash the \
+                 firmware of this release"
+            ),
+            Self::Schema { board, firmware } => {
+                let firmware = firmware.as_deref().unwrap_or("of another version");
+                let board = board.map_or_else(|| "unknown".to_owned(), |board| format!("{board:08x}"));
+                write!(
+                    f,
+                    "the messages of firmware {firmware} have another form (schema {board}) than those of proprio {host} \
+                     ({SCHEMA:08x}) and are not read: flash the firmware of this release"
+                )
+            }
+            Self::Firmware(firmware) => {
+                write!(f, "the board's firmware is version {firmware}, proprio is {host}; they understand each other")
+            }
+            Self::Table { arm, board, given } => write!(
+                f,
+                "the board estimates with another table (of arm \"{arm}\", checksum {board:08x}) than the one given \
+                 ({given:08x}): `proprio flash --table` puts that onto it, or give the board's table"
+            ),
+        }
+    }
+}

@@ -1,0 +1,31 @@
+//! Errors of the live page's server.
+
+use std::io;
+
+/// A page that cannot be served, or a file that it asks for.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    /// A session, a table or a recording.
+    #[error(transparent)]
+    File(#[from] proprio_session::Error),
+    /// A request to the board.
+    #[error(transparent)]
+    Link(#[from] proprio_link::LinkError),
+    /// The port cannot be opened.
+    #[error("port {port} of 127.0.0.1 cannot be listened on: {source}")]
+    Listen {
+        /// The port.
+        port: u16,
+        /// The system's reason.
+        source: io::Error,
+    },
+    /// The system has no random numbers for a token.
+    #[error("the system gives no random numbers: {0}")]
+    Random(io::Error),
+}
+
+impl From<proprio_session::SessionError> for Error {
+    fn from(error: proprio_session::SessionError) -> Self {
+        Self::File(error.into())
+    }
+}

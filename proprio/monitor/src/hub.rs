@@ -1,0 +1,105 @@
+//! The thread between the link and the pages: events in, batches of rows and the status out.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+use estimator_core::ArmConfig;
+use proprio_link::{Event, Link, Subscription, What};
+use proprio_session::HostNs;
+
+use super::feed::{Batch, Feed, Status, Uncertainty};
+use super::live::{Live, Taken};
+use super::shadow::Shadow;
+use super::shared::Shared;
+
+/// Time from one batch of rows to the next: 50 a second.
+const PERIOD: Duration = Duration::from_millis(20);
+/// Time from one status to the next.
+const STATUS: Duration = Duration::from_millis(200);
+/// Notes that are kept.
+const NOTES: usize = 6;
+
+/// The thread's own.
+pub(super) struct Hub<'t> {
+    shared: Arc<Shared>,
+    events: Subscription,
+    live: Live<'t>,
+    batch: Batch,
+    batched: Instant,
+    told: Instant,
+    notes: Vec<String>,
+}
+
+impl<'t> Hub<'t> {
+    pub fn new(shared: Arc<Shared>, events: Subscription, table: Option<&'t ArmConfig<'t, estimator_core::Q>>) -> Self {
+        let live = Live::new(table.map(Shadow::new));
+        let now = Instant::now();
+        Self { shared, events, live, batch: Batch::default(), batched: now, told: now, notes: Vec::new() }
+    }
+
+    /// Works until it is told to stop.
+    pub fn run(mut self, link: &Link, stop: &AtomicBool) {
+        while !stop.load(Ordering::Relaxed) {
+            let wait = PERIOD.saturating_sub(self.batched.elapsed());
+            if let Some(event) = self.events.next(wait) {
+                self.take(&event);
+            }
+            if self.batched.elapsed() >= PERIOD {
+                self.batched = Instant::now();
+                self.send_rows();
+            }
+            if self.told.elapsed() >= STATUS {
+                self.told = Instant::now();
+                self.send_status(link);
+            }
+        }
+    }
+
+    fn take(&mut self, event: &Event) {
+        // The status has what stays.
+        if !matches!(event.what, What::Mismatch(_))
+            && let Some(warning) = event.what.warning()
+        {
+            self.note(event.at, &warning);
+        }
+        if let Some(Taken { row, sampled }) = self.live.take(event) {
+            self.shared.history().push(&row);
+            self.batch.newest_us = sampled.0 / 1000;
+            self.batch.rows.push((row.time_s, row.values));
+        }
+    }
+
+    fn note(&mut self, at: HostNs, what: &str) {
+        let of_day = at.0 / 1_000_000_000 % 86_400;
+        let (hour, minute, second) = (of_day / 3600, of_day / 60 % 60, of_day % 60);
+        if self.notes.len() == NOTES {
+            self.notes.remove(0);
+        }
+        self.notes.push(format!("{hour:02}:{minute:02}:{second:02} UTC: {what}"));
+    }
+
+    fn send_rows(&mut self) {
+        let mut batch = std::mem::take(&mut self.batch);
+        if !batch.rows.is_empty() {
+            let told = self.live.uncertainty.as_ref();
+            batch.uncertainty = told.and_then(Uncertainty::of);
+            batch.contact = told.map(|told| told.segments.map(|segment| segment.is_touched));
+            self.shared.tell(&Feed::Rows(batch));
+        }
+    }
+
+    fn send_status(&mut self, link: &Link) {
+        let rates = self.live.rates(self.shared.clock.now());
+        let mut status = Status::new(link.state(), rates);
+        status.health = self.live.health.as_ref().map(Into::into);
+        status.sensors = self.live.sensors().into_iter().map(Into::into).collect();
+        status.dropped_events = self.events.dropped();
+        status.clock = self.live.board_time();
+        status.latency = self.shared.latency().percentiles();
+        status.least_delay_ms = self.live.least_delay_us().map(|delay_us| f64::from(delay_us) / 1e3);
+        status.recording = self.shared.recording();
+        status.notes.extend(self.notes.iter().rev().cloned());
+        self.shared.tell(&Feed::Status(Box::new(status)));
+    }
+}

@@ -1,0 +1,78 @@
+//! The same for a terminal: one line a second.
+
+use std::fmt::Write;
+
+use estimator_core::Q;
+use proprio_link::{Event, LinkState, What};
+use proprio_session::{HostNs, SENSOR_NAMES};
+use telemetry::{Actuation, BEND_SENSORS, Estimate, Message, SensorState};
+
+use super::live::Live;
+
+/// What the lines are made of.
+pub struct Plain {
+    live: Live<'static>,
+    estimate: Option<Estimate>,
+}
+
+impl Plain {
+    /// Nothing has come yet.
+    #[must_use]
+    pub fn new() -> Self {
+        Self { live: Live::new(None), estimate: None }
+    }
+
+    /// Takes what happened on the link.
+    pub fn take(&mut self, event: &Event) {
+        if let What::Message(Message::Estimate(estimate)) = &event.what {
+            self.estimate = Some(*estimate);
+        }
+        self.live.take(event);
+    }
+
+    /// How it is now: bend angles, the tip, what came in the last two seconds, and sensors that are not well.
+    #[must_use]
+    pub fn line(&mut self, now: HostNs, link: &LinkState) -> String {
+        let rates = self.live.rates(now);
+        let value = |bits: i32| Q::from_bits(bits).to_f64();
+        let mut line = String::new();
+        // Writing to a string does not fail.
+        let _ = match (&link.port, &self.estimate) {
+            (None, _) => write!(line, "the line is gone"),
+            (_, None) => write!(line, "no estimate yet"),
+            (_, Some(Estimate { segments, .. })) => {
+                let thetas = segments.map(|segment| {
+                    segment.map_or("?".to_owned(), |segment| format!("{:+.1}", value(segment.theta).to_degrees()))
+                });
+                let tip = segments.last().copied().flatten().map(|tip| tip.end.map(|bits| value(bits) * 1e3));
+                let tip = tip.map_or("?".to_owned(), |[x, y]| format!("{x:.1} {y:.1}"));
+                write!(line, "θ {}°  tip {tip} mm", thetas.join(" "))
+            }
+        };
+        let _ = write!(
+            line,
+            "  {:.1} samples/s  {} lost  {} damaged",
+            rates.samples_hz, link.counts.lost, link.counts.damaged
+        );
+        if let Some(health) = &self.live.health {
+            let _ = write!(line, "  load {:.1} %", f64::from(health.load_permille) / 10.0);
+            if health.actuation != Actuation::Disarmed {
+                let _ = write!(line, "  {:?}", health.actuation);
+            }
+        }
+        for (i, sensor) in self.live.sensors().iter().enumerate().filter(|(_, sensor)| sensor.state != SensorState::Ok)
+        {
+            let _ = match i.checked_sub(BEND_SENSORS) {
+                Some(imu) => write!(line, "  IMU {} {:?}", imu + 1, sensor.state),
+                None => write!(line, "  bend {}{} {:?}", i / 2 + 1, SENSOR_NAMES[i % 2], sensor.state),
+            };
+        }
+        line
+    }
+}
+
+impl Default for Plain {
+    fn default() -> Self {
+        Self::new()
+    }
+}

@@ -1,0 +1,163 @@
+//! Sessions that the page opens: files of one folder, or files that the browser sends.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
+
+use calibration_tables::ArmFile;
+use estimator_core::Q;
+use proprio_session::{Mark, NamedTable, SessionReader};
+use serde::Serialize;
+use tempfile::TempPath;
+
+use super::feed::Arm;
+use super::history::History;
+use super::row::{self, Row};
+use super::shadow::Shadow;
+use crate::error::Error;
+
+/// Files that can be opened, and what for.
+#[derive(Debug)]
+pub(super) struct Sessions {
+    /// Where recordings are written, and files found.
+    pub folder: PathBuf,
+    table: Option<(PathBuf, ArmFile)>,
+    /// The one that the command was given.
+    given: Option<PathBuf>,
+    /// What browsers have sent, by name.
+    sent: Mutex<BTreeMap<String, TempPath>>,
+}
+
+/// A file that can be opened.
+#[derive(Debug, Serialize)]
+pub(super) struct File {
+    name: String,
+    bytes: u64,
+}
+
+/// What is said of a session before its rows.
+#[derive(Debug, Serialize)]
+struct About {
+    arm: Arm,
+    /// Samples in the part that was asked for.
+    samples: u64,
+    /// Every how many-th of them is here.
+    every: u64,
+    /// Moments in it that were marked.
+    marks: Vec<Marked>,
+}
+
+/// A moment that was marked.
+#[derive(Debug, Serialize)]
+struct Marked {
+    time_s: f64,
+    text: String,
+}
+
+impl From<&Mark> for Marked {
+    fn from(mark: &Mark) -> Self {
+        Self { time_s: mark.time_us as f64 / 1e6, text: mark.text.clone() }
+    }
+}
+
+impl Sessions {
+    pub fn new(folder: PathBuf, table: Option<&NamedTable>, given: Option<PathBuf>) -> Self {
+        let table = table.map(|table| (table.path.to_owned(), table.file.clone()));
+        Self { folder, table, given, sent: Mutex::default() }
+    }
+
+    /// Name of the session that the command was given.
+    pub fn given(&self) -> Option<String> {
+        self.given.as_deref().and_then(Path::file_name).map(|name| name.to_string_lossy().into_owned())
+    }
+
+    /// The table's file as it stands.
+    pub fn table_toml(&self) -> Result<Option<Vec<u8>>, Error> {
+        Ok(self.table().map(|table| table.toml()).transpose()?)
+    }
+
+    fn table(&self) -> Option<NamedTable<'_>> {
+        self.table.as_ref().map(|(path, file)| NamedTable { file: file.clone(), path })
+    }
+
+    /// The files of the folder, by name.
+    pub fn list(&self) -> Vec<File> {
+        let entries = fs::read_dir(&self.folder).into_iter().flatten().flatten();
+        let file = |entry: fs::DirEntry| {
+            let name = entry.file_name().into_string().ok().filter(|name| is_session(name))?;
+            let bytes = entry.metadata().ok().filter(fs::Metadata::is_file)?.len();
+            Some(File { name, bytes })
+        };
+        let mut files: Vec<File> = entries.filter_map(file).collect();
+        files.sort_by(|a, b| a.name.cmp(&b.name));
+        files
+    }
+
+    /// Keeps a file that a browser has sent until the monitor ends.
+    pub fn keep(&self, name: &str, file: TempPath) {
+        self.sent.lock().unwrap_or_else(PoisonError::into_inner).insert(name.to_owned(), file);
+    }
+
+    /// The path of a file that may be opened: one that was sent, or of the folder and nowhere else.
+    pub fn path(&self, name: &str) -> Option<PathBuf> {
+        let sent = self.sent.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(path) = sent.get(name) {
+            return Some(path.to_path_buf());
+        }
+        if self.given().is_some_and(|given| given == name) {
+            return self.given.clone();
+        }
+        let is_plain = Path::new(name).file_name().is_some_and(|plain| plain == name);
+        Some(self.folder.join(name)).filter(|path| is_plain && is_session(name) && path.is_file())
+    }
+
+    /// Replays a session, and gives its rows from one time to another, as many of them as a page holds.
+    pub fn rows(&self, path: &Path, from_s: f64, to_s: f64) -> Result<Vec<u8>, Error> {
+        let Some(table) = self.table() else { return Ok(Vec::new()) };
+        let file = &table.file;
+        let segments = file.segments.len();
+        let mut reader = SessionReader::open(path, &table.needs()?)?;
+        let baked = table.bake::<Q>(reader.rate_hz(file.rate_hz))?;
+        let baked = baked.config();
+        let mut shadow = Shadow::new(&baked);
+        let mut history = History::new(row::names(segments).len());
+        let (mut samples, mut every) = (0, 1);
+        while let Some(read) = reader.next_row()? {
+            let mut row = Row::new(read.sample.time_us as f64 / 1e6, segments);
+            if read.starts {
+                shadow.start();
+            }
+            shadow.step(&read.sample, &mut row);
+            if let Some(estimate) = read.board.and_then(|board| board.estimate) {
+                row.set_estimate(&estimate.segments);
+            }
+            row.set_sample(&read.sample);
+            row.set_truth(&read.truth);
+            if !(from_s..=to_s).contains(&row.time_s) {
+                continue;
+            }
+            if samples % every == 0 {
+                if history.is_full() {
+                    history.halve();
+                    every *= 2;
+                }
+                if samples % every == 0 {
+                    history.push(&row);
+                }
+            }
+            samples += 1;
+        }
+        let marks = reader.marks().iter().map(Marked::from).filter(|mark| (from_s..=to_s).contains(&mark.time_s));
+        let marks = marks.collect();
+        Ok(history.to_bytes(&About { arm: Arm::new(segments, Some(file)), samples, every, marks }))
+    }
+}
+
+/// By the ending of its name.
+fn is_session(name: &str) -> bool {
+    let extension = Path::new(name).extension();
+    ["csv", "mcap", "bin"]
+        .iter()
+        .any(|ending| extension.is_some_and(|extension| extension.eq_ignore_ascii_case(ending)))
+}

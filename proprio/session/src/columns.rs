@@ -1,0 +1,246 @@
+//! The header: which column holds what.
+
+use std::collections::HashMap;
+
+use estimator_core::SENSORS_PER_SEGMENT;
+use telemetry::REGULATORS;
+
+use crate::{Needs, Problem};
+
+/// A column and the factor from its unit to m or rad.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Column {
+    pub index: usize,
+    pub factor: f64,
+}
+
+/// Where one IMU's reading stands.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum ImuColumn {
+    /// One cell.
+    Heading(Column),
+    /// Four cells: w, x, y, z.
+    Quaternion([usize; 4]),
+}
+
+/// Where the readings of one segment stand.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct SegmentColumns {
+    pub bend: [Option<usize>; SENSORS_PER_SEGMENT],
+    pub imu: ImuColumn,
+    pub truth: Option<TruthColumns>,
+}
+
+/// Where the truth of one segment stands.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct TruthColumns {
+    pub x: Column,
+    pub y: Column,
+    /// Of all segments or of none.
+    pub heading: Option<Column>,
+}
+
+impl From<[Column; 3]> for TruthColumns {
+    fn from([x, y, heading]: [Column; 3]) -> Self {
+        Self { x, y, heading: Some(heading) }
+    }
+}
+
+/// Where everything stands.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Columns {
+    pub time: usize,
+    /// Number that changes where the estimator starts anew.
+    pub tare: Option<usize>,
+    pub segments: Vec<SegmentColumns>,
+}
+
+/// Where everything stands in a camera's file.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct CameraColumns {
+    pub time: usize,
+    /// x, y and heading of each segment's end.
+    pub ends: Vec<[Column; 3]>,
+    /// Those of the base's marker.
+    pub base: Option<[Column; 3]>,
+}
+
+/// Where everything stands in a profile of pressures.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct PressureColumns {
+    pub time: usize,
+    pub regulators: [Column; REGULATORS],
+}
+
+/// Names of the sensors of a segment.
+pub const SENSOR_NAMES: [char; SENSORS_PER_SEGMENT] = ['a', 'b'];
+
+/// Columns of a pose, in both units.
+const POSE_PARTS: [&str; 6] = ["x_mm", "x_m", "y_mm", "y_m", "heading_deg", "heading_rad"];
+
+/// The column of the tare's number.
+pub const TARE: &str = "tare";
+
+struct Places<'h> {
+    places: HashMap<&'h str, usize>,
+}
+
+impl Columns {
+    /// Finds the columns that are needed. Unknown ones are ignored; those of a segment beyond the last are refused.
+    pub fn find(names: &[String], needs: &Needs) -> Result<Self, Problem> {
+        let header = Places::of(names, needs.bend.len())?;
+        let time = header.required("time_s")?;
+        let has_headings = needs.truth || (1..=needs.bend.len()).any(|i| header.truth_heading(i).is_ok());
+        let segment = |(i, sensors): (usize, &Option<usize>)| {
+            Ok(SegmentColumns {
+                bend: header.bend(i + 1, *sensors)?,
+                imu: header.imu(i + 1)?,
+                truth: if has_headings { Some(header.truth(i + 1)?.into()) } else { header.place(i + 1)? },
+            })
+        };
+        let tare = header.optional(TARE);
+        Ok(Self { time, tare, segments: needs.bend.iter().enumerate().map(segment).collect::<Result<_, _>>()? })
+    }
+}
+
+impl CameraColumns {
+    /// Finds the columns of an arm of `segments` segments, all of which are needed, and of the base where it has any.
+    pub fn find(names: &[String], segments: usize) -> Result<Self, Problem> {
+        let header = Places::of(names, segments)?;
+        Ok(Self {
+            time: header.required("time_s")?,
+            ends: (1..=segments).map(|i| header.truth(i)).collect::<Result<_, _>>()?,
+            base: names.iter().any(|name| is_base(name)).then(|| header.pose("base")).transpose()?,
+        })
+    }
+}
+
+impl PressureColumns {
+    /// Finds the columns of all regulators.
+    pub fn find(names: &[String]) -> Result<Self, Problem> {
+        let header = Places::of(names, 0)?;
+        let time = header.required("time_s")?;
+        let regulator = |i: usize| header.in_unit(&format!("pressure{}", i + 1), [("kpa", 1e3), ("pa", 1.0)]);
+        let [a, b, c, d, e, f] = [0, 1, 2, 3, 4, 5].map(regulator);
+        Ok(Self { time, regulators: [a?, b?, c?, d?, e?, f?] })
+    }
+}
+
+impl<'h> Places<'h> {
+    /// Refuses columns that are there twice and those of a segment beyond the last.
+    fn of(names: &'h [String], segments: usize) -> Result<Self, Problem> {
+        let mut places = HashMap::new();
+        for (index, name) in names.iter().enumerate() {
+            let segment = segment_of(name);
+            let is_known = segment.is_some() || is_base(name) || is_pressure(name);
+            if places.insert(name.as_str(), index).is_some() && is_known {
+                return Err(Problem::DuplicateColumn(name.clone()));
+            }
+            if let Some(segment) = segment.filter(|segment| *segment > segments) {
+                return Err(Problem::OtherArm { column: name.clone(), segment, segments });
+            }
+        }
+        Ok(Self { places })
+    }
+
+    fn optional(&self, name: &str) -> Option<usize> {
+        self.places.get(name).copied()
+    }
+
+    fn required(&self, name: &str) -> Result<usize, Problem> {
+        self.optional(name).ok_or_else(|| Problem::MissingColumn(name.to_owned()))
+    }
+
+    /// The column `name` in the first of the units that is there.
+    fn in_unit(&self, name: &str, units: [(&str, f64); 2]) -> Result<Column, Problem> {
+        let found = |(unit, factor): &(&str, f64)| {
+            self.optional(&format!("{name}_{unit}")).map(|index| Column { index, factor: *factor })
+        };
+        let [(first, _), _] = units;
+        units.iter().find_map(found).ok_or_else(|| Problem::MissingColumn(format!("{name}_{first}")))
+    }
+
+    fn length(&self, name: &str) -> Result<Column, Problem> {
+        self.in_unit(name, [("mm", 1e-3), ("m", 1.0)])
+    }
+
+    fn angle(&self, name: &str) -> Result<Column, Problem> {
+        self.in_unit(name, [("deg", std::f64::consts::PI / 180.0), ("rad", 1.0)])
+    }
+
+    fn bend(&self, segment: usize, sensors: Option<usize>) -> Result<[Option<usize>; SENSORS_PER_SEGMENT], Problem> {
+        let mut columns = [None; SENSORS_PER_SEGMENT];
+        for (j, (column, sensor)) in columns.iter_mut().zip(SENSOR_NAMES).enumerate() {
+            let name = format!("bend{segment}{sensor}_adc");
+            *column = match sensors {
+                None => self.optional(&name),
+                Some(number) if j < number => Some(self.required(&name)?),
+                Some(_) => None,
+            };
+        }
+        Ok(columns)
+    }
+
+    /// The quaternion where there is one, as it is the finer reading.
+    fn imu(&self, segment: usize) -> Result<ImuColumn, Problem> {
+        let part = |part: &str| format!("imu{segment}_q{part}");
+        if self.optional(&part("w")).is_none() {
+            return Ok(ImuColumn::Heading(self.angle(&format!("imu{segment}"))?));
+        }
+        let [w, x, y, z] = ["w", "x", "y", "z"].map(|name| self.required(&part(name)));
+        Ok(ImuColumn::Quaternion([w?, x?, y?, z?]))
+    }
+
+    fn truth_heading(&self, segment: usize) -> Result<Column, Problem> {
+        self.angle(&format!("truth{segment}_heading"))
+    }
+
+    /// A true place without a heading, where there is one.
+    fn place(&self, segment: usize) -> Result<Option<TruthColumns>, Problem> {
+        match ["x", "y"].map(|part| self.length(&format!("truth{segment}_{part}"))) {
+            [Err(_), Err(_)] => Ok(None),
+            [x, y] => Ok(Some(TruthColumns { x: x?, y: y?, heading: None })),
+        }
+    }
+
+    fn truth(&self, segment: usize) -> Result<[Column; 3], Problem> {
+        self.pose(&format!("truth{segment}"))
+    }
+
+    fn pose(&self, of: &str) -> Result<[Column; 3], Problem> {
+        let name = |part: &str| format!("{of}_{part}");
+        Ok([self.length(&name("x"))?, self.length(&name("y"))?, self.angle(&name("heading"))?])
+    }
+}
+
+/// The segment that a known column belongs to; 0 for those of the whole arm, `None` for a column that is none of ours.
+pub(crate) fn segment_of(name: &str) -> Option<usize> {
+    if name == "time_s" || name == TARE {
+        return Some(0);
+    }
+    let (stem, rest) = name.split_once('_')?;
+    let (digits, known): (&str, &[&str]) = if let Some(digits) = stem.strip_prefix("bend") {
+        (digits.strip_suffix(SENSOR_NAMES)?, &["adc"])
+    } else if let Some(digits) = stem.strip_prefix("imu") {
+        (digits, &["deg", "rad", "qw", "qx", "qy", "qz"])
+    } else {
+        (stem.strip_prefix("truth")?, &POSE_PARTS)
+    };
+    digits.parse().ok().filter(|_| known.contains(&rest))
+}
+
+/// Whether a column is of the truth.
+pub(crate) fn is_truth(name: &str) -> bool {
+    name.starts_with("truth") && segment_of(name).is_some()
+}
+
+/// Whether a column is of the base's marker.
+fn is_base(name: &str) -> bool {
+    name.strip_prefix("base_").is_some_and(|part| POSE_PARTS.contains(&part))
+}
+
+/// Whether a column is of a regulator's pressure.
+fn is_pressure(name: &str) -> bool {
+    let part = name.strip_prefix("pressure").and_then(|part| part.split_once('_'));
+    part.is_some_and(|(digits, unit)| digits.parse::<usize>().is_ok() && ["kpa", "pa"].contains(&unit))
+}

@@ -1,0 +1,88 @@
+//! Sessions from one kind of file to another: CSV, a recording, or a board's raw bytes.
+//!
+//! What the new kind can hold is there to the bit. What it cannot is said.
+
+mod samples;
+mod to_csv;
+mod to_recording;
+
+use std::fs::File;
+use std::io::{BufReader, Write};
+use std::path::Path;
+
+use samples::Samples;
+use telemetry::SEGMENTS;
+
+use crate::recording::{Item, Reader};
+use crate::{Error, Header, Kind, Needs, OutputFile, Problem, Progress, SessionError, SessionReader};
+
+/// Name of the work in its progress.
+const WORK: &str = "converting";
+
+/// Converts `input` to `output`, whose kind its name tells, and gives what was left out.
+///
+/// # Errors
+/// What is wrong with the input, [`Error::OutputKind`] and [`Error::SameKind`], [`Error::Output`].
+pub fn convert(input: &Path, output: &Path, progress: &mut dyn Progress) -> Result<Vec<String>, Error> {
+    let kind = output_kind(output)?;
+    let header = Header::of(input)?;
+    if header.kind == kind {
+        return Err(Error::SameKind(input.to_owned()));
+    }
+    if header.segments > SEGMENTS {
+        let problem = Problem::TooManySegments(header.segments);
+        return Err(SessionError { path: input.to_owned(), line: None, column: None, problem }.into());
+    }
+    let file = OutputFile::create(output, &[input])?;
+    let reader = SessionReader::open(input, &Needs { bend: vec![None; header.segments], truth: false })?;
+    let (file, mut left_out) = match (header.kind, kind) {
+        (_, Kind::Csv) => to_csv::write(reader, file, progress)?,
+        (Kind::Recording, _) => extract(input, file, reader.has_truth())?,
+        (Kind::Csv, Kind::Raw) => frames(reader, file, progress)?,
+        (Kind::Csv, _) => to_recording::of_samples(reader, file, output, progress)?,
+        (Kind::Raw, _) => to_recording::of_bytes(input, file, output)?,
+    };
+    if !header.unknown.is_empty() {
+        left_out.push(format!("the columns {} are left out", header.unknown.join(", ")));
+    }
+    file.finish()?;
+    Ok(left_out)
+}
+
+fn output_kind(output: &Path) -> Result<Kind, Error> {
+    match output.extension().unwrap_or_default().to_ascii_lowercase().to_str() {
+        Some("csv") => Ok(Kind::Csv),
+        Some("mcap") => Ok(Kind::Recording),
+        Some("bin") => Ok(Kind::Raw),
+        _ => Err(Error::OutputKind(output.to_owned())),
+    }
+}
+
+/// The bytes of a recording, one after the other.
+fn extract(input: &Path, mut file: OutputFile, has_truth: bool) -> Result<(OutputFile, Vec<String>), Error> {
+    let fail = |problem| SessionError { path: input.to_owned(), line: None, column: None, problem };
+    let source = File::open(input).map_err(|error| fail(Problem::Read(error)))?;
+    for item in Reader::new(BufReader::with_capacity(1 << 16, source)) {
+        if let Item::Bytes(_, bytes) = item.map_err(|error| fail(Problem::Recording(error)))? {
+            file.write_all(&bytes).map_err(|error| file.error(error))?;
+        }
+    }
+    let truth = has_truth.then(|| "the truth is left out".to_owned());
+    let left_out = ["the times of arrival and the attachments are left out".to_owned()].into_iter().chain(truth);
+    Ok((file, left_out.collect()))
+}
+
+/// A CSV's samples as a board would send them.
+fn frames(
+    reader: SessionReader,
+    mut file: OutputFile,
+    progress: &mut dyn Progress,
+) -> Result<(OutputFile, Vec<String>), Error> {
+    let has_truth = reader.has_truth();
+    let mut samples = Samples::new(reader, progress);
+    while let Some((frame, ..)) = samples.next()? {
+        file.write_all(&frame).map_err(|error| file.error(error))?;
+    }
+    let truth = has_truth.then(|| "the truth is left out".to_owned());
+    Ok((file, samples.rounded().into_iter().chain(truth).collect()))
+}

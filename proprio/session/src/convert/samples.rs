@@ -1,0 +1,75 @@
+//! The rows of a CSV as a board's samples.
+
+use estimator_core::ImuReading;
+use telemetry::{BEND_SENSORS, Encoder, MAX_FRAME, Message, SEGMENTS, Sample};
+
+use crate::{Error, Progress, Row, SessionReader};
+
+/// Units of 2⁻³⁰ in one of a BNO055.
+const UNIT: i32 = 1 << 16;
+
+/// Samples, numbered as ticks, and their frames.
+pub struct Samples<'p> {
+    reader: SessionReader,
+    encoder: Encoder,
+    tick: u32,
+    tare: u8,
+    headings: u64,
+    rounded: u64,
+    progress: &'p mut dyn Progress,
+}
+
+impl<'p> Samples<'p> {
+    pub fn new(reader: SessionReader, progress: &'p mut dyn Progress) -> Self {
+        Self { reader, encoder: Encoder::new(), tick: 0, tare: 0, headings: 0, rounded: 0, progress }
+    }
+
+    /// The next row with its sample and the frame that holds it.
+    pub fn next(&mut self) -> Result<Option<(Vec<u8>, Sample, Row)>, Error> {
+        let Some(row) = self.reader.next_row()? else { return Ok(None) };
+        let (done, total) = self.reader.progress();
+        self.progress.advance(super::WORK, done, total);
+        if row.starts && self.tick > 0 {
+            self.tare = self.tare.wrapping_add(1);
+        }
+        let mut bend = [None; BEND_SENSORS];
+        let counts = row.sample.bend.as_flattened();
+        bend.iter_mut().zip(counts).for_each(|(place, counts)| *place = *counts);
+        let mut imu = [None; SEGMENTS];
+        for (place, reading) in imu.iter_mut().zip(row.sample.imu) {
+            *place = reading.map(|reading| self.quaternion(reading));
+        }
+        let sample = Sample { tick: self.tick, time_us: row.sample.time_us, tare: self.tare, bend, imu };
+        self.tick += 1;
+        let mut buffer = [0; MAX_FRAME];
+        let frame = self.encoder.encode(&Message::Sample(sample), &mut buffer).expect("every sample fits a frame");
+        Ok(Some((frame.to_vec(), sample, row)))
+    }
+
+    /// As a BNO055 gives it.
+    fn quaternion(&mut self, reading: ImuReading) -> [i16; 4] {
+        match reading {
+            ImuReading::Quaternion(parts) => {
+                self.rounded += u64::from(parts.iter().any(|part| part % UNIT != 0));
+                parts.map(|part| ((f64::from(part) / f64::from(UNIT)).round()) as i16)
+            }
+            ImuReading::Heading(heading) => {
+                self.headings += 1;
+                let (sin, cos) = (heading.rad() / 2.0).sin_cos();
+                [cos, 0.0, 0.0, -sin].map(|part| (part * 16_384.0).round() as i16)
+            }
+        }
+    }
+
+    /// What could not be held to the bit.
+    pub fn rounded(&self) -> Vec<String> {
+        let mut said = Vec::new();
+        if self.headings > 0 {
+            said.push("headings became quaternions, rounded to the 0.007 deg of an IMU".to_owned());
+        }
+        if self.rounded > 0 {
+            said.push(format!("{} quaternions were rounded to the units of an IMU, 2^-14", self.rounded));
+        }
+        said
+    }
+}

@@ -1,0 +1,252 @@
+//! Reads a session row by row, in memory that does not grow with its length.
+
+use std::collections::VecDeque;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use telemetry::{Hello, SEGMENTS};
+
+use crate::csv_file::CsvFile;
+use crate::csv_rows::CsvRows;
+use crate::recording::{Item, RawReader, ReadError, Reader, RecordedRows};
+use crate::source::{Kind, Source};
+use crate::{Mark, Needs, Problem, Row, SessionError};
+
+/// Rows at the start whose time stamps tell the sample rate.
+const RATE_ROWS: usize = 1001;
+
+/// A session that is being read, of any [`Kind`].
+pub struct SessionReader {
+    path: PathBuf,
+    size_bytes: u64,
+    rows: Rows,
+    ahead: VecDeque<Row>,
+    rate_hz: Option<f64>,
+    is_regular_file: bool,
+    bend_sensors: Vec<[bool; 2]>,
+    kind: Kind,
+}
+
+type Items = Box<dyn Iterator<Item = Result<Item, ReadError>>>;
+
+enum Rows {
+    Csv(Box<CsvRows>),
+    Recorded(Box<RecordedRows<Items>>, Arc<AtomicU64>),
+}
+
+impl Rows {
+    fn new(source: Source, needs: &Needs) -> Result<Self, SessionError> {
+        let kind = source.kind;
+        if kind == Kind::Csv {
+            return Ok(Self::Csv(Box::new(CsvRows::new(CsvFile::new(source)?, needs)?)));
+        }
+        let (bytes, position) = source.into_counted()?;
+        let items: Items =
+            if kind == Kind::Raw { Box::new(RawReader::new(bytes)) } else { Box::new(Reader::new(bytes)) };
+        Ok(Self::Recorded(Box::new(RecordedRows::new(items)), position))
+    }
+}
+
+impl SessionReader {
+    /// Opens a session, finds its columns and reads the first rows.
+    ///
+    /// # Errors
+    /// Any [`SessionError`] of the header and the first rows.
+    pub fn open(path: &Path, needs: &Needs) -> Result<Self, SessionError> {
+        let source = Source::open(path)?;
+        let (kind, size_bytes, is_regular_file) = (source.kind, source.size_bytes, source.is_regular_file);
+        let segments = needs.bend.len();
+        if kind != Kind::Csv && segments > SEGMENTS {
+            return Err(source.error(Problem::RecordedSegments(segments)));
+        }
+        let rows = Rows::new(source, needs)?;
+        let bend_sensors = match &rows {
+            Rows::Csv(csv) => csv.bend_sensors(),
+            Rows::Recorded(..) => vec![[false; 2]; segments],
+        };
+        let mut reader = Self {
+            path: path.to_owned(),
+            size_bytes,
+            rows,
+            ahead: VecDeque::new(),
+            rate_hz: None,
+            is_regular_file,
+            bend_sensors,
+            kind,
+        };
+        reader.look_ahead(needs)?;
+        Ok(reader)
+    }
+
+    fn look_ahead(&mut self, needs: &Needs) -> Result<(), SessionError> {
+        while self.ahead.len() < RATE_ROWS {
+            let Some(row) = self.read_row()? else { break };
+            self.ahead.push_back(row);
+        }
+        if self.ahead.is_empty() {
+            return Err(self.error(Problem::NoSamples));
+        }
+        let steps = self.ahead.iter().zip(self.ahead.iter().skip(1)).map(|(from, to)| Step::new(from, to));
+        self.rate_hz = rate_hz(steps.collect());
+        if matches!(self.rows, Rows::Recorded(..)) {
+            // A board has no columns: the sensors are those that it has read at all.
+            for (i, present) in self.bend_sensors.iter_mut().enumerate() {
+                let reads = |place: usize| self.ahead.iter().any(|row| row.sample.bend[i][place].is_some());
+                *present = [reads(0), reads(1)];
+            }
+            if needs.truth && !self.has_true_headings() {
+                return Err(self.error(Problem::NoTruth));
+            }
+        }
+        Ok(())
+    }
+
+    /// What the file is.
+    #[must_use]
+    pub fn kind(&self) -> Kind {
+        self.kind
+    }
+
+    /// Whether there is truth in the first rows.
+    #[must_use]
+    pub fn has_truth(&self) -> bool {
+        self.ahead.iter().any(|row| row.truth.iter().any(Option::is_some))
+    }
+
+    /// Whether that truth has headings.
+    #[must_use]
+    pub fn has_true_headings(&self) -> bool {
+        self.ahead.iter().any(|row| row.truth.iter().flatten().any(|end| end.heading_rad.is_some()))
+    }
+
+    /// The first column of truth in a CSV, if there is any.
+    #[must_use]
+    pub fn truth_column(&self) -> Option<&str> {
+        match &self.rows {
+            Rows::Csv(csv) => csv.truth_column(),
+            Rows::Recorded(..) => None,
+        }
+    }
+
+    /// Segments from the base to the last one of which a sensor was read, or the truth seen, in the first rows.
+    #[must_use]
+    pub fn segments_read(&self) -> usize {
+        let is_read = |i: &usize| {
+            self.ahead.iter().any(|Row { sample, truth, .. }| {
+                sample.bend[*i].iter().any(Option::is_some) || sample.imu[*i].is_some() || truth[*i].is_some()
+            })
+        };
+        (0..self.bend_sensors.len()).rev().find(is_read).map_or(0, |last| last + 1)
+    }
+
+    /// Sample rate: that of the mean step of the first rows without gaps, for jitter and rounded time stamps; where an
+    /// arm's `usual_hz`, or up to ten times more or less, is within 1 % of it, that; and `usual_hz` where a single row
+    /// does not tell.
+    #[must_use]
+    pub fn rate_hz(&self, usual_hz: f64) -> f64 {
+        let Some(rate_hz) = self.rate_hz else { return usual_hz };
+        let ratio = rate_hz / usual_hz;
+        let nominal_hz =
+            if ratio >= 1.0 { usual_hz * ratio.round().min(10.0) } else { usual_hz / ratio.recip().round().min(10.0) };
+        if (rate_hz / nominal_hz - 1.0).abs() < 0.01 { nominal_hz } else { rate_hz }
+    }
+
+    /// Whether the session can be read twice, which a pipe cannot.
+    #[must_use]
+    pub fn is_regular_file(&self) -> bool {
+        self.is_regular_file
+    }
+
+    /// Which bend sensors of each segment the session has.
+    pub fn bend_sensors(&self) -> impl Iterator<Item = [bool; 2]> {
+        self.bend_sensors.iter().copied()
+    }
+
+    /// Whether the last line is ended; if not, its last number may have been cut.
+    #[must_use]
+    pub fn ends_with_line(&self) -> bool {
+        match &self.rows {
+            Rows::Csv(csv) => csv.ends_with_line(),
+            Rows::Recorded(..) => true,
+        }
+    }
+
+    /// How far the file was read, and its size, in bytes.
+    #[must_use]
+    pub fn progress(&self) -> (u64, u64) {
+        let position = match &self.rows {
+            Rows::Csv(csv) => csv.position(),
+            Rows::Recorded(_, position) => position.load(Ordering::Relaxed),
+        };
+        (position, self.size_bytes)
+    }
+
+    /// Where it is from a board: its last `Hello` so far, if there was one.
+    #[must_use]
+    pub fn hello(&self) -> Option<&Hello> {
+        match &self.rows {
+            Rows::Csv(_) => None,
+            Rows::Recorded(rows, _) => rows.hello(),
+        }
+    }
+
+    /// The moments that were marked, as far as it was read.
+    #[must_use]
+    pub fn marks(&self) -> &[Mark] {
+        match &self.rows {
+            Rows::Csv(_) => &[],
+            Rows::Recorded(rows, _) => rows.marks(),
+        }
+    }
+
+    /// The next row, or `None` at the end.
+    ///
+    /// # Errors
+    /// Any [`SessionError`] of a row.
+    pub fn next_row(&mut self) -> Result<Option<Row>, SessionError> {
+        match self.ahead.pop_front() {
+            Some(row) => Ok(Some(row)),
+            None => self.read_row(),
+        }
+    }
+
+    fn read_row(&mut self) -> Result<Option<Row>, SessionError> {
+        let row = match &mut self.rows {
+            Rows::Csv(csv) => return csv.next_row(),
+            Rows::Recorded(rows, _) => rows.next_row(),
+        };
+        row.map_err(|error| self.error(Problem::Recording(error)))
+    }
+
+    fn error(&self, problem: Problem) -> SessionError {
+        SessionError { path: self.path.clone(), line: None, column: None, problem }
+    }
+}
+
+/// From one row to the next.
+struct Step {
+    us: u64,
+    /// Of a board's recording; 1 in a CSV, which numbers nothing.
+    ticks: u32,
+}
+
+impl Step {
+    fn new(from: &Row, to: &Row) -> Self {
+        let ticks = from.board.zip(to.board).map_or(1, |(from, to)| to.tick.wrapping_sub(from.tick));
+        Self { us: to.sample.time_us - from.sample.time_us, ticks }
+    }
+}
+
+/// Rate of the mean step of those over no more ticks than usual, and not over twice the median: rows that were lost are no
+/// slower rate.
+fn rate_hz(mut steps: Vec<Step>) -> Option<f64> {
+    steps.sort_unstable_by_key(|step| step.ticks);
+    let usual = steps.get(steps.len() / 2)?.ticks;
+    steps.truncate(steps.partition_point(|step| step.ticks <= usual));
+    steps.sort_unstable_by_key(|step| step.us);
+    let median_us = steps.get(steps.len() / 2)?.us;
+    steps.truncate(steps.partition_point(|step| step.us <= 2 * median_us));
+    let sum_us = steps.iter().map(|step| step.us).sum::<u64>();
+    (sum_us > 0).then(|| steps.len() as f64 * 1e6 / sum_us as f64)
+}

@@ -1,0 +1,272 @@
+//! A recording that is being made.
+
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+use std::io::{self, Write};
+
+use mcap::records::{MessageHeader, Metadata};
+use mcap::write::NoSeek;
+use mcap::{Attachment, McapError, WriteOptions};
+use telemetry::{Estimate, Hello, Message, SCHEMA, SEGMENTS, Sample, SetPressures};
+
+use super::schema::{self, Schema};
+use super::{CONTACT, DIAGNOSTICS, JOINT_STATES, MARKS, RAW, SAMPLES, SET_POINTS, SHAPE, TRUTH, UNCERTAINTY, messages};
+use crate::{BoardClock, HostNs, Truth};
+
+/// How long anything may wait to be written, ns. A file that is cut loses no more than that.
+const FLUSH_NS: u64 = 900_000_000;
+
+/// A recording that is being made. Every second it appends what came as one whole chunk; nothing is ever changed again.
+pub struct Recorder<W: Write> {
+    mcap: mcap::Writer<NoSeek<W>>,
+    channels: Channels,
+    clock: BoardClock,
+    hello: Option<Hello>,
+    /// Tick and time of the last sample, which its estimate follows at once.
+    sample: Option<(u32, HostNs)>,
+    flushed: HostNs,
+    raw_messages: u32,
+    samples: u64,
+    /// Times that the host has asked for pressures.
+    asked: u32,
+    marks: u32,
+}
+
+/// Numbers of the channels.
+struct Channels {
+    raw: u16,
+    samples: u16,
+    joint_states: u16,
+    shape: u16,
+    diagnostics: u16,
+    uncertainty: u16,
+    /// Only where something touches the arm.
+    contact: Option<u16>,
+    /// Only where the pressures are driven.
+    set_points: Option<u16>,
+    /// Only where there is truth.
+    truth: Option<u16>,
+    /// Only where there are marks.
+    marks: Option<u16>,
+}
+
+impl<W: Write> Recorder<W> {
+    /// Begins a recording at `at`, of what comes over `line`.
+    ///
+    /// # Errors
+    /// Those of `sink`.
+    pub fn new(sink: W, at: HostNs, line: &str) -> io::Result<Self> {
+        // Chunks are put together in memory, so that the file only grows. Compression would need a C compiler.
+        let options = WriteOptions::new()
+            .compression(None)
+            .library(format!("proprio {}", env!("CARGO_PKG_VERSION")))
+            .chunk_size(None)
+            .disable_seeking(true);
+        let mut mcap = options.create(NoSeek::new(sink)).map_err(io_error)?;
+        let about = [
+            ("proprio", env!("CARGO_PKG_VERSION").to_owned()),
+            ("line", line.to_owned()),
+            ("protocol", telemetry::PROTOCOL_VERSION.to_string()),
+            ("schema", format!("{SCHEMA:08x}")),
+        ];
+        let metadata = about.into_iter().map(|(key, value)| (key.to_owned(), value)).collect();
+        mcap.write_metadata(&Metadata { name: "proprio".to_owned(), metadata }).map_err(io_error)?;
+        let channels = Channels {
+            raw: mcap.add_channel(0, RAW, "application/octet-stream", &BTreeMap::new()).map_err(io_error)?,
+            samples: channel(&mut mcap, SAMPLES, &schema::SAMPLE)?,
+            joint_states: channel(&mut mcap, JOINT_STATES, &schema::JOINT_STATE)?,
+            shape: channel(&mut mcap, SHAPE, &schema::POSE_ARRAY)?,
+            diagnostics: channel(&mut mcap, DIAGNOSTICS, &schema::DIAGNOSTIC_ARRAY)?,
+            uncertainty: channel(&mut mcap, UNCERTAINTY, &schema::UNCERTAINTY)?,
+            contact: None,
+            set_points: None,
+            truth: None,
+            marks: None,
+        };
+        let clock = BoardClock::default();
+        Ok(Self {
+            mcap,
+            channels,
+            clock,
+            hello: None,
+            sample: None,
+            flushed: at,
+            raw_messages: 0,
+            samples: 0,
+            asked: 0,
+            marks: 0,
+        })
+    }
+
+    /// Attaches the table that the board has, as its file stands.
+    ///
+    /// # Errors
+    /// Those of the sink.
+    pub fn attach_table(&mut self, at: HostNs, toml: &[u8]) -> io::Result<()> {
+        self.attach(at, "table.toml", "application/toml", toml)
+    }
+
+    fn attach(&mut self, at: HostNs, name: &str, media_type: &str, data: &[u8]) -> io::Result<()> {
+        let (name, media_type) = (name.to_owned(), media_type.to_owned());
+        let attachment = Attachment { log_time: at.0, create_time: at.0, name, media_type, data: Cow::Borrowed(data) };
+        self.mcap.attach(&attachment).map_err(io_error)
+    }
+
+    /// Samples so far.
+    #[must_use]
+    pub fn samples(&self) -> u64 {
+        self.samples
+    }
+
+    /// Writes bytes as they came.
+    ///
+    /// # Errors
+    /// Those of the sink.
+    pub fn bytes(&mut self, at: HostNs, bytes: &[u8]) -> io::Result<()> {
+        self.flush_if_due(at)?;
+        self.raw_messages = self.raw_messages.wrapping_add(1);
+        self.write(self.channels.raw, self.raw_messages, at, at, bytes)
+    }
+
+    /// Writes what was decoded from them.
+    ///
+    /// # Errors
+    /// Those of the sink.
+    pub fn message(&mut self, at: HostNs, message: &Message) -> io::Result<()> {
+        match message {
+            Message::Hello(hello) => self.greet(at, hello),
+            Message::Sample(sample) => self.sample(at, sample),
+            Message::Estimate(estimate) => self.estimate(at, estimate),
+            Message::Health(health) => {
+                let stamp = self.stamp(health.tick, at);
+                let message = messages::diagnostics(stamp, health, self.hello.as_ref());
+                self.write(self.channels.diagnostics, health.tick, at, stamp, &message)
+            }
+            Message::Uncertainty(of) => {
+                let stamp = self.stamp(of.tick, at);
+                self.write(self.channels.uncertainty, of.tick, at, stamp, &messages::uncertainty(stamp, of))
+            }
+            Message::Event(telemetry::Event::Contact(tick, touched)) => self.contact(at, *tick, *touched),
+            Message::Event(_) | Message::Reply(_) => Ok(()),
+        }
+    }
+
+    fn contact(&mut self, at: HostNs, tick: u32, touched: [bool; SEGMENTS]) -> io::Result<()> {
+        let channel = channel_once(&mut self.channels.contact, &mut self.mcap, CONTACT, &schema::CONTACT)?;
+        let stamp = self.stamp(tick, at);
+        self.write(channel, tick, at, stamp, &messages::contact(stamp, touched))
+    }
+
+    /// Writes the truth of the sample with this tick, which came before.
+    ///
+    /// # Errors
+    /// Those of the sink.
+    pub fn truth(&mut self, at: HostNs, tick: u32, ends: &[Option<Truth>]) -> io::Result<()> {
+        let channel = channel_once(&mut self.channels.truth, &mut self.mcap, TRUTH, &schema::TRUTH)?;
+        let stamp = self.stamp(tick, at);
+        self.write(channel, tick, at, stamp, &messages::truth(stamp, ends))
+    }
+
+    /// Writes what the host has asked of the pressures.
+    ///
+    /// # Errors
+    /// Those of the sink.
+    pub fn set_points(&mut self, at: HostNs, asked: &SetPressures) -> io::Result<()> {
+        let channel = channel_once(&mut self.channels.set_points, &mut self.mcap, SET_POINTS, &schema::SET_POINTS)?;
+        self.asked = self.asked.wrapping_add(1);
+        self.write(channel, self.asked, at, at, &messages::set_points(at, asked))
+    }
+
+    /// Writes that a person has marked this moment, and what for.
+    ///
+    /// # Errors
+    /// Those of the sink.
+    pub fn mark(&mut self, at: HostNs, text: &str) -> io::Result<()> {
+        let channel = channel_once(&mut self.channels.marks, &mut self.mcap, MARKS, &schema::STRING)?;
+        self.marks = self.marks.wrapping_add(1);
+        self.write(channel, self.marks, at, at, &messages::mark(text))
+    }
+
+    /// Writes what came, where it has waited long enough.
+    ///
+    /// # Errors
+    /// Those of the sink.
+    pub fn flush_if_due(&mut self, now: HostNs) -> io::Result<()> {
+        if now.0.saturating_sub(self.flushed.0) < FLUSH_NS {
+            return Ok(());
+        }
+        self.flushed = now;
+        self.mcap.flush().map_err(io_error)
+    }
+
+    /// Completes the recording with its index, and gives the sink back.
+    ///
+    /// # Errors
+    /// Those of the sink.
+    pub fn finish(mut self) -> io::Result<W> {
+        self.mcap.finish().map_err(io_error)?;
+        let mut sink = self.mcap.into_inner().into_inner();
+        sink.flush()?;
+        Ok(sink)
+    }
+
+    /// The `Hello` of each boot is attached once.
+    fn greet(&mut self, at: HostNs, hello: &Hello) -> io::Result<()> {
+        if self.hello.as_ref() == Some(hello) {
+            return Ok(());
+        }
+        self.hello = Some(hello.clone());
+        let json = serde_json::to_vec_pretty(hello).map_err(io::Error::other)?;
+        self.attach(at, &format!("hello-boot-{}.json", hello.boot), "application/json", &json)
+    }
+
+    fn sample(&mut self, at: HostNs, sample: &Sample) -> io::Result<()> {
+        let stamp = self.clock.host_ns(at, sample.time_us);
+        self.sample = Some((sample.tick, stamp));
+        self.samples += 1;
+        self.write(self.channels.samples, sample.tick, at, stamp, &messages::sample(stamp, sample))
+    }
+
+    fn estimate(&mut self, at: HostNs, estimate: &Estimate) -> io::Result<()> {
+        let stamp = self.stamp(estimate.tick, at);
+        let (joint_states, shape) = (self.channels.joint_states, self.channels.shape);
+        self.write(joint_states, estimate.tick, at, stamp, &messages::joint_state(stamp, estimate))?;
+        self.write(shape, estimate.tick, at, stamp, &messages::pose_array(stamp, estimate))
+    }
+
+    /// The time of a tick; that of its arrival where its sample did not come.
+    fn stamp(&self, tick: u32, at: HostNs) -> HostNs {
+        self.sample.filter(|(last, _)| *last == tick).map_or(at, |(_, stamp)| stamp)
+    }
+
+    fn write(&mut self, channel_id: u16, sequence: u32, at: HostNs, stamp: HostNs, data: &[u8]) -> io::Result<()> {
+        let header = MessageHeader { channel_id, sequence, log_time: at.0, publish_time: stamp.0 };
+        self.mcap.write_to_known_channel(&header, data).map_err(io_error)
+    }
+}
+
+fn channel<W: Write>(mcap: &mut mcap::Writer<NoSeek<W>>, topic: &str, schema: &Schema) -> io::Result<u16> {
+    let id = mcap.add_schema(schema.name, "ros2msg", schema.text().as_bytes()).map_err(io_error)?;
+    mcap.add_channel(id, topic, "cdr", &BTreeMap::new()).map_err(io_error)
+}
+
+/// A channel that is there from its first message on.
+fn channel_once<W: Write>(
+    place: &mut Option<u16>,
+    mcap: &mut mcap::Writer<NoSeek<W>>,
+    topic: &str,
+    schema: &Schema,
+) -> io::Result<u16> {
+    match place {
+        Some(channel) => Ok(*channel),
+        None => Ok(*place.insert(channel(mcap, topic, schema)?)),
+    }
+}
+
+/// What a sink can say; the writer itself is used as it is meant to be.
+pub(super) fn io_error(error: McapError) -> io::Error {
+    match error {
+        McapError::Io(error) => error,
+        other => io::Error::other(other),
+    }
+}

@@ -1,0 +1,114 @@
+//! A session's file: what kind it is, and its bytes from the first on.
+
+use std::fs::File;
+use std::io::{self, BufReader, Cursor, Read, Seek, SeekFrom};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use crate::recording::is_recording;
+use crate::{Problem, SessionError};
+
+/// Bytes at the start that tell what a file is.
+const BEGIN: u64 = 8;
+
+/// What a file is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// Text, a row a sample.
+    Csv,
+    /// A board's recording.
+    Recording,
+    /// The bytes of a board as they came.
+    Raw,
+}
+
+impl Kind {
+    /// By its first bytes; raw bytes have no mark and are known by their name, `.bin`.
+    fn of(path: &Path, begin: &[u8]) -> Self {
+        if is_recording(begin) {
+            Self::Recording
+        } else if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("bin")) {
+            Self::Raw
+        } else {
+            Self::Csv
+        }
+    }
+}
+
+/// A file that was opened, of which the first bytes were looked at.
+pub(crate) struct Source {
+    pub path: PathBuf,
+    pub kind: Kind,
+    pub size_bytes: u64,
+    /// It is no pipe and no device.
+    pub is_regular_file: bool,
+    begin: Vec<u8>,
+    file: File,
+}
+
+impl Source {
+    pub fn open(path: &Path) -> Result<Self, SessionError> {
+        let fail = |problem| SessionError { path: path.to_owned(), line: None, column: None, problem };
+        let mut file = File::open(path).map_err(|error| fail(Problem::Read(error)))?;
+        let metadata = file.metadata().map_err(|error| fail(Problem::Read(error)))?;
+        if metadata.is_dir() {
+            return Err(fail(Problem::Directory));
+        }
+        let mut begin = Vec::new();
+        file.by_ref().take(BEGIN).read_to_end(&mut begin).map_err(|error| fail(Problem::Read(error)))?;
+        Ok(Self {
+            path: path.to_owned(),
+            kind: Kind::of(path, &begin),
+            size_bytes: metadata.len(),
+            is_regular_file: metadata.is_file(),
+            begin,
+            file,
+        })
+    }
+
+    /// Whether the last byte is a line end, as far as that can be seen before all is read.
+    pub fn ends_with_line(&mut self) -> Result<bool, SessionError> {
+        let mut last = [b'\n'];
+        if self.is_regular_file && self.file.seek(SeekFrom::End(-1)).is_ok() {
+            self.file.read_exact(&mut last).map_err(|error| self.error(Problem::Read(error)))?;
+        }
+        Ok(last == [b'\n'])
+    }
+
+    /// The bytes from the first on.
+    pub fn into_bytes(mut self) -> Result<Box<dyn Read>, SessionError> {
+        if !self.is_regular_file {
+            // A pipe cannot go back.
+            return Ok(Box::new(Cursor::new(self.begin).chain(self.file)));
+        }
+        self.file.rewind().map_err(|error| self.error(Problem::Read(error)))?;
+        Ok(Box::new(self.file))
+    }
+
+    /// The bytes from the first on, and how many were read.
+    pub fn into_counted(self) -> Result<(BufReader<Counted>, Arc<AtomicU64>), SessionError> {
+        let position = Arc::new(AtomicU64::new(0));
+        let counted = Counted { bytes: self.into_bytes()?, position: Arc::clone(&position) };
+        Ok((BufReader::with_capacity(1 << 16, counted), position))
+    }
+
+    /// A problem of the whole file.
+    pub fn error(&self, problem: Problem) -> SessionError {
+        SessionError { path: self.path.clone(), line: None, column: None, problem }
+    }
+}
+
+/// Counts what is read.
+pub(crate) struct Counted {
+    bytes: Box<dyn Read>,
+    position: Arc<AtomicU64>,
+}
+
+impl Read for Counted {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let count = self.bytes.read(buffer)?;
+        self.position.fetch_add(count as u64, Ordering::Relaxed);
+        Ok(count)
+    }
+}

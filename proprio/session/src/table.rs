@@ -1,0 +1,63 @@
+//! A table with the path of its file, which errors name.
+
+use std::path::Path;
+
+use calibration_tables::{ArmFile, Baked, FileError};
+use estimator_core::FusedOps;
+
+use crate::Error;
+use crate::needs::Needs;
+
+/// A table and the file that it came from.
+#[derive(Debug, Clone)]
+pub struct NamedTable<'p> {
+    /// The table.
+    pub file: ArmFile,
+    /// Where it was read.
+    pub path: &'p Path,
+}
+
+impl<'p> NamedTable<'p> {
+    /// Reads and checks an arm description or table.
+    ///
+    /// # Errors
+    /// [`Error::Table`].
+    pub fn load(path: &'p Path) -> Result<Self, Error> {
+        let file = ArmFile::load(path).map_err(|source| Error::Table { path: path.to_owned(), source })?;
+        Ok(Self { file, path })
+    }
+
+    /// The file's text as it stands.
+    ///
+    /// # Errors
+    /// [`Error::Table`].
+    pub fn toml(&self) -> Result<Vec<u8>, Error> {
+        std::fs::read(self.path).map_err(|source| self.error(source.into()))
+    }
+
+    /// The columns that it needs of a session.
+    ///
+    /// # Errors
+    /// [`Error::Table`] on an arm description.
+    pub fn needs(&self) -> Result<Needs, Error> {
+        Needs::of_table(&self.file).map_err(|source| self.error(source))
+    }
+
+    /// The estimator's parameters for one sample rate.
+    ///
+    /// # Errors
+    /// [`Error::Table`] on an arm description.
+    pub fn bake<S: FusedOps>(&self, rate_hz: f64) -> Result<Baked<S>, Error> {
+        self.file.bake(rate_hz).map_err(|source| self.error(source))
+    }
+
+    /// Whether the bias filter corrects the drift.
+    #[must_use]
+    pub fn has_bias_filter(&self) -> bool {
+        self.file.bias_filter().is_some()
+    }
+
+    fn error(&self, source: FileError) -> Error {
+        Error::Table { path: self.path.to_owned(), source }
+    }
+}

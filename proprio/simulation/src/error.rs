@@ -1,0 +1,12 @@
+//! Errors of a simulated session.
+
+/// A session that cannot be simulated.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum SimulationError {
+    /// A rate that the arm cannot be sampled at.
+    #[error("--rate {0} Hz, expected 1 to 1000")]
+    Rate(f64),
+    /// A duration out of range.
+    #[error("--seconds {0}, expected more than 0 and at most 10 million")]
+    Seconds(f64),
+}

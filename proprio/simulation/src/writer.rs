@@ -1,0 +1,153 @@
+//! Writes samples and their truth as a session, and what a camera saw as a file of its own.
+
+use std::io::{self, Write};
+
+use estimator_core::ImuReading;
+use proprio_session::SENSOR_NAMES;
+use rig_twin::{EndPose, Frame, SEGMENTS};
+
+use crate::simulation::Recorded;
+
+/// In which columns a session holds its IMU readings.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ImuColumns {
+    /// The heading, imuK_deg.
+    Deg,
+    /// The quaternion as the BNO055 gives it, imuK_qw to imuK_qz.
+    Quaternion,
+}
+
+/// A session that is being written.
+pub struct SessionWriter<W> {
+    sink: W,
+    imu: ImuColumns,
+    truth: bool,
+}
+
+impl<W: Write> SessionWriter<W> {
+    /// Begins a session with its header.
+    ///
+    /// # Errors
+    /// Those of `sink`.
+    pub fn new(sink: W, imu: ImuColumns) -> io::Result<Self> {
+        Self::begin(sink, imu, true)
+    }
+
+    /// Begins a session without truth.
+    ///
+    /// # Errors
+    /// Those of `sink`.
+    pub fn without_truth(sink: W, imu: ImuColumns) -> io::Result<Self> {
+        Self::begin(sink, imu, false)
+    }
+
+    fn begin(mut sink: W, imu: ImuColumns, truth: bool) -> io::Result<Self> {
+        write!(sink, "time_s")?;
+        for i in 1..=SEGMENTS {
+            for sensor in SENSOR_NAMES {
+                write!(sink, ",bend{i}{sensor}_adc")?;
+            }
+        }
+        for i in 1..=SEGMENTS {
+            match imu {
+                ImuColumns::Deg => write!(sink, ",imu{i}_deg")?,
+                ImuColumns::Quaternion => write!(sink, ",imu{i}_qw,imu{i}_qx,imu{i}_qy,imu{i}_qz")?,
+            }
+        }
+        for i in (1..=SEGMENTS).take_while(|_| truth) {
+            write!(sink, ",truth{i}_x_mm,truth{i}_y_mm,truth{i}_heading_deg")?;
+        }
+        writeln!(sink)?;
+        Ok(Self { sink, imu, truth })
+    }
+
+    /// Writes one sample.
+    ///
+    /// # Errors
+    /// Those of the sink.
+    pub fn write(&mut self, sample: &Recorded) -> io::Result<()> {
+        write!(self.sink, "{}", sample.time_us as f64 / 1e6)?;
+        for counts in sample.counts {
+            write!(self.sink, ",")?;
+            if let Some(counts) = counts {
+                write!(self.sink, "{counts}")?;
+            }
+        }
+        for quaternion in sample.quaternions {
+            match self.imu {
+                ImuColumns::Deg => write!(self.sink, ",{}", quaternion.map(heading_deg).unwrap_or_default())?,
+                ImuColumns::Quaternion => self.write_quaternion(quaternion)?,
+            }
+        }
+        for end in sample.truth.iter().take_while(|_| self.truth) {
+            write_pose(&mut self.sink, end)?;
+        }
+        writeln!(self.sink)
+    }
+
+    fn write_quaternion(&mut self, quaternion: Option<[i16; 4]>) -> io::Result<()> {
+        let Some(parts) = quaternion else { return write!(self.sink, ",,,,") };
+        for part in parts {
+            // 2⁻¹⁴ has a finite decimal form, so that the reading comes back to the bit.
+            write!(self.sink, ",{}", f64::from(part) / 16_384.0)?;
+        }
+        Ok(())
+    }
+
+    /// The sink, when all samples are written.
+    pub fn into_inner(self) -> W {
+        self.sink
+    }
+}
+
+/// A camera's file that is being written.
+pub struct CameraWriter<W> {
+    sink: W,
+}
+
+impl<W: Write> CameraWriter<W> {
+    /// Begins the file with its header.
+    ///
+    /// # Errors
+    /// Those of `sink`.
+    pub fn new(mut sink: W) -> io::Result<Self> {
+        write!(sink, "time_s,base_x_mm,base_y_mm,base_heading_deg")?;
+        for i in 1..=SEGMENTS {
+            write!(sink, ",truth{i}_x_mm,truth{i}_y_mm,truth{i}_heading_deg")?;
+        }
+        writeln!(sink)?;
+        Ok(Self { sink })
+    }
+
+    /// Writes one frame; the cells of a marker that was not found stay empty.
+    ///
+    /// # Errors
+    /// Those of the sink.
+    pub fn write(&mut self, frame: &Frame) -> io::Result<()> {
+        write!(self.sink, "{:.6}", frame.time_s)?;
+        for pose in std::iter::once(&frame.base).chain(&frame.ends) {
+            match pose {
+                Some(pose) => write_pose(&mut self.sink, pose)?,
+                None => write!(self.sink, ",,,")?,
+            }
+        }
+        writeln!(self.sink)
+    }
+
+    /// The sink, when all frames are written.
+    pub fn into_inner(self) -> W {
+        self.sink
+    }
+}
+
+fn write_pose(sink: &mut impl Write, pose: &EndPose) -> io::Result<()> {
+    let (x_mm, y_mm) = (pose.x_m * 1e3, pose.y_m * 1e3);
+    write!(sink, ",{x_mm:.4},{y_mm:.4},{:.4}", pose.heading_rad.to_degrees())
+}
+
+/// The heading in [0, 360) with five decimals; empty where the quaternion is no orientation.
+fn heading_deg(quaternion: [i16; 4]) -> String {
+    let Some(heading) = ImuReading::from_bno055(quaternion).heading() else { return String::new() };
+    let text = format!("{:.5}", heading.rad().to_degrees().rem_euclid(360.0));
+    if text == "360.00000" { "0.00000".to_owned() } else { text }
+}
