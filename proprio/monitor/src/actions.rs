@@ -10,7 +10,6 @@ use axum::http::header::{CONTENT_TYPE, HeaderName};
 use axum::http::{HeaderMap, StatusCode};
 use axum::response::{IntoResponse, Response};
 use http_body_util::BodyExt;
-use proprio_link::LinkError;
 use serde::Deserialize;
 use telemetry::{Command, REGULATORS, SetPressures};
 
@@ -147,7 +146,7 @@ pub(super) async fn control(State(server): State<Server>, headers: HeaderMap, bo
         serde_json::from_slice(&body).map_err(|error| (StatusCode::BAD_REQUEST, error.to_string()).into_response())?;
     let asked = beside(move || shared.link.as_ref().map(|link| link.request(control.into())));
     match asked.await? {
-        Some(done) => done.map_err(|error| server.failure(&LinkError::from(error).into())),
+        Some(done) => done.map_err(|error| server.failure(&error.into())),
         None => Err(Refused::ReadOnly.into_response()),
     }
 }

@@ -31,6 +31,7 @@ mod figures {
             folder: folder.path().to_owned(),
             token: None,
             session: None,
+            help: ToString::to_string,
         };
         let live = Link::start(Box::new(Due), None).expect("it is there");
         let monitor = Monitor::start(Some(live), options).expect("a free port");

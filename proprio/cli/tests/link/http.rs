@@ -60,7 +60,14 @@ impl Page {
     pub fn with_table(line: &Line, token: Option<Token>, table: Option<NamedTable>) -> Self {
         let live = Link::start(Box::new(line.clone()), None).expect("memory opens");
         let folder = tempfile::tempdir().expect("there is room for a temporary folder");
-        let options = Options { port: 0, table, folder: folder.path().to_owned(), token, session: None };
+        let options = Options {
+            port: 0,
+            table,
+            folder: folder.path().to_owned(),
+            token,
+            session: None,
+            help: ToString::to_string,
+        };
         Self { monitor: Monitor::start(Some(live), options).expect("a free port"), folder }
     }
 

@@ -31,6 +31,7 @@ fn page(given: Option<PathBuf>) -> Page {
         folder: folder.path().to_owned(),
         token: None,
         session: given,
+        help: ToString::to_string,
     };
     Page { monitor: Monitor::start(None, options).expect("a free port"), folder }
 }
