@@ -43,6 +43,7 @@ impl ShutdownGuard {
 
     /// True after an interrupt.
     #[must_use]
+    #[expect(clippy::unused_self, reason = "only work that is guarded may end late")]
     pub fn is_requested(&self) -> bool {
         IS_REQUESTED.load(Ordering::SeqCst)
     }

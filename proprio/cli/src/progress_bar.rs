@@ -13,7 +13,7 @@ const CALLS: u64 = 1024;
 
 /// A bar for one piece of work after the other.
 pub struct Bar {
-    bar: ProgressBar,
+    shown: ProgressBar,
     work: String,
     hidden_since: Option<Instant>,
     calls: u64,
@@ -22,19 +22,19 @@ pub struct Bar {
 impl Bar {
     /// A bar that is hidden.
     pub fn new() -> Self {
-        Self { bar: ProgressBar::hidden(), work: String::new(), hidden_since: Some(Instant::now()), calls: 0 }
+        Self { shown: ProgressBar::hidden(), work: String::new(), hidden_since: Some(Instant::now()), calls: 0 }
     }
 
     fn set(&mut self, work: &str, done: u64, total: u64) {
         if self.hidden_since.is_some_and(|since| since.elapsed() > DELAY) {
             self.hidden_since = None;
             let style = ProgressStyle::with_template("{msg} [{bar:40}] {percent} % {eta} left");
-            self.bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
-            self.bar.set_draw_target(ProgressDrawTarget::stderr());
+            self.shown.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+            self.shown.set_draw_target(ProgressDrawTarget::stderr());
         }
-        self.bar.set_length(total);
-        self.bar.set_message(work.to_owned());
-        self.bar.set_position(done);
+        self.shown.set_length(total);
+        self.shown.set_message(work.to_owned());
+        self.shown.set_position(done);
     }
 }
 
@@ -44,8 +44,8 @@ impl Progress for Bar {
         if work != self.work {
             // The next piece of work has a delay and an estimate of its own.
             work.clone_into(&mut self.work);
-            self.bar.finish_and_clear();
-            (self.bar, self.hidden_since, self.calls) = (ProgressBar::hidden(), Some(Instant::now()), 0);
+            self.shown.finish_and_clear();
+            (self.shown, self.hidden_since, self.calls) = (ProgressBar::hidden(), Some(Instant::now()), 0);
         } else if self.calls.is_multiple_of(CALLS) {
             self.set(work, done, total);
         }
@@ -58,6 +58,6 @@ impl Progress for Bar {
 
 impl Drop for Bar {
     fn drop(&mut self) {
-        self.bar.finish_and_clear();
+        self.shown.finish_and_clear();
     }
 }
