@@ -62,7 +62,7 @@ fn iterations(bencher: Bencher) {
     bencher.counter(ItemsCount::new(ITERATIONS)).with_inputs(tuner).bench_local_values(|tuner| {
         let calls = Cell::new(0);
         let is_over = || calls.replace(calls.get() + 1) == ITERATIONS;
-        let record = tuner.tune(is_over).expect("errors that are numbers").record;
+        let record = tuner.tune(&mut NoProgress, is_over).expect("errors that are numbers").record;
         assert_eq!(record.iterations, ITERATIONS);
     });
 }
