@@ -84,7 +84,7 @@ impl Monitor {
     /// Starts to serve what a link says, if there is one.
     ///
     /// # Errors
-    /// [`Error::Listen`], and [`Error::Table`] on an arm description.
+    /// [`Error::Listen`], and [`Error::File`] on an arm description.
     pub fn start(live: Option<(Link, Subscription)>, options: Options) -> Result<Self, Error> {
         let port = options.port;
         let failed = |source| Error::Listen { port, source };
@@ -134,7 +134,7 @@ impl Monitor {
     /// Ends it: vents the board, where a page could have driven it, and completes the recording. Gives its name.
     ///
     /// # Errors
-    /// [`Error::Output`] of a recording.
+    /// [`Error::File`] of a recording.
     pub fn finish(self) -> Result<Option<String>, Error> {
         if let (Some(link), Some(_)) = (&self.shared.link, &self.shared.token) {
             // A board that does not answer vents by itself.

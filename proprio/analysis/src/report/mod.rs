@@ -120,7 +120,7 @@ impl<'t> Gathering<'t> {
     /// Makes the figures.
     ///
     /// # Errors
-    /// [`Error::Table`] on an arm description.
+    /// [`Error::File`] on an arm description.
     pub fn finish(self) -> Result<Report, Error> {
         let Self { table: NamedTable { file, path }, sessions, all, readings } = &self;
         let of_session = |session: &Session| SessionFigures {

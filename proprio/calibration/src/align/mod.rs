@@ -71,7 +71,7 @@ pub struct AlignmentReport {
 /// Finds the clocks of `camera` and of `session`, which has no truth yet.
 ///
 /// # Errors
-/// [`Error::Session`] where one of the files cannot be used, [`Error::Alignment`] where they do not fit together.
+/// [`Error::File`] where one of the files cannot be used, [`Error::Alignment`] where they do not fit together.
 pub fn align(session: &Path, camera: &Path, arm: &NamedTable, progress: &mut dyn Progress) -> Result<Alignment, Error> {
     let refuse = |path: &Path, source| Error::Alignment { path: path.to_owned(), source };
     let mut readings = Readings::read(session, &arm.file, progress)?;

@@ -110,7 +110,7 @@ pub struct Calibration {
 /// Calibrates `arm` on one session with truth or on several, which may be of different days.
 ///
 /// # Errors
-/// [`Error::Session`] where a session cannot be used, [`Error::Calibration`] where no good table can be made of them.
+/// [`Error::File`] where a session cannot be used, [`Error::Calibration`] where no good table can be made of them.
 pub fn calibrate(
     sessions: &[PathBuf],
     arm: &NamedTable,

@@ -61,7 +61,7 @@ impl<'t> Tuner<'t> {
     /// Reads the training sessions.
     ///
     /// # Errors
-    /// [`Error::Session`] and [`Error::Tuning`] where a session cannot be used, [`Error::Table`] and [`Error::Tuning`] where
+    /// [`Error::File`] and [`Error::Tuning`] where a session cannot be used, [`Error::File`] and [`Error::Tuning`] where
     /// the table has no filters.
     pub fn new(sessions: &[PathBuf], table: &'t NamedTable, progress: &mut dyn Progress) -> Result<Self, Error> {
         let has_bend_sensors = table.needs()?.bend.iter().any(|sensors| *sensors != Some(0));
@@ -89,7 +89,7 @@ impl<'t> Tuner<'t> {
     /// Searches or descends until the RMSE converges, or until `is_interrupted` after a run or an iteration.
     ///
     /// # Errors
-    /// [`Error::Tuning`] where the RMSE of descent is no number, or falls on and on; [`Error::Session`] where a session is no
+    /// [`Error::Tuning`] where the RMSE of descent is no number, or falls on and on; [`Error::File`] where a session is no
     /// longer what it was.
     pub fn tune(mut self, progress: &mut dyn Progress, is_interrupted: impl Fn() -> bool) -> Result<Tuning, Error> {
         let start = Instant::now();
