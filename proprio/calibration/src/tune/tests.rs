@@ -46,7 +46,7 @@ fn session(folder: &Path, scenario: Scenario, rate_hz: f64, gaps: bool) -> PathB
 
 /// The reference table, which has the bias filter.
 fn reference() -> NamedTable<'static> {
-    let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../calibration-tables/planar-6.toml"));
+    let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../calibration-tables/planar-6.toml"));
     NamedTable { file: ArmFile::load(path).expect("it is committed"), path }
 }
 
