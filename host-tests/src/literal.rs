@@ -4,9 +4,8 @@
 
 mod dense;
 
-use std::f64::consts::PI;
-
 use dense::{Filter, Matrix};
+use std::f64::consts::PI;
 
 /// Quadratic V–Orient map of one bend sensor: θ = c2 V² + c1 V + c0, rad.
 #[derive(Debug, Clone, Copy)]

@@ -1,9 +1,10 @@
 //! The program `virtual-due` with the firmware, on a pseudo-terminal, as a process of its own.
 
+use std::env;
+use std::fs;
 use std::io::{BufRead, BufReader, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStdin, Command, Stdio};
-use std::{env, fs};
 
 use crate::build::firmware;
 

@@ -7,7 +7,6 @@ use atsam3x8e_hal::gpio::Split;
 use atsam3x8e_hal::pac::Peripherals;
 use atsam3x8e_hal::uart::{self, Tx};
 use atsam3x8e_hal::{clock, watchdog};
-
 // Its linker script.
 use defmt as _;
 use embedded_io::Write;

@@ -1,5 +1,6 @@
 //! The estimator's step between two calls that a debugger can stop at, `step_begins` and `step_ends`.
 
+use crate::random::Random;
 use atsam3x8e_hal::pac::Peripherals;
 use atsam3x8e_hal::watchdog;
 use estimator_core::{
@@ -7,8 +8,6 @@ use estimator_core::{
     CoupledSegment, CurveMap, Estimator, ImuReading, KNOTS, KalmanParams, Lag, MemoryConfig, OffsetAt, Phase, Play, Q,
     QuadraticMap, SENSORS_PER_SEGMENT, Sample, Scalar, SegmentConfig, TIME_UNIT_S, Turns, UncertaintyConfig, UnitArc,
 };
-
-use crate::random::Random;
 
 /// Samples of each arm that moves, those of the tare included.
 const STEPS: u32 = 1_000;

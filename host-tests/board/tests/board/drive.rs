@@ -5,10 +5,9 @@ use std::io::Read;
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
 
-use virtual_due::rig::{Held, Rail};
-
 use crate::terminal::Terminal;
 use crate::tools::{Running, folder, proprio, replayed, table};
+use virtual_due::rig::{Held, Rail};
 
 /// Half a second up to 60 kPa on module 1's right, a second of that, and a step down to 20 kPa on module 2's left.
 const PROFILE: &str = "time_s,pressure1_kpa,pressure2_kpa,pressure3_kpa,pressure4_kpa,pressure5_kpa,pressure6_kpa\n\
