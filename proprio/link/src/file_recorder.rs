@@ -12,11 +12,9 @@ use telemetry::SetPressures;
 use crate::event::{Event, What};
 use crate::handle::{Link, Subscription};
 
-type FileSink = Recorder<BufWriter<File>>;
-
 /// Recording of a link to a new file.
 pub struct FileRecorder {
-    recorder: FileSink,
+    recorder: Recorder<BufWriter<File>>,
     path: PathBuf,
     clock: HostClock,
 }
@@ -53,11 +51,12 @@ impl FileRecorder {
     /// # Errors
     /// [`Error::Output`].
     pub fn event(&mut self, event: &Event) -> Result<(), Error> {
-        self.write(|recorder, _| match &event.what {
-            What::Bytes(bytes) => recorder.bytes(event.at, bytes),
-            What::Message(message) => recorder.message(event.at, message),
+        let written = match &event.what {
+            What::Bytes(bytes) => self.recorder.bytes(event.at, bytes),
+            What::Message(message) => self.recorder.message(event.at, message),
             _ => Ok(()),
-        })
+        };
+        self.named(written)
     }
 
     /// Writes all events that are waiting.
@@ -76,7 +75,8 @@ impl FileRecorder {
     /// # Errors
     /// [`Error::Output`].
     pub fn set_points(&mut self, requested: &SetPressures) -> Result<(), Error> {
-        self.write(|recorder, now| recorder.set_points(now, requested))
+        let written = self.recorder.set_points(self.clock.now(), requested);
+        self.named(written)
     }
 
     /// Writes a mark that a person has set.
@@ -84,7 +84,8 @@ impl FileRecorder {
     /// # Errors
     /// [`Error::Output`].
     pub fn mark(&mut self, at: HostNs, text: &str) -> Result<(), Error> {
-        self.write(|recorder, _| recorder.mark(at, text))
+        let written = self.recorder.mark(at, text);
+        self.named(written)
     }
 
     /// Writes to the file what has waited for a second; called where no event came.
@@ -92,7 +93,8 @@ impl FileRecorder {
     /// # Errors
     /// [`Error::Output`].
     pub fn flush_if_due(&mut self) -> Result<(), Error> {
-        self.write(Recorder::flush_if_due)
+        let written = self.recorder.flush_if_due(self.clock.now());
+        self.named(written)
     }
 
     /// Completes the file.
@@ -104,9 +106,9 @@ impl FileRecorder {
         recorder.finish().map(drop).map_err(|source| Error::Output { path, source })
     }
 
-    fn write(&mut self, write: impl FnOnce(&mut FileSink, HostNs) -> io::Result<()>) -> Result<(), Error> {
-        let now = self.clock.now();
-        write(&mut self.recorder, now).map_err(|source| Error::Output { path: self.path.clone(), source })
+    /// Names the file in an error.
+    fn named(&self, written: io::Result<()>) -> Result<(), Error> {
+        written.map_err(|source| Error::Output { path: self.path.clone(), source })
     }
 }
 

@@ -106,8 +106,12 @@ impl Work {
     fn run(mut self) -> Result<(), Error> {
         let done = self.work();
         if let Err(error) = &done {
-            let said = Some(error.to_string());
-            *self.shared.failed.lock().unwrap_or_else(PoisonError::into_inner) = said;
+            // The page shows the file's name beside the reason.
+            let reason = match error {
+                Error::Output { source, .. } => source.to_string(),
+                other => other.to_string(),
+            };
+            *self.shared.failed.lock().unwrap_or_else(PoisonError::into_inner) = Some(reason);
         }
         done.and_then(|()| self.recorder.finish())
     }
