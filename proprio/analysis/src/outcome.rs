@@ -9,7 +9,7 @@ use crate::smooth::Smoothed;
 /// The estimator with room for every arm.
 pub type HostEstimator<'t, S> = Estimator<'t, S, MAX_SEGMENTS, { MAX_WINDOW as usize }>;
 
-/// What the estimator says of one row.
+/// Outcome of one row.
 #[derive(Debug, Clone)]
 pub struct Outcome<S> {
     /// The estimate.

@@ -53,7 +53,7 @@ impl Recording {
 /// Replays a session and passes every row with its outcome to `visit`.
 ///
 /// # Errors
-/// What is wrong with the session or the table, and whatever `visit` returns.
+/// Errors of the session, the table and `visit`.
 ///
 /// # Panics
 /// Never: the checks of the table's file are at least as strict as the estimator's.
@@ -103,8 +103,7 @@ impl<'p> SessionRows<'p> {
             self.last_us = row.sample.time_us;
             self.first_us.get_or_insert(self.last_us);
             self.samples += 1;
-            let (done, total) = self.reader.progress();
-            self.progress.advance(&self.work, done, total);
+            self.progress.advance(&self.work, self.reader.progress());
         }
         Ok(row)
     }

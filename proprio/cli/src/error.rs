@@ -1,4 +1,4 @@
-//! Errors that stop a command, and their remedies.
+//! Errors that stop a command; `help/` has their remedies.
 
 use std::io;
 use std::path::PathBuf;
@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use board_core::FULL_SCALE_PA;
 use proprio_link::LinkError;
 use proprio_link::drive::DriveError;
+use proprio_session::DurationError;
 use proprio_simulation::SimulationError;
 
 use crate::flash::FlashError;
@@ -50,8 +51,8 @@ pub enum Error {
     #[error("--out takes the estimates of one session, found {0} sessions")]
     OneSession(usize),
     /// A duration that cannot be recorded or driven.
-    #[error("--seconds {0}, expected more than 0 and at most 10 million")]
-    Seconds(f64),
+    #[error(transparent)]
+    Seconds(#[from] DurationError),
     /// A pressure over the regulators' full scale.
     #[error("--kpa {0}, expected 0 to {most}", most = FULL_SCALE_PA / 1000)]
     Pressure(f64),
@@ -64,12 +65,4 @@ impl From<proprio_session::SessionError> for Error {
     fn from(error: proprio_session::SessionError) -> Self {
         Self::File(error.into())
     }
-}
-
-/// Checks a duration that is recorded or driven, s.
-///
-/// # Errors
-/// [`Error::Seconds`].
-pub fn check_seconds(seconds: f64) -> Result<(), Error> {
-    if seconds > 0.0 && seconds <= 1e7 { Ok(()) } else { Err(Error::Seconds(seconds)) }
 }

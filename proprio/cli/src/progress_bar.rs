@@ -25,7 +25,7 @@ impl Bar {
         Self { shown: ProgressBar::hidden(), work: String::new(), hidden_since: Some(Instant::now()), calls: 0 }
     }
 
-    fn set(&mut self, work: &str, done: u64, total: u64) {
+    fn set(&mut self, work: &str, (done, total): (u64, u64)) {
         if self.hidden_since.is_some_and(|since| since.elapsed() > DELAY) {
             self.hidden_since = None;
             let style = ProgressStyle::with_template("{msg} [{bar:40}] {percent} % {eta} left");
@@ -39,7 +39,7 @@ impl Bar {
 }
 
 impl Progress for Bar {
-    fn advance(&mut self, work: &str, done: u64, total: u64) {
+    fn advance(&mut self, work: &str, done_of_all: (u64, u64)) {
         self.calls += 1;
         if work != self.work {
             // The next piece of work has a delay and an estimate of its own.
@@ -47,12 +47,12 @@ impl Progress for Bar {
             self.shown.finish_and_clear();
             (self.shown, self.hidden_since, self.calls) = (ProgressBar::hidden(), Some(Instant::now()), 0);
         } else if self.calls.is_multiple_of(CALLS) {
-            self.set(work, done, total);
+            self.set(work, done_of_all);
         }
     }
 
-    fn complete(&mut self, work: &str, done: u64, total: u64) {
-        self.set(work, done, total);
+    fn complete(&mut self, work: &str, done_of_all: (u64, u64)) {
+        self.set(work, done_of_all);
     }
 }
 

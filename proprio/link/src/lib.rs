@@ -8,7 +8,7 @@
 //! ```no_run
 //! use std::time::Duration;
 //!
-//! use crate::{Baud, Link, PortSource, What};
+//! use proprio_link::{Baud, Link, PortSource, What};
 //! use telemetry::{Command, Message};
 //!
 //! let (link, events) = Link::start(Box::new(PortSource::new(None, Baud::default())), None)?;
@@ -27,7 +27,7 @@
 //! | `worker.rs` | the thread |
 //! | `intake.rs` | bytes to messages; losses, mismatches and restarts |
 //! | `requests.rs` | ids, answers and repetitions |
-//! | `event.rs`, `queue.rs` | what the thread says, to whom, and when it came |
+//! | `event.rs`, `queue.rs` | events with their time of arrival, and a queue for each subscription |
 //! | `file_recorder.rs` | recording to a file |
 //! | `drive/`, `status.rs` | pressures over time; the state of a board within seconds |
 //! | `source.rs` | where a line comes from, and that it may come again |

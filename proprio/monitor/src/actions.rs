@@ -25,8 +25,8 @@ const VALID_MS: u16 = 500;
 
 type Answer<T> = Result<T, Response>;
 
-/// Runs what may take its time beside the server.
-async fn beside<T: Send + 'static>(work: impl FnOnce() -> T + Send + 'static) -> Answer<T> {
+/// Runs work that blocks on a thread of its own.
+async fn run_blocking<T: Send + 'static>(work: impl FnOnce() -> T + Send + 'static) -> Answer<T> {
     let done = tokio::task::spawn_blocking(work).await;
     done.map_err(|_| (StatusCode::INTERNAL_SERVER_ERROR, "this is a fault of proprio").into_response())
 }
@@ -34,7 +34,7 @@ async fn beside<T: Send + 'static>(work: impl FnOnce() -> T + Send + 'static) ->
 pub(super) async fn history(State(server): State<Server>) -> Answer<impl IntoResponse> {
     #[derive(serde::Serialize)]
     struct Nothing {}
-    let bytes = beside(move || server.shared.history().to_bytes(&Nothing {})).await?;
+    let bytes = run_blocking(move || server.shared.history().to_bytes(&Nothing {})).await?;
     Ok((BYTES, bytes))
 }
 
@@ -43,7 +43,7 @@ pub(super) async fn status(State(server): State<Server>) -> impl IntoResponse {
 }
 
 pub(super) async fn list(State(server): State<Server>) -> Answer<Json<Vec<File>>> {
-    beside(move || Json(server.shared.sessions.list())).await
+    run_blocking(move || Json(server.shared.sessions.list())).await
 }
 
 #[derive(Debug, Deserialize)]
@@ -59,7 +59,7 @@ pub(super) async fn session(State(server): State<Server>, Query(part): Query<Par
     };
     let (from_s, to_s) = (part.from_s.unwrap_or(f64::NEG_INFINITY), part.to_s.unwrap_or(f64::INFINITY));
     let shared = Arc::clone(&server.shared);
-    let rows = beside(move || shared.sessions.rows(&path, from_s, to_s)).await?;
+    let rows = run_blocking(move || shared.sessions.rows(&path, from_s, to_s)).await?;
     Ok((BYTES, rows.map_err(|error| server.failure(&error))?))
 }
 
@@ -88,12 +88,9 @@ pub(super) struct Record {
 
 pub(super) async fn record(State(server): State<Server>, Json(Record { on }): Json<Record>) -> Answer<Response> {
     let shared = Arc::clone(&server.shared);
-    let done =
-        beside(
-            move || {
-                if on { shared.begin_recording().map(|()| shared.recording()) } else { shared.finish_recording() }
-            },
-        );
+    let done = run_blocking(move || {
+        if on { shared.begin_recording().map(|()| shared.recording()) } else { shared.finish_recording() }
+    });
     Ok(Json(done.await?.map_err(|error| server.failure(&error))?).into_response())
 }
 
@@ -144,7 +141,7 @@ pub(super) async fn control(State(server): State<Server>, headers: HeaderMap, bo
         .map_err(Refused::into_response)?;
     let control: Control =
         serde_json::from_slice(&body).map_err(|error| (StatusCode::BAD_REQUEST, error.to_string()).into_response())?;
-    let asked = beside(move || shared.link.as_ref().map(|link| link.request(control.into())));
+    let asked = run_blocking(move || shared.link.as_ref().map(|link| link.request(control.into())));
     match asked.await? {
         Some(done) => done.map_err(|error| server.failure(&error.into())),
         None => Err(Refused::ReadOnly.into_response()),

@@ -39,6 +39,8 @@ use std::thread::JoinHandle;
 
 use calibration_tables::Baked;
 use estimator_core::Q;
+use proprio_link::{Link, Subscription};
+use proprio_session::NamedTable;
 use telemetry::{Command, SEGMENTS, TICK_HZ};
 
 pub use access::Token;
@@ -47,8 +49,6 @@ pub use plain::Plain;
 
 use feed::Arm;
 use hub::Hub;
-use proprio_link::{Link, Subscription};
-use proprio_session::NamedTable;
 use server::Server;
 use sessions::Sessions;
 use shared::Shared;

@@ -10,7 +10,7 @@
 //! | `recording/` | MCAP: written, read, recovered; rows from a board's bytes |
 //! | `convert/` | conversion from one kind to another |
 //! | `clock.rs`, `board_clock.rs`, `boot_tracker.rs` | time of arrival; the board's time on the host's clock; restarts of a board |
-//! | `output.rs`, `progress.rs`, `ellipse.rs` | files that are complete or absent; progress of long work; the 95 % ellipse |
+//! | `duration.rs`, `output.rs`, `progress.rs`, `ellipse.rs` | range of durations; files that are complete or absent; progress of long work; the 95 % ellipse |
 
 mod board_clock;
 mod boot_tracker;
@@ -21,6 +21,7 @@ mod columns;
 pub mod convert;
 mod csv_file;
 mod csv_rows;
+mod duration;
 mod ellipse;
 mod error;
 mod header;
@@ -41,6 +42,7 @@ pub use boot_tracker::{BootTracker, Continuity};
 pub use camera::{CameraReader, Frame};
 pub use clock::{HostClock, HostNs};
 pub use columns::{SENSOR_NAMES, TARE};
+pub use duration::{DurationError, check_seconds};
 pub use ellipse::{CHI2_2_95, Ellipse};
 pub use error::Error;
 pub use header::Header;

@@ -2,11 +2,11 @@
 
 /// Receives the progress of long work.
 pub trait Progress {
-    /// `done` of `total` parts of `work` are done; called once for every row.
-    fn advance(&mut self, work: &str, done: u64, total: u64);
+    /// Of `work`, this number of parts of all is done; called once for every row.
+    fn advance(&mut self, work: &str, done_of_all: (u64, u64));
 
-    /// `done` of `total` parts are done, each of which takes long; `work` may differ from call to call.
-    fn complete(&mut self, work: &str, done: u64, total: u64);
+    /// The same of parts that take long each; `work` may differ from call to call.
+    fn complete(&mut self, work: &str, done_of_all: (u64, u64));
 }
 
 /// Discards the progress.
@@ -14,7 +14,7 @@ pub trait Progress {
 pub struct NoProgress;
 
 impl Progress for NoProgress {
-    fn advance(&mut self, _: &str, _: u64, _: u64) {}
+    fn advance(&mut self, _: &str, _: (u64, u64)) {}
 
-    fn complete(&mut self, _: &str, _: u64, _: u64) {}
+    fn complete(&mut self, _: &str, _: (u64, u64)) {}
 }

@@ -1,5 +1,7 @@
 //! Errors of a simulated session.
 
+use proprio_session::DurationError;
+
 /// A session that cannot be simulated.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum SimulationError {
@@ -7,6 +9,6 @@ pub enum SimulationError {
     #[error("--rate {0} Hz, expected 1 to 1000")]
     Rate(f64),
     /// A duration out of range.
-    #[error("--seconds {0}, expected more than 0 and at most 10 million")]
-    Seconds(f64),
+    #[error(transparent)]
+    Seconds(#[from] DurationError),
 }

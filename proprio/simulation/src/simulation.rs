@@ -1,5 +1,6 @@
 //! The twin as a rig that is recorded: its own duty programme, sampled at a fixed rate.
 
+use proprio_session::check_seconds;
 use rig_twin::{
     BEND_SENSORS, Camera, EndPose, Frame, HeadingDrift, Program, REGULATORS, Rig, SEGMENTS, Scenario, Setup,
 };
@@ -8,9 +9,6 @@ use crate::error::SimulationError;
 
 /// The regulators get a new duty at least this often, s: the firmware's tick.
 const TICK_S: f64 = 0.01;
-
-/// Longest run, s.
-const MAX_SECONDS: f64 = 1e7;
 
 /// What is recorded in one sample.
 #[derive(Debug, Clone, Copy)]
@@ -68,9 +66,7 @@ impl Simulation {
         if !(1.0..=1000.0).contains(&rate_hz) {
             return Err(SimulationError::Rate(rate_hz));
         }
-        if !(seconds > 0.0 && seconds <= MAX_SECONDS) {
-            return Err(SimulationError::Seconds(seconds));
-        }
+        check_seconds(seconds)?;
         let samples = (seconds * rate_hz).round().max(1.0) as u64;
         let (rig, program) = (Rig::of(setup), Program::of(setup));
         Ok(Self { rig, program, rate_hz, samples, next: 0, pause: None, camera: None, frames: Vec::new() })

@@ -30,6 +30,7 @@ mod tests;
 use std::path::Path;
 
 use estimator_core::FusedOps;
+use proprio_session::{NamedTable, Progress, Row};
 
 pub use adjoint::Adjoint;
 pub use backward::SmoothingPass;
@@ -39,7 +40,6 @@ pub use shape::Smoothed;
 use crate::error::Error;
 use crate::outcome::Outcome;
 use crate::replay::{Extent, SessionRows};
-use proprio_session::{NamedTable, Progress, Row};
 
 /// Replays a session with its smoothed estimates, and passes every row with its outcome to `visit`.
 ///

@@ -44,8 +44,7 @@ impl Frames {
             for (end, seen) in frames.ends.iter_mut().zip(frame.ends) {
                 end.push(seen);
             }
-            let (done, total) = reader.progress();
-            progress.advance(&work, done, total);
+            progress.advance(&work, reader.progress());
         }
         if frames.times_s.is_empty() {
             let path = camera.to_owned();

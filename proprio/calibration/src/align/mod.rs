@@ -18,6 +18,8 @@ mod truth;
 
 use std::path::Path;
 
+use proprio_session::{NamedTable, Progress};
+
 pub use error::AlignmentError;
 pub use motion::Sensors;
 pub use truth::Written;
@@ -27,7 +29,6 @@ use coarse::LEAST_OVERLAP_S;
 use fine::{Clocks, Fit};
 use frames::Frames;
 use motion::{Motion, Readings};
-use proprio_session::{NamedTable, Progress};
 
 /// Longest recording, h: memory goes with its length, and a wrong time stamp makes any length.
 const MOST_H: f64 = 24.0;

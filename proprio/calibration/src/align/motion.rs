@@ -87,8 +87,7 @@ impl Readings {
         let work = format!("reading {}", session.display());
         while let Some(row) = reader.next_row()? {
             readings.push(&row);
-            let (done, total) = reader.progress();
-            progress.advance(&work, done, total);
+            progress.advance(&work, reader.progress());
         }
         Ok(readings)
     }

@@ -24,7 +24,7 @@ impl Alignment {
     /// did not see the segment within 0.2 s.
     ///
     /// # Errors
-    /// [`Error::File`], and [`Error::File`] where the session cannot be read again.
+    /// [`Error::File`] where the output cannot be written or the session cannot be read again.
     pub fn write(&self, session: &Path, sink: &mut OutputFile) -> Result<Written, Error> {
         let failed = |source| {
             let problem = Problem::Read(source);

@@ -34,6 +34,7 @@ mod sweep;
 use std::path::PathBuf;
 
 use calibration_tables::ArmFile;
+use proprio_session::{NamedTable, Progress};
 
 pub(crate) use curvature::constant_curvature_error;
 pub use error::{CalibrationError, Warning};
@@ -42,7 +43,6 @@ pub use hysteresis::HysteresisMode;
 pub use maps::{MapKind, MapMode};
 
 use crate::error::Error;
-use proprio_session::{NamedTable, Progress};
 use sweep::Sweep;
 
 /// Truth whose tip lies further from the chain of its own headings than constant curvature explains, % of the length:

@@ -134,8 +134,7 @@ impl Sweep {
         let work = format!("reading {}", session.display());
         while let Some(row) = reader.next_row()? {
             self.push(&row, number, &mut unwrap);
-            let (done, total) = reader.progress();
-            progress.advance(&work, done, total);
+            progress.advance(&work, reader.progress());
         }
         Ok(())
     }

@@ -10,7 +10,7 @@ use num_traits::{One, Zero};
 /// A float and its derivative by one parameter, through every operation of the estimator.
 ///
 /// ```
-/// use crate::tune::Dual;
+/// use proprio_calibration::tune::Dual;
 ///
 /// let r = Dual::new(0.5, 1.0);
 /// let gain = r / (r + r * r);

@@ -24,6 +24,9 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use calibration_tables::{ArmFile, DriftKeys, DriftTuningKeys, Stopped, TuningKeys};
+use proprio_analysis::consistency::Honesty;
+use proprio_analysis::replay::replay;
+use proprio_session::{NamedTable, Progress};
 
 pub use dual::Dual;
 pub use error::TuningError;
@@ -32,10 +35,6 @@ use crate::error::Error;
 use descent::{Iterate, MAX_ITERATIONS, descend};
 use errors::Errors;
 use objective::{Evaluation, Objective, SessionErrors};
-use proprio_analysis::consistency::Honesty;
-use proprio_analysis::replay::replay;
-use proprio_session::NamedTable;
-use proprio_session::Progress;
 use search::{MAX_RUNS, filter_at, search};
 use training::{Part, Training};
 
@@ -61,8 +60,7 @@ impl<'t> Tuner<'t> {
     /// Reads the training sessions.
     ///
     /// # Errors
-    /// [`Error::File`] and [`Error::Tuning`] where a session cannot be used, [`Error::File`] and [`Error::Tuning`] where
-    /// the table has no filters.
+    /// [`Error::File`] and [`Error::Tuning`] where a session cannot be used or the table has no filters.
     pub fn new(sessions: &[PathBuf], table: &'t NamedTable, progress: &mut dyn Progress) -> Result<Self, Error> {
         let has_bend_sensors = table.needs()?.bend.iter().any(|sensors| *sensors != Some(0));
         if !has_bend_sensors {
@@ -131,7 +129,7 @@ impl<'t> Tuner<'t> {
             self.objective.measure(&table);
             let found = self.objective.of_table(&table);
             runs += 1;
-            progress.complete(&format!("tuning the bias filter: {}", told(&found)), runs, MAX_RUNS as u64);
+            progress.complete(&format!("tuning the bias filter: {}", summary(&found)), (runs, MAX_RUNS as u64));
             if is_interrupted() {
                 stopped = Stopped::Interrupted;
                 return None;
@@ -168,7 +166,7 @@ impl<'t> Tuner<'t> {
             |place| self.objective.at(place),
             self.objective.start(table),
             |iterate| {
-                progress.complete(&format!("tuning: {}", told(&iterate.found)), iterate.number, MAX_ITERATIONS);
+                progress.complete(&format!("tuning: {}", summary(&iterate.found)), (iterate.number, MAX_ITERATIONS));
                 let is_best = |best: &Iterate| iterate.found.held_back_loss < best.found.held_back_loss;
                 if best.as_ref().is_none_or(is_best) {
                     best = Some(iterate.clone());
@@ -223,7 +221,7 @@ struct Tuned {
 }
 
 /// The errors on the training part, for people.
-fn told(of: &Evaluation) -> String {
+fn summary(of: &Evaluation) -> String {
     let rmse = pooled(of, |session| &session.training).keys();
     format!("RMSE of the tip {:.2} mm, of headings {:.2} deg", rmse.tip_rmse_mm, rmse.heading_rmse_deg)
 }

@@ -106,8 +106,7 @@ impl Training {
             samples.push(row.sample);
             measured.extend(row.truth.iter().take(segments.len()).map(|truth| Measured::unknown(*truth)));
             starts.push(row.starts);
-            let (done, total) = reader.progress();
-            progress.advance(&work, done, total);
+            progress.advance(&work, reader.progress());
         }
         let mut training = Self {
             path: session.to_owned(),

@@ -10,7 +10,7 @@ use crate::args::{Calibrate, HysteresisName, MapName};
 use crate::error::Error;
 use crate::progress_bar::Bar;
 use crate::terminal;
-use crate::text_tables as tables;
+use crate::text_tables;
 
 pub fn run(args: &Calibrate) -> Result<(), Error> {
     let arm = NamedTable::load(&args.arm)?;
@@ -24,10 +24,10 @@ pub fn run(args: &Calibrate) -> Result<(), Error> {
     }
     file.write_all(calibration.table.to_toml().as_bytes()).map_err(|error| file.error(error))?;
     // Last, so that a command that fails leaves no file.
-    terminal::print(&tables::sensors(&calibration.sensors))?;
-    terminal::print(&tables::segments(&calibration.segments))?;
+    terminal::print(&text_tables::sensors(&calibration.sensors))?;
+    terminal::print(&text_tables::segments(&calibration.segments))?;
     if let Some(held_out) = &calibration.held_out {
-        terminal::print(&tables::held_out(held_out))?;
+        terminal::print(&text_tables::held_out(held_out))?;
     }
     Ok(file.finish()?)
 }

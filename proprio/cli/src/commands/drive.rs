@@ -7,11 +7,12 @@ use board_core::FULL_SCALE_PA;
 use proprio_link::drive::{DriveError, Driver, PERIOD, Profile, Ramp};
 use proprio_link::status::Status;
 use proprio_link::{FileRecorder, Subscription, What};
+use proprio_session::check_seconds;
 use telemetry::{Message, REGULATORS};
 
 use super::link;
 use crate::args::Drive;
-use crate::error::{Error, check_seconds};
+use crate::error::Error;
 use crate::interrupt::ShutdownGuard;
 use crate::status_line::{StatusLine, time};
 use crate::terminal;

@@ -3,11 +3,12 @@
 use std::time::{Duration, Instant};
 
 use proprio_link::{FileRecorder, Link, LinkError, Subscription, What};
+use proprio_session::check_seconds;
 use telemetry::Counts;
 
 use super::link;
 use crate::args::Record;
-use crate::error::{Error, check_seconds};
+use crate::error::Error;
 use crate::interrupt::ShutdownGuard;
 use crate::status_line::{StatusLine, time};
 

@@ -15,7 +15,7 @@ use crate::args::Replay;
 use crate::error::Error;
 use crate::progress_bar::Bar;
 use crate::terminal;
-use crate::text_tables as tables;
+use crate::text_tables;
 
 pub fn run(args: &Replay) -> Result<(), Error> {
     if args.out.is_some() && args.sessions.len() != 1 {
@@ -37,7 +37,7 @@ pub fn run(args: &Replay) -> Result<(), Error> {
             "fixed point saturated {times} times: a reading or the table is out of range; compare with --float"
         )),
     }
-    let text = if args.json { terminal::json(&figures) } else { tables::replay(&figures) };
+    let text = if args.json { terminal::json(&figures) } else { text_tables::replay(&figures) };
     // The file gets its name last, so that a command that fails leaves none.
     terminal::print(&text)?;
     Ok(out.map_or(Ok(()), EstimateWriter::finish)?)

@@ -39,7 +39,7 @@ pub fn run(args: &Simulate) -> Result<(), Error> {
             frames.try_for_each(|frame| camera.write(&frame)).map_err(to_write(path))?;
         }
         done += 1;
-        progress.advance("simulating", done, total);
+        progress.advance("simulating", (done, total));
     }
     camera.map_or(Ok(()), |camera| camera.into_inner().finish())?;
     Ok(session.into_inner().finish()?)

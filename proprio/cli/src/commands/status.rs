@@ -8,7 +8,7 @@ use telemetry::{SensorHealth, SensorState};
 use super::link;
 use crate::error::Error;
 use crate::terminal;
-use crate::{args, text_tables as tables};
+use crate::{args, text_tables};
 
 pub fn run(args: &args::Status) -> Result<(), Error> {
     let (table, link, events) = link::open(&args.link)?;
@@ -70,7 +70,7 @@ fn screen(status: &Status) -> String {
         ("IMUs", sensors(&health.imu, |i| (i + 1).to_string())),
     ];
     let notes = status.mismatches.iter().map(|mismatch| format!("\nnote: {mismatch}\n"));
-    tables::pairs(&lines) + &notes.collect::<String>()
+    text_tables::pairs(&lines) + &notes.collect::<String>()
 }
 
 fn up(tick: u32) -> String {

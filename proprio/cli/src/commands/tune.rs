@@ -12,7 +12,7 @@ use crate::error::Error;
 use crate::interrupt::ShutdownGuard;
 use crate::progress_bar::Bar;
 use crate::terminal;
-use crate::text_tables as tables;
+use crate::text_tables;
 
 pub fn run(args: &Tune) -> Result<(), Error> {
     let table = NamedTable::load(&args.table)?;
@@ -29,7 +29,7 @@ pub fn run(args: &Tune) -> Result<(), Error> {
     warnings(&record).for_each(|warning| terminal::warn(&warning));
     file.write_all(table.to_toml().as_bytes()).map_err(|error| file.error(error))?;
     // Last, so that a command that fails leaves no file.
-    terminal::print(&tables::tuning(&record, iteration_time))?;
+    terminal::print(&text_tables::tuning(&record, iteration_time))?;
     Ok(file.finish()?)
 }
 

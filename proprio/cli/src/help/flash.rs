@@ -41,10 +41,10 @@ fn install(program: &str) -> &'static str {
 fn look(program: &str) -> &'static str {
     match program {
         "bossac" => {
-            "close what has the port open; docs/FLASHING.md, Trouble, tells what each of its errors means. The flash may be \
+            "close what has the port open; docs/FLASHING.md, Trouble, explains each of its errors. The flash may be \
              erased, which flashing again mends"
         }
         "probe-rs" => "check the probe's cable and the board's supply; docs/FLASHING.md, Trouble",
-        _ => "what it says above tells why; `rustup target add thumbv7m-none-eabi` if the target is missing",
+        _ => "its message above has the reason; `rustup target add thumbv7m-none-eabi` if the target is missing",
     }
 }

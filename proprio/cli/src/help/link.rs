@@ -21,12 +21,12 @@ impl Help for LinkError {
             }
             Self::Start { .. } => "build it again, or let PROPRIO_VIRTUAL_DUE name it",
             Self::Thread(_) => "close other programs",
-            Self::Ended(_) => "look at what the board or its program says",
+            Self::Ended(_) => "see the messages of the board or its program",
             Self::Silent { .. } => {
                 "check that the firmware is on the board (docs/FLASHING.md) and that this is its programming port"
             }
             Self::Request(RequestError::Refused(_)) => "do what the board asks for first",
-            Self::Request(_) => "try again; `proprio status` tells how the board is",
+            Self::Request(_) => "try again; `proprio status` shows the state of the board",
         };
         help.to_owned()
     }
@@ -49,11 +49,11 @@ impl Help for DriveError {
         let help = match self {
             Self::OtherTable(_) => "put this table onto the board with `proprio flash --table`, or give the board's",
             Self::Crashed(_) => "air off until it is understood; a second `proprio drive` takes it for understood",
-            Self::Blind => "`proprio status` tells how each of them is",
+            Self::Blind => "`proprio status` shows the state of each",
             Self::HeldBack { .. } => {
                 "see whether sensors are lost (`proprio status`); after three crashes a power cycle ends the safe mode"
             }
-            Self::Restarted => "`proprio status` tells what restarted it",
+            Self::Restarted => "`proprio status` shows the reason of the restart",
             Self::Lost(_) => "check the cable",
             Self::Link(error) => return error.help(),
         };

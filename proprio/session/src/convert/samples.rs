@@ -27,8 +27,7 @@ impl<'p> Samples<'p> {
     /// The next row with its sample and the frame that holds it.
     pub fn next(&mut self) -> Result<Option<(Vec<u8>, Sample, Row)>, Error> {
         let Some(row) = self.reader.next_row()? else { return Ok(None) };
-        let (done, total) = self.reader.progress();
-        self.progress.advance(super::WORK, done, total);
+        self.progress.advance(super::WORK, self.reader.progress());
         if row.starts && self.tick > 0 {
             self.tare = self.tare.wrapping_add(1);
         }

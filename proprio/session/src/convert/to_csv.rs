@@ -28,8 +28,7 @@ pub fn write(
         starts += u64::from(row.starts);
         estimates += u64::from(row.board.is_some_and(|board| board.estimate.is_some()));
         layout.write_row(&mut file, &row, starts.saturating_sub(1)).map_err(|error| file.error(error))?;
-        let (done, total) = reader.progress();
-        progress.advance(super::WORK, done, total);
+        progress.advance(super::WORK, reader.progress());
     }
     let arrival = if reader.kind() == Kind::Recording { ", the times of arrival" } else { "" };
     let mut left_out =
