@@ -8,7 +8,7 @@ use telemetry::SegmentEstimate;
 use crate::board::Board;
 
 /// Looks from one line to the next where the output is no terminal.
-const LOOKS_PER_LINE: u64 = 300;
+const LOOKS_PER_LINE: u64 = 100;
 
 /// What shows it: a block that is drawn over in a terminal, else a line now and then.
 pub struct View {
