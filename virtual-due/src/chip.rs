@@ -4,10 +4,11 @@ use crate::clock::Clock;
 use crate::cpu::{Access, Bus};
 use crate::dwt::Dwt;
 use crate::engine::DWT;
-use crate::memory_map::{BANK, FLASH, Memories};
-use crate::model::{Cause, Context, Cycles, Peripheral, Signal, World};
-use crate::peripherals::{Directory, Slot};
-use crate::report::Report;
+use crate::memory_map::Memories;
+use crate::peripheral_map::{Directory, Slot};
+use sam3x_models::Report;
+use sam3x_models::flash::{BANK, FLASH};
+use sam3x_models::model::{Cause, Context, Cycles, Peripheral, Signal, World};
 
 const NEVER: Cycles = Cycles::MAX;
 
@@ -42,7 +43,7 @@ impl<W: World> Chip<W> {
     /// The chip with this world, before its first reset.
     pub fn new(world: W) -> Self {
         let memories = Memories::new();
-        let slots = crate::peripherals::all(&memories);
+        let slots = crate::peripheral_map::all(&memories);
         let master_clock_hz = 4_000_000;
         Self {
             clock: Clock::new(master_clock_hz),

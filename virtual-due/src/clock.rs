@@ -1,6 +1,6 @@
 //! The board's time: what instructions and sleep add up to.
 
-use crate::model::{CYCLES_PER_SECOND, Cycles};
+use sam3x_models::model::{CYCLES_PER_SECOND, Cycles};
 
 /// Time is kept in fifths of a cycle of 84 MHz, and an instruction is worth seven fifths of a core cycle: 1.4 cycles,
 /// the mean of Cortex-M3 code from the Due's flash. At 84 MHz no rounding exists.

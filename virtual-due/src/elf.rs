@@ -1,9 +1,9 @@
 //! A firmware's ELF file: what goes into flash, and its symbols.
 
-use crate::memory_map::{BANK, FLASH};
 use object::elf::{EM_ARM, FileHeader32, PT_LOAD};
 use object::read::elf::{ElfFile32, FileHeader, ProgramHeader};
 use object::{Endianness, Object, ObjectSymbol};
+use sam3x_models::flash::{BANK, FLASH};
 use std::collections::BTreeMap;
 
 /// Why a file is no firmware for this board.

@@ -4,7 +4,7 @@
 //!  Machine ──► Cpu (engine.rs: a JIT for Cortex-M3)
 //!     │            │ loads and stores that no memory answers
 //!     ▼            ▼
-//!   Chip: bus, time, interrupt lines ──► peripherals/…, each behind `model::Peripheral`
+//!   Chip: bus, time, interrupt lines ──► the crate `sam3x-models`, each model behind `model::Peripheral`
 //!                                           │ pins, ADC, I²C, serial
 //!                                           ▼
 //!                                     World: rig/…, the arm with its sensors and regulators
@@ -28,13 +28,11 @@ mod engine;
 mod machine;
 mod memory;
 mod memory_map;
-pub mod model;
-mod peripherals;
-mod report;
+mod peripheral_map;
 pub mod rig;
 
 pub use elf::ElfError;
 pub use machine::{Machine, Reset};
-pub use model::{CYCLES_PER_SECOND, Cause, Cycles};
-pub use report::Report;
 pub use rig::Rig;
+pub use sam3x_models::Report;
+pub use sam3x_models::model::{self, CYCLES_PER_SECOND, Cause, Cycles};

@@ -4,7 +4,7 @@ use crate::chip::Chip;
 use crate::cpu::{Bus, Cpu, Stop};
 use crate::elf::{Elf, ElfError};
 use crate::engine::Engine;
-use crate::model::{Cause, Cycles, Memory, World};
+use sam3x_models::model::{Cause, Cycles, Memory, World};
 
 /// A reset that happened.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -183,7 +183,7 @@ impl<W: World> Machine<W> {
 
     /// Board time in seconds.
     pub fn seconds(&self) -> f64 {
-        self.now() as f64 / crate::model::CYCLES_PER_SECOND as f64
+        self.now() as f64 / sam3x_models::model::CYCLES_PER_SECOND as f64
     }
 
     /// Instructions retired since power-on, sleep not counted.

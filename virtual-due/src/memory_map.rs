@@ -3,13 +3,10 @@
 use crate::cpu::Cpu;
 use crate::engine::Engine;
 use crate::memory::Region;
-use crate::model::Memory;
+use sam3x_models::flash::{BANK, FLASH, FlashBank};
+use sam3x_models::model::Memory;
 use std::rc::Rc;
 
-/// Start of flash: two banks of [`BANK`] bytes.
-pub const FLASH: u32 = 0x0008_0000;
-/// Bytes in a bank of flash.
-pub const BANK: u32 = 0x4_0000;
 const ROM: u32 = 0x0010_0000;
 const SRAM0: u32 = 0x2000_0000;
 const SRAM0_BYTES: u32 = 0x1_0000;
@@ -117,6 +114,20 @@ impl Memories {
     }
 }
 
+impl FlashBank for Region {
+    fn read(&self, offset: usize, to: &mut [u8]) -> bool {
+        self.read(offset, to)
+    }
+
+    fn write(&self, offset: usize, from: &[u8]) -> bool {
+        self.write(offset, from)
+    }
+
+    fn fill(&self, byte: u8) {
+        self.fill(byte);
+    }
+}
+
 /// Runs `part` with each piece of a range that may cross from one memory into the next.
 fn pieces(address: u32, length: usize, mut part: impl FnMut(u32, std::ops::Range<usize>) -> bool) -> bool {
     let mut done = 0;
@@ -150,7 +161,7 @@ impl Memory for Memories {
 #[cfg(test)]
 mod tests {
     use super::{Memories, SRAM0};
-    use crate::model::Memory;
+    use sam3x_models::model::Memory;
 
     #[test]
     fn ram_is_one_piece_across_both_srams() {

@@ -1,7 +1,7 @@
 //! The simulated arm in virtual time, and the pins that command its pressure regulators.
 
-use crate::model::Cycles;
 use rig_twin::{Program, REGULATORS, Rig as Twin, Scenario};
+use sam3x_models::model::Cycles;
 
 /// The twin's own grid, s and cycles.
 const GRID_S: f64 = 0.002;

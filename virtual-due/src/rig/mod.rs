@@ -21,10 +21,10 @@ mod serial;
 mod tca9548a;
 mod wires;
 
-use crate::model::{Cycles, I2c, Pin, Reception, World};
 use arm::Arm;
 pub use faults::{Faults, Held, ImuFault, MuxFault, Rail};
 use rig_twin::{EndPose, REGULATORS, SEGMENTS, Scenario};
+use sam3x_models::model::{Cycles, I2c, Pin, Reception, World};
 use sensors::Sensors;
 use serial::Port;
 use wires::{NoDevices, Wires};

@@ -3,8 +3,8 @@
 use super::bno055::Bno055;
 use super::faults::{Faults, ImuFault};
 use super::tca9548a::Tca9548a;
-use crate::model::Cycles;
 use rig_twin::SEGMENTS;
+use sam3x_models::model::Cycles;
 
 /// The devices, and which of them the master talks to.
 #[derive(Debug, Clone)]

@@ -1,6 +1,6 @@
 //! The far ends of the serial ports.
 
-use crate::model::{Cycles, Reception};
+use sam3x_models::model::{Cycles, Reception};
 use std::collections::VecDeque;
 
 /// What has come from a port and what is on its way to it.

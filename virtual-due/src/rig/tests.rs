@@ -1,8 +1,8 @@
 #![expect(clippy::float_cmp, reason = "set-points are exact")]
 
 use super::{Held, ImuFault, MUX_RESET, MuxFault, PIOC, Pin, Rail, Rig, SCL, SDA};
-use crate::model::{CYCLES_PER_SECOND, Cycles, I2c, World};
 use rig_twin::Scenario;
+use sam3x_models::model::{CYCLES_PER_SECOND, Cycles, I2c, World};
 
 const SECOND: Cycles = CYCLES_PER_SECOND;
 const D6: Pin = Pin { port: PIOC, line: 24 };

@@ -1,7 +1,7 @@
 //! SDA, SCL and RESET: as the TWI uses them, and as a firmware moves them by hand.
 
 use super::{Held, Rig};
-use crate::model::{Cycles, I2c};
+use sam3x_models::model::{Cycles, I2c};
 
 /// Whether a GPIO lets the wires rise.
 #[derive(Debug, Clone)]

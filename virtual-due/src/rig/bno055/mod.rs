@@ -3,9 +3,9 @@
 mod fusion;
 mod registers;
 
-use crate::model::{CYCLES_PER_SECOND, Cycles};
 use fusion::{Fusion, gravity};
 use registers::Registers;
+use sam3x_models::model::{CYCLES_PER_SECOND, Cycles};
 
 /// From power to the first answer (data sheet table 0-2).
 const POWER_ON: Cycles = ms(400);

@@ -1,5 +1,5 @@
 use super::{Bno055, CONFIG, ms};
-use crate::model::Cycles;
+use sam3x_models::model::Cycles;
 
 const TURNED: [i16; 4] = [13107, 0, 0, 9830];
 
