@@ -2,7 +2,7 @@
 //!
 //! ```text
 //!  Machine ──► Cpu (engine.rs: a JIT for Cortex-M3)
-//!     │            │ loads and stores that no memory answers
+//!     │            │ loads and stores outside memory
 //!     ▼            ▼
 //!   Chip: bus, time, interrupt lines ──► the crate `sam3x-models`, each model behind `model::Peripheral`
 //!                                           │ pins, ADC, I²C, serial
@@ -12,11 +12,11 @@
 //!
 //! Time is virtual: cycles of 84 MHz since power-on. An instruction takes 1.4 cycles of the core clock, so that a busy wait
 //! of two instructions a turn, three cycles on silicon, ends 7 % early; sleep costs nothing. The models follow the datasheet
-//! of the SAM3X/A (Atmel 11057C), whatever firmware runs; what they leave out is reported once. Two runs of the same
-//! firmware, world and input do the same.
+//! of the SAM3X/A (Atmel 11057C), not a particular firmware; use of parts that they leave out is reported once. Two runs of
+//! the same firmware, world and input are identical.
 //!
-//! Not modelled: HSMCI, EMAC, CAN, DMAC and the memory controllers read as zero; SPI, SSC and DACC are ready at once for
-//! what goes nowhere; the native USB port never sees a host; flash wait states and the bus matrix cost no time; the RTC's
+//! Not modelled: HSMCI, EMAC, CAN, DMAC and the memory controllers read as zero; SPI, SSC and DACC are always ready, and
+//! their data are lost; the native USB port never has a host; flash wait states and the bus matrix cost no time; the RTC's
 //! time and calendar events.
 
 mod chip;

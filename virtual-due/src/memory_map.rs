@@ -1,4 +1,4 @@
-//! Where memories are (datasheet 7, "Product mapping", and 9.1).
+//! The chip's memories and their addresses (datasheet 7, "Product mapping", and 9.1).
 
 use crate::cpu::Cpu;
 use crate::engine::Engine;
@@ -13,7 +13,7 @@ const SRAM0_BYTES: u32 = 0x1_0000;
 const SRAM1: u32 = 0x2008_0000;
 const NFC_SRAM: u32 = 0x2010_0000;
 
-/// What a new chip has in ROM where a program relies on it: the vector table of a boot loader that waits for ever, and at
+/// Parts of a new chip's ROM that programs rely on: the vector table of a boot loader that waits endlessly, and at
 /// 0x0010_0008 the address of the In-Application Programming function, `status = iap(bank, command)`, which writes
 /// EEFC_FCR and waits for FRDY (datasheet 18.4.5, as Thumb code).
 const ROM_CODE: [(usize, &[u16]); 3] = [
@@ -34,7 +34,7 @@ pub struct Memories {
     sram0: Rc<Region>,
     sram1: Rc<Region>,
     nfc_sram: Rc<Region>,
-    /// What was written since the CPU was last told: start and length.
+    /// Pieces of memory that were written and not reported to the CPU yet: start and length.
     pub changed: Vec<(u32, u32)>,
     booted_from_flash: Option<bool>,
 }
@@ -76,7 +76,7 @@ impl Memories {
         cpu.map(NFC_SRAM, &self.nfc_sram, true);
     }
 
-    /// Maps what is at address 0 after a reset, flash or ROM (datasheet 9.1.4), and gives stack pointer and entry.
+    /// Maps flash or ROM at address 0 after a reset (datasheet 9.1.4); returns stack pointer and entry.
     pub fn boot(&mut self, cpu: &mut Engine, from_flash: bool) -> (u32, u32) {
         if self.booted_from_flash.replace(from_flash) != Some(from_flash) {
             cpu.map(0, if from_flash { &self.flash[0] } else { &self.rom }, false);
@@ -92,7 +92,7 @@ impl Memories {
         (sp, entry)
     }
 
-    /// Writes to any memory, flash too, as a debugger does; false where there is none.
+    /// Writes to any memory, flash too, as a debugger does; false outside memory.
     pub fn load(&mut self, address: u32, bytes: &[u8]) -> bool {
         let Some((region, offset, _)) = self.locate(address) else { return false };
         let done = region.write(offset, bytes);

@@ -1,4 +1,4 @@
-//! The chip's peripherals: which there are, where, and on which interrupt line (datasheet 9.1 and 7).
+//! The chip's peripherals, with their addresses and interrupt lines (datasheet 9.1 and 7).
 
 use crate::memory_map::Memories;
 use sam3x_models::flash::{BANK, FLASH};
@@ -8,7 +8,7 @@ use sam3x_models::{
     Usart, Wdt,
 };
 
-/// A peripheral in its place.
+/// A peripheral at its address.
 pub struct Slot {
     pub name: &'static str,
     /// Address of its first register.
@@ -16,13 +16,13 @@ pub struct Slot {
     bytes: u32,
     /// Its interrupt line, which is its identifier too; the first of several.
     pub line: u16,
-    /// Identifiers of which at least one has to be on in the PMC for it to run, a bit each; 0: it always runs.
+    /// Identifiers, a bit each, of which at least one has to be enabled in the PMC for it to run; 0: it always runs.
     gate: u64,
     pub model: Box<dyn Peripheral>,
 }
 
 impl Slot {
-    /// Whether it runs with these clocks on.
+    /// True if it runs with these clocks enabled.
     pub fn clock_runs(&self, clocks: u64) -> bool {
         self.gate == 0 || self.gate & clocks != 0
     }
@@ -106,11 +106,11 @@ const BRIDGE_STEP: u32 = 0x4000;
 const SYSTEM: u32 = 0x400E_0000;
 const SYSTEM_STEP: u32 = 0x10;
 
-/// Which peripheral answers at an address.
+/// Lookup of the peripheral at an address.
 pub struct Directory {
     bridge: [u8; 0x33],
     system: [u8; 0x200],
-    /// The ADC, which listens to timers and the PWM.
+    /// The ADC, which timers and the PWM trigger.
     pub adc: Option<usize>,
     /// The two flash controllers.
     pub eefc: [usize; 2],

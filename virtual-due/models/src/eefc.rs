@@ -1,6 +1,6 @@
 //! EEFC: a bank of flash and its controller (datasheet 18).
 //!
-//! Beside its registers the model answers stores to its bank, at the bank's own addresses: they fill the latch buffer.
+//! The model also receives stores to its bank, at the bank's own addresses: they fill the latch buffer.
 
 use crate::flash::{BANK, FLASH, FlashBank};
 use crate::model::{CYCLES_PER_SECOND, Context, Cycles, Peripheral, Signal};
@@ -48,13 +48,13 @@ pub struct Eefc {
     flash: Rc<dyn FlashBank>,
     mode: u32,
     status: u32,
-    /// When the command under way ends.
+    /// End of the command under way.
     ready: Option<Cycles>,
     results: Vec<u32>,
     latch: [u8; LATCH],
     locks: u32,
     gpnvm: u32,
-    /// What the unique identifier hides, while it is being read.
+    /// Bytes of the bank that the unique identifier replaces while it is being read.
     hidden: Option<[u8; 16]>,
 }
 
@@ -95,7 +95,7 @@ impl Eefc {
         }
     }
 
-    /// Does a command; false if there is none such (datasheet 18.4.3).
+    /// Executes a command; false if it does not exist (datasheet 18.4.3).
     fn execute(&mut self, command: u32, argument: u32, context: &mut Context) -> bool {
         if self.hidden.is_some() && command != 0x0F {
             return false;
@@ -160,7 +160,7 @@ impl Eefc {
         }
         if (self.mode >> 8 & 0xF) < 6 {
             let text = "flash is programmed with fewer than 6 wait states: a real chip may write garbage".to_owned();
-            context.report.once(text);
+            context.report.warn_once(text);
         }
         context.signals.push(Signal::Flash(self.base + page * PAGE, PAGE));
         self.begin(if erase { ERASE_WRITE } else { WRITE }, context);
@@ -191,7 +191,7 @@ impl Eefc {
             let name = self.name();
             context
                 .report
-                .once(format!("{name}: {states} wait states at {hz} Hz: a real chip reads garbage from flash"));
+                .warn_once(format!("{name}: {states} wait states at {hz} Hz: a real chip reads garbage from flash"));
         }
     }
 }
@@ -221,7 +221,7 @@ impl Peripheral for Eefc {
                 self.check_wait_states(context.master_clock_hz, context);
             }
             FCR if self.ready.is_none() => self.command(value, context),
-            FCR => context.report.once(format!("{}: a command while another is under way", self.name())),
+            FCR => context.report.warn_once(format!("{}: a command while another is under way", self.name())),
             FLASH.. => {
                 let at = (offset & (PAGE - 1) & !3) as usize;
                 self.latch[at..at + 4].copy_from_slice(&value.to_le_bytes());
@@ -296,7 +296,7 @@ mod tests {
         bench.run(ERASE_WRITE);
         assert_eq!(bench.read(FSR), FRDY);
         assert_eq!(page(&bench, 7), [0x78, 0x56, 0x34, 0x12]);
-        assert_eq!(bench.told(), [Signal::Flash(FLASH + 7 * PAGE, PAGE)]);
+        assert_eq!(bench.signalled(), [Signal::Flash(FLASH + 7 * PAGE, PAGE)]);
         // The latch buffer is erased after use.
         command(&mut bench, 3, 7);
         assert_eq!(page(&bench, 7), [0xFF; 4]);
@@ -313,7 +313,7 @@ mod tests {
     }
 
     #[test]
-    fn a_locked_page_stays_and_flocke_says_so() {
+    fn a_locked_page_is_kept_and_sets_flocke() {
         let mut bench = bank();
         command(&mut bench, 8, 64);
         assert_eq!(command(&mut bench, 10, 0), FRDY);

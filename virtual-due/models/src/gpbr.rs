@@ -1,4 +1,4 @@
-//! GPBR: eight words that keep their value over every reset but that of power-on (datasheet 18).
+//! GPBR: eight words that keep their value over every reset except power-on (datasheet 18).
 
 use crate::model::{Context, Peripheral};
 

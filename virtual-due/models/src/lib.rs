@@ -1,8 +1,8 @@
 //! Models of the SAM3X8E's peripherals, from the datasheet (SAM3X/A, Atmel 11057C).
 //!
-//! A model is a [`model::Peripheral`]: registers that are read and written, an instant of its next event, interrupt lines.
+//! A model is a [`model::Peripheral`]: registers that are read and written, the instant of its next event, interrupt lines.
 //! It is called with a [`model::Context`]: the time, the master clock, the chip's memory and the [`model::World`] on its
-//! pins. The models know no CPU engine and no board; `virtual-due` connects them to both. They share no code with the
+//! pins. The models depend on no CPU engine and no board; `virtual-due` connects them to both. They share no code with the
 //! drivers of `atsam3x8e-hal`, so that the two do not share mistakes.
 //!
 //! | section | peripherals |

@@ -1,35 +1,35 @@
-//! What a model of a peripheral is, and what it sees of the rest of the board. No model knows the CPU engine.
+//! The interface of a peripheral's model, and of the rest of the board to the models. It does not depend on the CPU engine.
 
 use crate::report::Report;
 
-/// An instant, or a span of time: cycles of 84 MHz since power-on, whatever the master clock is.
+/// An instant, or a span of time: cycles of 84 MHz since power-on, at any master clock.
 pub type Cycles = u64;
 
 /// Cycles in a second.
 pub const CYCLES_PER_SECOND: Cycles = 84_000_000;
 
-/// A peripheral as the bus, the interrupt controller and time see it.
+/// Model of a peripheral, for the bus, the interrupt controller and the scheduler of events.
 ///
 /// Registers are 32 bits wide; the bus turns narrower accesses into these. Before every access the model is brought up
 /// to the access's time by [`advance`](Self::advance).
 pub trait Peripheral {
-    /// The value of the register at `offset`; what reading clears is cleared.
+    /// Reads the register at `offset`, and clears the bits that reading clears.
     fn read(&mut self, offset: u32, context: &mut Context) -> u32;
 
     /// Writes the register at `offset`.
     fn write(&mut self, offset: u32, value: u32, context: &mut Context);
 
-    /// Does all that happens up to `context.now`.
+    /// Advances the model to `context.now`.
     fn advance(&mut self, context: &mut Context) {
         let _ = context;
     }
 
-    /// The next instant at which this model does something of its own, if it knows one.
+    /// The next instant at which the model has to be advanced, if any.
     fn next_event(&self) -> Option<Cycles> {
         None
     }
 
-    /// Whether the interrupt line is raised: status and mask.
+    /// True if the interrupt line is raised: status and mask.
     fn interrupt(&self) -> bool {
         false
     }
@@ -40,16 +40,16 @@ pub trait Peripheral {
         u32::from(self.interrupt())
     }
 
-    /// Something happened elsewhere in the chip.
+    /// Receives a signal from elsewhere in the chip.
     fn signal(&mut self, signal: Signal, context: &mut Context) {
         let _ = (signal, context);
     }
 
-    /// As the chip's reset leaves it.
+    /// Sets the state after the chip's reset.
     fn reset(&mut self);
 }
 
-/// What a model is lent while it is called.
+/// The rest of the board, lent to a model while it is called.
 pub struct Context<'a> {
     /// Time now.
     pub now: Cycles,
@@ -57,15 +57,15 @@ pub struct Context<'a> {
     pub master_clock_hz: u32,
     /// The chip's memory, for the PDC.
     pub memory: &'a mut dyn Memory,
-    /// What is wired to the chip's pins.
+    /// The devices on the chip's pins.
     pub world: &'a mut dyn World,
-    /// Where unmodelled registers and the like are reported.
+    /// Receives warnings, such as accesses to unmodelled registers.
     pub report: &'a mut Report,
-    /// What the model tells the rest of the chip, which hears it as soon as the call returns.
+    /// Signals to the rest of the chip, dispatched as soon as the call returns.
     pub signals: &'a mut Vec<Signal>,
 }
 
-/// What a model tells the rest of the chip.
+/// A signal from a model to the rest of the chip.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Signal {
     /// A timer channel's TIOA rose: 0…8 for TC0…TC8.
@@ -93,23 +93,23 @@ pub enum Signal {
     Reset(Cause),
 }
 
-/// What caused a reset, as RSTC_SR.RSTTYP counts (datasheet 12.5.2).
+/// Cause of a reset, with the values of RSTC_SR.RSTTYP (datasheet 12.5.2).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Cause {
     /// Power came up.
     General = 0,
     /// Out of backup mode.
     Backup = 1,
-    /// The watchdog was not fed.
+    /// The watchdog was not restarted in time.
     Watchdog = 2,
-    /// The firmware asked.
+    /// A request of the firmware.
     Software = 3,
     /// NRST was held low: the reset button, or the USB bridge when a host opens the port.
     User = 4,
 }
 
 impl Context<'_> {
-    /// How long `count` periods of the master clock take now.
+    /// Duration of `count` periods of the master clock at its present frequency.
     pub fn master_cycles(&self, count: u64) -> Cycles {
         (u128::from(count) * u128::from(CYCLES_PER_SECOND) / u128::from(self.master_clock_hz)) as Cycles
     }
@@ -133,9 +133,9 @@ pub struct Pin {
     pub line: u8,
 }
 
-/// What is wired to the chip's pins.
+/// The devices that are wired to the chip's pins.
 pub trait World {
-    /// What the converter makes of the voltage on an ADC channel, 0…15, now: counts 0…4095.
+    /// Result of converting an ADC channel, 0…15, now: counts 0…4095.
     fn adc_counts(&mut self, channel: u8, now: Cycles) -> u16;
 
     /// The devices on the wires of TWI0 or TWI1.
@@ -147,23 +147,23 @@ pub trait World {
     /// The chip now drives the pin to a level; `None`: it is an input or belongs to a peripheral.
     fn drive(&mut self, pin: Pin, level: Option<bool>, now: Cycles);
 
-    /// The level that the outside gives to a pin; `None`: nothing drives it.
+    /// The level at which the outside drives a pin; `None`: nothing drives it.
     fn level(&mut self, pin: Pin, now: Cycles) -> Option<bool>;
 
     /// A byte that left the chip on a serial port: 0 for UART, 1…4 for USART0…3.
     fn transmitted(&mut self, port: usize, byte: u8, now: Cycles);
 
-    /// When the next byte on its way to a serial port is complete, at the port's baud rate, and takes it if that is not
-    /// after `now`. A byte arrives at most once in `byte_time`.
+    /// Takes the next byte on its way to a serial port if it is complete by `now`, at the port's baud rate; else returns
+    /// when it will be. A byte arrives at most once in `byte_time`.
     fn receive(&mut self, port: usize, byte_time: Cycles, now: Cycles) -> Reception;
 }
 
-/// What [`World::receive`] says.
+/// Result of [`World::receive`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Reception {
     /// Nothing is on its way.
     Idle,
-    /// The next byte is complete then.
+    /// The next byte is complete at this time.
     At(Cycles),
     /// A byte has arrived.
     Byte(u8),
@@ -183,12 +183,12 @@ pub trait I2c {
     /// A stop condition.
     fn stop(&mut self, now: Cycles);
 
-    /// How long devices hold the clock low before the next byte.
+    /// Time for which devices hold the clock low before the next byte.
     fn stretch(&mut self, now: Cycles) -> Cycles;
 
-    /// Whether a device holds SCL, and SDA, low.
+    /// True for SCL, and for SDA, if a device holds it low.
     fn held(&mut self, now: Cycles) -> (bool, bool);
 
-    /// A clock pulse that the master gave by hand, as a GPIO.
+    /// A clock pulse that the firmware generated with SCL as a GPIO.
     fn pulse(&mut self, now: Cycles);
 }

@@ -1,6 +1,6 @@
 //! The PDC: the DMA channels that a serial peripheral, the ADC or the PWM controller carries at offset 0x100 of its registers.
 //!
-//! The peripheral asks for a transfer of each datum ([`Pdc::receive`], [`Pdc::transmit`]) and shows the PDC's four flags in
+//! The peripheral requests a transfer of each datum ([`Pdc::receive`], [`Pdc::transmit`]) and shows the PDC's four flags in
 //! its own status register (datasheet 26.4).
 
 use crate::model::Memory;
@@ -52,12 +52,12 @@ struct Channel {
 }
 
 impl Channel {
-    /// Both counters are zero after a reset, and the flags say so: TWI_SR's reset value is 0xF009 (datasheet 33.11.6).
+    /// Both counters are zero after a reset, and the flags are set: TWI_SR's reset value is 0xF009 (datasheet 33.11.6).
     fn new() -> Self {
         Self { pointer: 0, counter: 0, next_pointer: 0, next_counter: 0, enabled: false, ended: true }
     }
 
-    /// The address of the next datum; the channel then moves on. `None` where it is off or has nothing left.
+    /// Takes the address of the next datum; `None` if the channel is off or has nothing left.
     fn take(&mut self, width: Width) -> Option<u32> {
         if !self.enabled {
             return None;
@@ -117,7 +117,7 @@ impl Pdc {
         Self { receive: Channel::new(), transmit: Channel::new() }
     }
 
-    /// Whether the register at this offset of the peripheral belongs to the PDC.
+    /// True if the register at this offset of the peripheral belongs to the PDC.
     pub fn owns(offset: u32) -> bool {
         (RPR..=PTSR).contains(&offset)
     }
@@ -168,16 +168,16 @@ impl Pdc {
         }
     }
 
-    /// Takes a received datum to memory; false where the channel is off or its buffers are full. What is addressed to no
-    /// RAM is lost.
+    /// Writes a received datum to memory; false if the channel is off or its buffers are full. A datum for an address
+    /// without RAM is lost.
     pub fn receive(&mut self, datum: u32, width: Width, memory: &mut dyn Memory) -> bool {
         let Some(address) = self.receive.take(width) else { return false };
         memory.write(address, &datum.to_le_bytes()[..width.bytes()]);
         true
     }
 
-    /// The next datum to transmit; `None` where the channel is off or has nothing left. What is addressed to no memory
-    /// reads as zero.
+    /// Reads the next datum to transmit; `None` if the channel is off or has nothing left. An address without memory reads
+    /// as zero.
     pub fn transmit(&mut self, width: Width, memory: &mut dyn Memory) -> Option<u32> {
         let address = self.transmit.take(width)?;
         let mut bytes = [0; 4];

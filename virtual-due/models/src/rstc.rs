@@ -13,7 +13,7 @@ const NRSTL: u32 = 1 << 16;
 const URSTEN: u32 = 1;
 const URSTIEN: u32 = 1 << 4;
 
-/// Its registers. They are backed up: resets leave RSTC_MR alone (datasheet 12.4.2.2).
+/// The reset controller. Its registers are backed up: resets do not change RSTC_MR (datasheet 12.4.2.2).
 pub struct Rstc {
     cause: Cause,
     user_reset: bool,
@@ -48,7 +48,7 @@ impl Peripheral for Rstc {
             return;
         }
         match offset {
-            // Processor and peripherals can only be reset together, but for debugging (datasheet 12.4.4.4).
+            // Processor and peripherals can only be reset together, except for debugging (datasheet 12.4.4.4).
             CR if value & (PROCRST | PERRST) != 0 => context.signals.push(Signal::Reset(Cause::Software)),
             CR => {}
             MR => self.mode = value & 0x0000_0F11,
@@ -77,7 +77,7 @@ mod tests {
     use crate::test_support::Bench;
 
     #[test]
-    fn the_cause_of_the_last_reset_is_told_and_urst_once() {
+    fn the_cause_of_the_last_reset_is_kept_and_urst_is_read_once() {
         let mut bench = Bench::new(Rstc::new());
         assert_eq!(bench.read(SR), 0x0001_0000);
         bench.signal(Signal::Reset(Cause::User));
@@ -91,6 +91,6 @@ mod tests {
         bench.write(CR, 0x0000_0005);
         assert!(bench.signals.is_empty());
         bench.write(CR, 0xA500_0005);
-        assert_eq!(bench.told(), [Signal::Reset(Cause::Software)]);
+        assert_eq!(bench.signalled(), [Signal::Reset(Cause::Software)]);
     }
 }

@@ -1,5 +1,5 @@
-//! RTC: the calendar (datasheet 15). Time of day and date run from what was set, and alarms come; the events of CR's selections
-//! do not.
+//! RTC: the calendar (datasheet 15). Time of day and date run from the values set, and alarms occur; the events that CR selects
+//! are not modelled.
 
 use crate::model::{CYCLES_PER_SECOND, Context, Cycles, Peripheral};
 
@@ -129,7 +129,7 @@ impl Rtc {
         };
     }
 
-    /// The next second begins.
+    /// Advances by a second.
     fn step(&mut self) {
         self.seconds += 1;
         if self.seconds == DAY {
@@ -142,7 +142,7 @@ impl Rtc {
         }
     }
 
-    /// Whether all fields match whose alarm is enabled, and one is (datasheet 15.5.4).
+    /// True if an alarm is enabled, and all enabled fields match (datasheet 15.5.4).
     fn alarm_is_now(&self) -> bool {
         let differs = |alarm: u32, now: u32, fields: &[(u32, u32)]| {
             fields.iter().any(|(field, enable)| alarm & enable != 0 && (alarm ^ now) & field != 0)
@@ -232,7 +232,7 @@ mod tests {
     use crate::test_support::Bench;
 
     #[test]
-    fn it_goes_on_from_what_was_set() {
+    fn it_runs_from_the_time_that_was_set() {
         let mut bench = Bench::new(Rtc::new());
         assert_eq!(bench.read(CALR), 0x0121_0720);
         bench.write(CR, 3);

@@ -30,7 +30,7 @@ impl Rtt {
         Self { mode: 0x8000, alarm: u32::MAX, status: 0, ticks, seen: 0 }
     }
 
-    /// Ticks until the counter is one past the alarm, when ALMS is set.
+    /// Ticks until the counter is one past the alarm, which sets ALMS.
     fn to_alarm(&self) -> u64 {
         u64::from(self.alarm.wrapping_sub(self.seen as u32)) + 1
     }

@@ -1,5 +1,5 @@
-//! What UART and USART share: a shift register and a holding register each way, the first nine registers, and the PDC
-//! (datasheet 34.5 and 35.7.3).
+//! The common part of UART and USART: a shift register and a holding register each way, the first nine registers, and the
+//! PDC (datasheet 34.5 and 35.7.3).
 
 use crate::model::{Context, Cycles, Reception};
 use crate::pdc::{Pdc, Width};
@@ -33,16 +33,16 @@ const TXEMPTY: u32 = 1 << 9;
 const TXBUFE: u32 = 1 << 11;
 const RXBUFF: u32 = 1 << 12;
 
-/// How the port is set up now.
+/// Present set-up of the port.
 #[derive(Debug, Clone, Copy)]
 pub struct Format {
-    /// From a start bit to the end of the last stop bit; zero: there is no baud rate.
+    /// Time from a start bit to the end of the last stop bit; zero: there is no baud rate.
     pub byte_time: Cycles,
-    /// The line's rest after each byte sent.
+    /// Idle time of the line after each byte sent.
     pub guard_time: Cycles,
     /// The character's bits.
     pub mask: u8,
-    /// What is connected to the pins.
+    /// Connection of receiver and transmitter to the pins.
     pub mode: ChannelMode,
 }
 
@@ -51,11 +51,11 @@ pub struct Format {
 pub enum ChannelMode {
     /// Receiver and transmitter have a pin each.
     Normal,
-    /// What arrives is also sent; the transmitter is cut off.
+    /// Received bytes are also sent; the transmitter is disconnected.
     AutomaticEcho,
-    /// What the transmitter sends is received; both pins are cut off.
+    /// The receiver receives the transmitter's bytes; both pins are disconnected.
     LocalLoopback,
-    /// What arrives is sent and nothing else; receiver and transmitter are cut off.
+    /// Arriving bytes are sent and nothing else; receiver and transmitter are disconnected.
     RemoteLoopback,
 }
 
@@ -81,11 +81,11 @@ pub struct Serial {
     transmitter_on: bool,
     /// THR, while it waits for the shift register.
     holding: Option<u8>,
-    /// The byte that is being sent, and when its last stop bit ends.
+    /// The byte that is being sent, and the end of its last stop bit.
     shifting: Option<(u8, Cycles)>,
-    /// Until then the line rests.
+    /// Until then the line is idle.
     line_free: Cycles,
-    /// From one byte of the PDC's to the next, where nothing but the line sees the bytes leave.
+    /// Time from one byte of the PDC's to the next, where only the line observes that the bytes leave.
     unseen_pace: Option<Cycles>,
     received: u8,
     /// RXRDY and the error bits.
@@ -114,12 +114,12 @@ impl Serial {
         }
     }
 
-    /// The world's name for the port.
+    /// The port's number in [`crate::model::World`].
     pub fn port(&self) -> usize {
         self.port
     }
 
-    /// Whether the register at `offset` is one of those read and written here.
+    /// True if the register at `offset` is read and written here.
     pub fn owns(offset: u32) -> bool {
         matches!(offset, CR | IER | IDR | IMR | SR | RHR | THR) || Pdc::owns(offset)
     }
@@ -166,7 +166,7 @@ impl Serial {
         } else if value & RXEN != 0 {
             self.receiver_on = true;
         }
-        // What is in THR and in the shift register is still sent (datasheet 34.5.3.1).
+        // Bytes in THR and in the shift register are still sent (datasheet 34.5.3.1).
         if value & TXDIS != 0 {
             self.transmitter_on = false;
         } else if value & TXEN != 0 {
@@ -180,7 +180,7 @@ impl Serial {
         }
     }
 
-    /// Lets the PDC and the shift register take what waits for them, and looks for what arrives next.
+    /// Moves waiting bytes to PDC and shift register, and polls for the next byte that arrives.
     pub fn serve(&mut self, format: Format, context: &mut Context) {
         let unseen = format.mode == ChannelMode::Normal && self.interrupt_mask & (TXRDY | TXEMPTY) == 0;
         self.unseen_pace = unseen.then_some(format.byte_time + format.guard_time);
@@ -189,7 +189,7 @@ impl Serial {
         self.receive(format, context);
     }
 
-    /// Sends and receives all that is due.
+    /// Sends and receives all bytes that are due.
     pub fn advance(&mut self, format: Format, context: &mut Context) {
         while let Some((byte, end)) = self.shifting
             && end <= context.now
@@ -206,7 +206,7 @@ impl Serial {
         self.serve(format, context);
     }
 
-    /// THR to the shift register, and by PDC the next byte to THR.
+    /// Moves THR to the shift register, and the PDC's next byte to THR.
     fn load(&mut self, at: Cycles, format: Format, context: &mut Context) {
         self.fill(format, context);
         if self.shifting.is_none()
@@ -224,7 +224,7 @@ impl Serial {
         }
     }
 
-    /// What arrives while nothing hears it is lost: with the receiver off, or cut off from its pin.
+    /// Receives bytes. They are lost while the receiver is off or disconnected from its pin.
     fn receive(&mut self, format: Format, context: &mut Context) {
         self.next_reception = None;
         if format.byte_time == 0 {
@@ -270,13 +270,13 @@ impl Serial {
         }
     }
 
-    /// When the last byte was received, once.
+    /// Takes the time of the last reception.
     pub fn take_last_reception(&mut self) -> Option<Cycles> {
         self.last_reception.take()
     }
 
-    /// When a byte will have been sent or received; of the bytes that the PDC sends unseen, only when it has taken the
-    /// last of its buffer. [`advance`](Self::advance) sends those between at their own times.
+    /// Time at which the next byte will have been sent or received; of bytes by PDC that only the line observes, the time
+    /// at which the last of the buffer is taken. [`advance`](Self::advance) sends those between at their own times.
     pub fn next_event(&self) -> Option<Cycles> {
         let sent = self.shifting.map(|(_, end)| match self.unseen_pace {
             Some(pace) if self.holding.is_some() && self.transmitter_on => {
@@ -292,7 +292,7 @@ impl Serial {
         self.interrupt_mask
     }
 
-    /// SR, without what only the USART has. Reading it clears nothing (datasheet 34.6.6).
+    /// SR, without the bits that only the USART has. Reading it clears nothing (datasheet 34.6.6).
     pub fn status(&self) -> u32 {
         let bits = [
             (TXRDY, self.transmitter_on && self.holding.is_none()),

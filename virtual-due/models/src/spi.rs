@@ -1,5 +1,5 @@
-//! SPI0 and SPI1 (datasheet chapter 32) with nothing on their wires: what is sent goes nowhere, at once, and the pull-up of
-//! MISO gives ones.
+//! SPI0 and SPI1 (datasheet chapter 32) with nothing on their wires: data are sent at once and lost, and the pull-up of MISO
+//! reads as ones.
 
 use crate::model::{Context, Peripheral};
 
@@ -17,7 +17,7 @@ const TDRE: u32 = 1 << 1;
 const TXEMPTY: u32 = 1 << 9;
 const SPIENS: u32 = 1 << 16;
 
-/// One of the two.
+/// SPI0 or SPI1.
 #[derive(Debug)]
 pub struct Spi {
     name: &'static str,
@@ -64,7 +64,7 @@ impl Peripheral for Spi {
         match offset {
             CR => self.control(value),
             TDR => {
-                context.report.once(format!("{} is not modelled: nothing is on its wires", self.name));
+                context.report.warn_once(format!("{} is not modelled: nothing is on its wires", self.name));
                 self.received = self.enabled;
             }
             _ => {}

@@ -1,4 +1,4 @@
-//! SUPC: the supply controller, as far as it selects the slow clock (datasheet 17).
+//! SUPC: the part of the supply controller that selects the slow clock (datasheet 17).
 
 use crate::model::{CYCLES_PER_SECOND, Context, Cycles, Peripheral};
 
@@ -16,12 +16,12 @@ const MR_RESET: u32 = 0x0000_5A00;
 /// The crystal takes about 0.7 s to start.
 const CRYSTAL: Cycles = 7 * CYCLES_PER_SECOND / 10;
 
-/// Its registers, which only power-on resets.
+/// The supply controller. Only power-on resets its registers.
 pub struct Supc {
     monitor: u32,
     mode: u32,
     wake_up: [u32; 2],
-    /// When the crystal oscillator is the slow clock.
+    /// Instant from which the crystal oscillator is the slow clock.
     crystal: Option<Cycles>,
 }
 
@@ -61,7 +61,7 @@ impl Peripheral for Supc {
                     self.crystal = Some(context.now + CRYSTAL);
                 }
                 if value & VROFF != 0 {
-                    context.report.once("SUPC_CR.VROFF: backup mode is not modelled".to_owned());
+                    context.report.warn_once("SUPC_CR.VROFF: backup mode is not modelled".to_owned());
                 }
             }
             MR if value >> 24 == KEY => self.mode = value & 0x0012_7000 | 0x0A00,

@@ -1,4 +1,4 @@
-//! What the tests of the models stand on: memory and a world that answer simply and remember what they were told.
+//! Test doubles for the models: memory, flash, and a world that records the calls that it receives.
 
 use crate::flash::FlashBank;
 use crate::model::{CYCLES_PER_SECOND, Context, Cycles, I2c, Memory, Peripheral, Pin, Reception, Signal, World};
@@ -17,7 +17,7 @@ impl Ram {
         Self { base: 0x2007_0000, bytes: [0; 1024] }
     }
 
-    /// Where an access lies in `bytes`.
+    /// Range of `bytes` that an access covers.
     fn range(&self, address: u32, length: usize) -> Option<std::ops::Range<usize>> {
         let start = address.checked_sub(self.base)? as usize;
         let end = start.checked_add(length)?;
@@ -64,23 +64,23 @@ impl FlashBank for FlashBytes {
     }
 }
 
-/// What the world was told of a PWM channel, and when.
+/// A PWM channel, its duty, and the time of the report.
 pub type Duty = (u8, Option<(u32, u32)>, Cycles);
 
 /// A world with one I²C device, whose bytes and acknowledgements the test sets.
 #[derive(Default)]
 pub struct Pins {
-    /// Added to 100 times the channel, so that a test sees which channel a result is from.
+    /// Added to 100 times the channel, which identifies the channel of a result.
     pub counts: u16,
     pub conversions: Vec<(u8, Cycles)>,
     pub device: Device,
     pub duties: Vec<Duty>,
     pub sent: Vec<(usize, u8, Cycles)>,
-    /// Bytes on their way to any port, and when each is complete.
+    /// Bytes on their way to any port, each with the time at which it is complete.
     pub arriving: VecDeque<(Cycles, u8)>,
-    /// What the chip did with its pins.
+    /// Levels at which the chip drove its pins.
     pub driven: Vec<(Pin, Option<bool>, Cycles)>,
-    /// What the outside gives to pins.
+    /// Levels at which the outside drives pins.
     pub levels: BTreeMap<Pin, bool>,
 }
 
@@ -122,7 +122,7 @@ impl World for Pins {
     }
 }
 
-/// What happened on the I²C wires.
+/// An event on the I²C wires.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum OnBus {
     Start(u8, bool),
@@ -131,7 +131,7 @@ pub enum OnBus {
     Stop,
 }
 
-/// An I²C device at 0x28 that acknowledges until told otherwise.
+/// An I²C device at 0x28 that acknowledges, unless the test sets it not to.
 #[derive(Default)]
 pub struct Device {
     pub seen: Vec<OnBus>,
@@ -173,7 +173,7 @@ impl I2c for Device {
     fn pulse(&mut self, _now: Cycles) {}
 }
 
-/// A model with all it is lent, and time.
+/// A model with its context, and time.
 pub struct Bench<P> {
     pub model: P,
     pub now: Cycles,
@@ -181,7 +181,7 @@ pub struct Bench<P> {
     pub memory: Ram,
     pub world: Pins,
     pub report: Report,
-    /// What the model told the chip, and when.
+    /// Signals of the model to the chip, with their times.
     pub signals: Vec<(Cycles, Signal)>,
 }
 
@@ -236,8 +236,8 @@ impl<P: Peripheral> Bench<P> {
         });
     }
 
-    /// The signals that the model gave, without their times.
-    pub fn told(&self) -> Vec<Signal> {
+    /// Signals of the model, without their times.
+    pub fn signalled(&self) -> Vec<Signal> {
         self.signals.iter().map(|(_, signal)| *signal).collect()
     }
 
@@ -257,7 +257,7 @@ impl<P: Peripheral> Bench<P> {
         self.with(Peripheral::advance);
     }
 
-    /// Runs until `done` says so; the time it took.
+    /// Runs until `done` returns true; returns the time it took.
     pub fn run_until(&mut self, limit: Cycles, mut done: impl FnMut(&mut Self) -> bool) -> Cycles {
         let start = self.now;
         while !done(self) {

@@ -1,11 +1,11 @@
-//! A clock divided from another, in exact arithmetic: which tick it is at an instant, and when a tick comes.
+//! A clock divided from another, in exact arithmetic: the tick at an instant, and the instant of a tick.
 
 use crate::model::{CYCLES_PER_SECOND, Cycles};
 
 /// A clock of `hz / divisor` that ticked first, with tick 0, at `origin`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Ticks {
-    /// When tick 0 was.
+    /// Instant of tick 0.
     pub origin: Cycles,
     /// Frequency of the source, Hz; zero: it stands still.
     pub hz: u32,
@@ -23,7 +23,7 @@ impl Ticks {
         (elapsed / (u128::from(CYCLES_PER_SECOND) * u128::from(self.divisor))) as u64
     }
 
-    /// When `tick` comes; `None` where the clock stands still.
+    /// Instant of `tick`; `None` if the clock does not run.
     pub fn time(&self, tick: u64) -> Option<Cycles> {
         if self.stands() {
             return None;

@@ -1,4 +1,4 @@
-//! TRNG: the random number generator (datasheet 42). Its numbers are the same in every run, as all of this board is.
+//! TRNG: the random number generator (datasheet 42). Its numbers are the same in every run, so that runs can be repeated.
 
 use crate::model::{Context, Cycles, Peripheral};
 
@@ -66,7 +66,7 @@ impl Peripheral for Trng {
             self.step();
             self.ready = true;
             let period = context.master_cycles(PERIOD).max(1);
-            // While nobody reads, the numbers between need not be made.
+            // Numbers that are not read need not be generated.
             let skipped = (context.now - next) / period;
             self.next = Some(next + (skipped + 1) * period);
         }

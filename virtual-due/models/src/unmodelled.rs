@@ -1,21 +1,21 @@
-//! A peripheral that the chip has and this board does not: it ignores writes, and is always ready for the next one.
+//! A peripheral without a model: it ignores writes, and is always ready for the next one.
 
 use crate::model::{Context, Peripheral};
 
-/// One of those.
+/// A peripheral without a model.
 pub struct Unmodelled {
     name: &'static str,
-    /// Offset of its status register, and what a program that polls it waits for.
+    /// Offset of its status register, and the bits that a program waits for.
     ready: Option<(u32, u32)>,
 }
 
 impl Unmodelled {
-    /// One that reads as 0.
+    /// A peripheral that reads as 0.
     pub fn new(name: &'static str) -> Self {
         Self { name, ready: None }
     }
 
-    /// One whose status register at `offset` reads as `bits`.
+    /// A peripheral whose status register at `offset` reads as `bits`.
     pub fn ready(name: &'static str, offset: u32, bits: u32) -> Self {
         Self { name, ready: Some((offset, bits)) }
     }
@@ -25,7 +25,7 @@ impl Peripheral for Unmodelled {
     fn read(&mut self, offset: u32, context: &mut Context) -> u32 {
         context
             .report
-            .once(format!("{} is not modelled: what it is given goes nowhere, and it gives nothing", self.name));
+            .warn_once(format!("{} is not modelled: writes to it have no effect, and it reads as 0", self.name));
         match self.ready {
             Some((status, bits)) if status == offset => bits,
             _ => 0,
@@ -45,7 +45,7 @@ mod tests {
     use crate::test_support::Bench;
 
     #[test]
-    fn who_waits_for_it_does_not_wait_for_ever_and_is_told_once() {
+    fn it_is_ready_at_once_and_reported_once() {
         let mut bench = Bench::new(Unmodelled::ready("DACC", 0x30, 0xF));
         bench.write(0x20, 2048);
         assert_eq!((bench.read(0x30), bench.read(0x04)), (0xF, 0));

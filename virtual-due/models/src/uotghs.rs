@@ -1,5 +1,5 @@
 //! UOTGHS: the native USB port, with no cable in it. Its registers store, its clock becomes usable, and no host ever
-//! appears, so that programs that set it up go on (datasheet 39).
+//! appears, so that programs that set it up continue (datasheet 39).
 
 use crate::model::{Context, Peripheral};
 

@@ -1,4 +1,4 @@
-//! WDT: the watchdog (datasheet 16). It runs at reset and bites after 16 s.
+//! WDT: the watchdog (datasheet 16). It runs from reset on and expires after 16 s.
 
 use crate::model::{Cause, Context, Cycles, Peripheral, Signal};
 use crate::ticks::Ticks;
@@ -27,7 +27,7 @@ pub struct Wdt {
 }
 
 impl Wdt {
-    /// As after reset, counting from time 0 until a reset tells the time.
+    /// As after reset, counting from time 0 until the signal of a reset.
     pub fn new() -> Self {
         let ticks = Ticks { origin: 0, hz: SLOW_CLOCK_HZ, divisor: DIVIDER };
         Self { mode: MR_RESET, mode_written: false, status: 0, ticks }
@@ -52,7 +52,7 @@ impl Wdt {
         }
     }
 
-    /// When the down-counter passes zero.
+    /// Instant at which the down-counter passes zero.
     fn end(&self) -> Option<Cycles> {
         self.ticks.time(self.value() + 1).filter(|_| self.runs())
     }
@@ -75,7 +75,7 @@ impl Peripheral for Wdt {
         match offset {
             CR if value >> 24 == KEY && value & 1 != 0 && self.runs() => {
                 let left = self.value().saturating_sub(self.ticks.at(context.now));
-                // Fed above WDD is an error (datasheet 16.4).
+                // A restart above WDD is an error (datasheet 16.4).
                 if left > self.delta() {
                     self.bite(WDERR, context);
                 }
@@ -88,7 +88,7 @@ impl Peripheral for Wdt {
                 self.mode_written = true;
                 self.ticks.origin = context.now;
             }
-            MR => context.report.once("WDT_MR written again: it can be written once per reset".to_owned()),
+            MR => context.report.warn_once("WDT_MR written again: it can be written once per reset".to_owned()),
             _ => context.report.unmodelled("WDT", offset),
         }
     }
@@ -131,7 +131,7 @@ mod tests {
         bench.run(16 * CYCLES_PER_SECOND - 1);
         assert!(bench.signals.is_empty());
         bench.run(1);
-        assert_eq!(bench.told(), [Signal::Reset(Cause::Watchdog)]);
+        assert_eq!(bench.signalled(), [Signal::Reset(Cause::Watchdog)]);
     }
 
     #[test]
@@ -144,7 +144,7 @@ mod tests {
         }
         assert!(bench.signals.is_empty());
         bench.run(CYCLES_PER_SECOND / 5);
-        assert_eq!(bench.told().first(), Some(&Signal::Reset(Cause::Watchdog)));
+        assert_eq!(bench.signalled().first(), Some(&Signal::Reset(Cause::Watchdog)));
     }
 
     #[test]

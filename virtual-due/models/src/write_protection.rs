@@ -1,4 +1,4 @@
-//! The write protection that several peripherals share: WPMR with a key, WPSR with the offset of what was refused.
+//! The write protection that several peripherals share: WPMR with a key, WPSR with the offset of the refused register.
 
 const WPEN: u32 = 1;
 
@@ -33,7 +33,7 @@ impl WriteProtection {
         self.violation.take().map_or(0, |offset| (offset << 8) | 1)
     }
 
-    /// Whether a protected register may be written; notes the violation where not.
+    /// True if a protected register may be written; else records the violation.
     pub fn permits(&mut self, offset: u32) -> bool {
         if self.enabled {
             self.violation = Some(offset);
@@ -47,7 +47,7 @@ mod tests {
     use super::WriteProtection;
 
     #[test]
-    fn key_switches_protection_and_violations_are_told_once() {
+    fn key_switches_protection_and_a_violation_is_read_once() {
         let mut protection = WriteProtection::new(*b"ADC");
         protection.set_mode(0x1234_5601);
         assert!(protection.permits(4));

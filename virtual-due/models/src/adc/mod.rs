@@ -1,13 +1,14 @@
 //! The ADC (datasheet chapter 43): 16 channels, converted one after the other on a trigger.
 
+mod fields;
 mod registers;
 mod sequence;
 mod threshold;
 
-use crate::model::{Context, Cycles, Peripheral, Signal};
+use crate::model::{Context, Cycles};
 use crate::pdc::{Pdc, Width};
 use crate::write_protection::WriteProtection;
-use registers::{CompareMode, DRDY, ENDRX, GOVRE, Mode, RXBUFF, TAG};
+use fields::{COMPE, CompareMode, DRDY, ENDRX, GOVRE, Mode, RXBUFF, TAG};
 use sequence::{Sequence, Setup};
 use threshold::Threshold;
 
@@ -105,7 +106,7 @@ impl Adc {
         self.last = u32::from(result) | tag;
         let compare = CompareMode { extended: self.extended_mode, window: self.compare_window };
         if self.threshold.passes(channel, result, compare) {
-            self.status |= registers::COMPE;
+            self.status |= COMPE;
         }
         self.serve_pdc(context);
     }
@@ -117,45 +118,9 @@ impl Adc {
         }
     }
 
-    /// What SWRST resets: the ADC, but not the PDC beside it.
+    /// SWRST: resets the ADC, but not its PDC.
     fn software_reset(&mut self) {
         *self = Self { pdc: self.pdc.clone(), ..Self::new() };
-    }
-}
-
-impl Peripheral for Adc {
-    fn read(&mut self, offset: u32, context: &mut Context) -> u32 {
-        self.read_register(offset, context)
-    }
-
-    fn write(&mut self, offset: u32, value: u32, context: &mut Context) {
-        self.write_register(offset, value, context);
-        self.serve_pdc(context);
-    }
-
-    fn advance(&mut self, context: &mut Context) {
-        while let Some(conversion) = self.sequence.take_completed(self.setup(), context) {
-            let counts = context.world.adc_counts(conversion.channel, conversion.sampled_at).min(0xFFF);
-            self.complete(conversion.channel, counts, context);
-        }
-    }
-
-    fn signal(&mut self, signal: Signal, context: &mut Context) {
-        if Mode(self.mode).trigger() == Some(signal) {
-            self.start(context.now, context);
-        }
-    }
-
-    fn next_event(&self) -> Option<Cycles> {
-        self.sequence.next_event()
-    }
-
-    fn interrupt(&self) -> bool {
-        self.interrupt_status() & self.interrupt_mask != 0
-    }
-
-    fn reset(&mut self) {
-        *self = Self::new();
     }
 }
 

@@ -1,7 +1,9 @@
-//! The ADC's registers (datasheet 43.7).
+//! The ADC as a peripheral: access to its registers (datasheet 43.7), time, triggers.
 
-use super::{Adc, Pdc};
-use crate::model::{Context, Signal};
+use super::Adc;
+use super::fields::{COMPE, DRDY, GOVRE, Mode};
+use crate::model::{Context, Cycles, Peripheral, Signal};
+use crate::pdc::Pdc;
 
 const CR: u32 = 0x00;
 const MR: u32 = 0x04;
@@ -29,81 +31,8 @@ const WPSR: u32 = 0xE8;
 const SWRST: u32 = 1 << 0;
 const START: u32 = 1 << 1;
 
-pub const DRDY: u32 = 1 << 24;
-pub const GOVRE: u32 = 1 << 25;
-pub const COMPE: u32 = 1 << 26;
-pub const ENDRX: u32 = 1 << 27;
-pub const RXBUFF: u32 = 1 << 28;
-
-/// EMR.TAG.
-pub const TAG: u32 = 1 << 24;
-
-/// ADC_MR.
-#[derive(Debug, Clone, Copy)]
-pub struct Mode(pub u32);
-
-impl Mode {
-    /// The hardware trigger that TRGEN and TRGSEL select. Nothing drives the ADTRG pin.
-    pub fn trigger(self) -> Option<Signal> {
-        let selected = (self.0 >> 1) as u8 & 7;
-        match selected {
-            _ if self.0 & 1 == 0 => None,
-            1..=3 => Some(Signal::Tioa(selected - 1)),
-            4 | 5 => Some(Signal::PwmEvent(selected - 4)),
-            _ => None,
-        }
-    }
-
-    pub fn low_resolution(self) -> bool {
-        self.0 & (1 << 4) != 0
-    }
-
-    /// The cell is off between sequences: SLEEP without FWUP.
-    pub fn sleeps(self) -> bool {
-        self.0 & (3 << 5) == 1 << 5
-    }
-
-    pub fn free_running(self) -> bool {
-        self.0 & (1 << 7) != 0
-    }
-
-    pub fn user_sequence(self) -> bool {
-        self.0 & (1 << 31) != 0
-    }
-
-    /// Master clock periods in a period of the ADC clock: (PRESCAL + 1) · 2.
-    pub fn clock_divisor(self) -> u64 {
-        (u64::from((self.0 >> 8) & 0xFF) + 1) * 2
-    }
-
-    /// ADC clocks that the cell takes to start.
-    pub fn startup_clocks(self) -> u64 {
-        const CLOCKS: [u64; 16] = [0, 8, 16, 24, 64, 80, 96, 112, 512, 576, 640, 704, 768, 832, 896, 960];
-        CLOCKS[((self.0 >> 16) & 15) as usize]
-    }
-
-    /// ADC clocks before the sample is held: TRACKTIM + 1.
-    pub fn tracking_clocks(self) -> u64 {
-        u64::from((self.0 >> 24) & 15) + 1
-    }
-
-    /// ADC clocks from one conversion's start to the next one's: tracking, 12 bits, and a transfer of TRANSFER · 2 + 3; the
-    /// cell itself takes no fewer than 20 (datasheet 45.7: 1 MS/s at 20 MHz).
-    pub fn conversion_clocks(self) -> u64 {
-        let transfer = u64::from((self.0 >> 28) & 3) * 2 + 3;
-        (self.tracking_clocks() + 12 + transfer).max(20)
-    }
-}
-
-/// EMR and CWR as the comparator sees them.
-#[derive(Debug, Clone, Copy)]
-pub struct CompareMode {
-    pub extended: u32,
-    pub window: u32,
-}
-
 impl Adc {
-    pub(super) fn read_register(&mut self, offset: u32, context: &mut Context) -> u32 {
+    fn read_register(&mut self, offset: u32, context: &mut Context) -> u32 {
         match offset {
             MR => self.mode,
             SEQR1 => self.sequence_registers[0],
@@ -142,7 +71,7 @@ impl Adc {
         }
     }
 
-    pub(super) fn write_register(&mut self, offset: u32, value: u32, context: &mut Context) {
+    fn write_register(&mut self, offset: u32, value: u32, context: &mut Context) {
         match offset {
             CR => {
                 if value & SWRST != 0 {
@@ -190,5 +119,41 @@ impl Adc {
                 *(if offset == CGR { &mut self.gain } else { &mut self.offset }) = value;
             }
         }
+    }
+}
+
+impl Peripheral for Adc {
+    fn read(&mut self, offset: u32, context: &mut Context) -> u32 {
+        self.read_register(offset, context)
+    }
+
+    fn write(&mut self, offset: u32, value: u32, context: &mut Context) {
+        self.write_register(offset, value, context);
+        self.serve_pdc(context);
+    }
+
+    fn advance(&mut self, context: &mut Context) {
+        while let Some(conversion) = self.sequence.take_completed(self.setup(), context) {
+            let counts = context.world.adc_counts(conversion.channel, conversion.sampled_at).min(0xFFF);
+            self.complete(conversion.channel, counts, context);
+        }
+    }
+
+    fn signal(&mut self, signal: Signal, context: &mut Context) {
+        if Mode(self.mode).trigger() == Some(signal) {
+            self.start(context.now, context);
+        }
+    }
+
+    fn next_event(&self) -> Option<Cycles> {
+        self.sequence.next_event()
+    }
+
+    fn interrupt(&self) -> bool {
+        self.interrupt_status() & self.interrupt_mask != 0
+    }
+
+    fn reset(&mut self) {
+        *self = Self::new();
     }
 }

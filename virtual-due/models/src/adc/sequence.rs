@@ -1,9 +1,9 @@
 //! The order and the timing of conversions (datasheet 43.6.5 to 43.6.10).
 
-use super::registers::Mode;
+use super::fields::Mode;
 use crate::model::{Context, Cycles};
 
-/// What the registers say of sequences.
+/// Registers that set up sequences.
 #[derive(Debug, Clone, Copy)]
 pub struct Setup {
     pub mode: Mode,
@@ -33,9 +33,9 @@ impl Setup {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Conversion {
     place: u8,
-    /// What is converted.
+    /// The channel.
     pub channel: u8,
-    /// When tracking ends.
+    /// End of tracking.
     pub sampled_at: Cycles,
     ends_at: Cycles,
 }
@@ -44,7 +44,7 @@ pub struct Conversion {
 #[derive(Debug, Clone, Default)]
 pub struct Sequence {
     running: Option<Conversion>,
-    /// The cell has started since it was last off.
+    /// True if the cell has started since it was last off.
     awake: bool,
 }
 
@@ -85,7 +85,7 @@ impl Sequence {
         Some(done)
     }
 
-    /// When the conversion under way is complete.
+    /// End of the conversion under way.
     pub fn next_event(&self) -> Option<Cycles> {
         self.running.map(|conversion| conversion.ends_at)
     }

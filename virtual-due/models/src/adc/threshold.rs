@@ -1,6 +1,6 @@
 //! The comparison window (datasheet 43.6.9).
 
-use super::registers::CompareMode;
+use super::fields::CompareMode;
 
 /// Counts how many results in a row passed.
 #[derive(Debug, Clone, Default)]
@@ -9,7 +9,7 @@ pub struct Threshold {
 }
 
 impl Threshold {
-    /// Whether this result raises COMPE: it lies as CMPMODE asks, for CMPFILTER + 1 results in a row.
+    /// True if this result raises COMPE: it is the (CMPFILTER + 1)th in a row that meets CMPMODE's condition.
     pub fn passes(&mut self, channel: u8, result: u16, compare: CompareMode) -> bool {
         let all_channels = compare.extended & (1 << 9) != 0;
         let selected = (compare.extended >> 4) & 15;

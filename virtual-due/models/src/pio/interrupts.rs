@@ -19,7 +19,7 @@ const LOCKSR: u32 = 0xE0;
 pub struct Interrupts {
     mask: u32,
     status: u32,
-    /// AIMMR: edge or level as ELSR and FRLHSR say; else any edge.
+    /// AIMMR: edge or level as selected by ELSR and FRLHSR; else any edge.
     additional: u32,
     /// ELSR: level rather than edge.
     level: u32,
@@ -28,8 +28,8 @@ pub struct Interrupts {
 }
 
 impl Interrupts {
-    /// The pins changed from `before` to `now`.
-    pub fn look(&mut self, before: u32, now: u32) {
+    /// Updates the status for pins that changed from `before` to `now`.
+    pub fn update(&mut self, before: u32, now: u32) {
         let changed = before ^ now;
         let polarity = !(now ^ self.rising_or_high);
         let edges = changed & polarity & !self.level;
@@ -37,12 +37,12 @@ impl Interrupts {
         self.status |= changed & !self.additional | (edges | levels) & self.additional;
     }
 
-    /// Whether pins have to be looked at.
-    pub fn wanted(&self) -> bool {
+    /// True if an interrupt is enabled, so that pins have to be sampled.
+    pub fn enabled(&self) -> bool {
         self.mask != 0
     }
 
-    /// Whether the line is raised.
+    /// True if the interrupt line is raised.
     pub fn raised(&self) -> bool {
         self.status & self.mask != 0
     }

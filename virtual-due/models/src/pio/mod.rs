@@ -27,7 +27,7 @@ const OWER: u32 = 0xA0;
 const WPMR: u32 = 0xE4;
 const WPSR: u32 = 0xE8;
 
-/// How often pins are looked at while an interrupt waits for one: the world does not say when a level changes.
+/// Period at which pins are sampled while an interrupt is enabled: the world does not signal changes of a level.
 const POLL: Cycles = CYCLES_PER_SECOND / 10_000;
 
 /// A set/clear pair of registers and what it sets.
@@ -62,12 +62,12 @@ pub struct Pio {
     written_at_once: Bits,
     interrupts: Interrupts,
     protection: WriteProtection,
-    /// What the pins were when last looked at: PDSR.
+    /// Levels of the pins when last sampled: PDSR.
     pins: u32,
-    next_look: Cycles,
-    /// What the world was told: driven lines and their levels.
-    told: (u32, u32),
-    told_pins: Option<(u32, u32)>,
+    next_sample: Cycles,
+    /// Driven lines and their levels, as last reported to the world.
+    reported: (u32, u32),
+    reported_peripherals: Option<(u32, u32)>,
 }
 
 impl Pio {
@@ -88,9 +88,9 @@ impl Pio {
             interrupts: Interrupts::default(),
             protection: WriteProtection::new(*b"PIO"),
             pins: u32::MAX,
-            next_look: 0,
-            told: (0, 0),
-            told_pins: None,
+            next_sample: 0,
+            reported: (0, 0),
+            reported_peripherals: None,
         }
     }
 
@@ -103,10 +103,10 @@ impl Pio {
         self.enabled.0 & self.outputs.0 & !(self.open_drain.0 & self.levels)
     }
 
-    /// Tells world and chip what the pins now are.
-    fn tell(&mut self, context: &mut Context) {
+    /// Reports changes of the pins' drivers to world and chip.
+    fn report_pins(&mut self, context: &mut Context) {
         let now = (self.driven(), self.levels);
-        let before = std::mem::replace(&mut self.told, now);
+        let before = std::mem::replace(&mut self.reported, now);
         let mut changed = (now.0 ^ before.0) | now.0 & (now.1 ^ before.1);
         while changed != 0 {
             let line = changed.trailing_zeros();
@@ -115,14 +115,14 @@ impl Pio {
             changed &= changed - 1;
         }
         let peripherals = (!self.enabled.0 & !self.peripheral_b, !self.enabled.0 & self.peripheral_b);
-        if self.told_pins.replace(peripherals) != Some(peripherals) {
+        if self.reported_peripherals.replace(peripherals) != Some(peripherals) {
             let (a, b) = peripherals;
             context.signals.push(Signal::Pins { port: self.port, a, b });
         }
     }
 
-    /// Looks at the levels of all pins.
-    fn look(&mut self, context: &mut Context) {
+    /// Samples the levels of all pins.
+    fn sample_pins(&mut self, context: &mut Context) {
         let driven = self.driven();
         let mut pins = driven & self.levels;
         let mut others = !driven;
@@ -134,10 +134,10 @@ impl Pio {
             others &= others - 1;
         }
         let before = std::mem::replace(&mut self.pins, pins);
-        self.interrupts.look(before, pins);
+        self.interrupts.update(before, pins);
     }
 
-    /// Whether a register may be written while write protection is on (datasheet 31.5.13).
+    /// True if write protection covers the register (datasheet 31.5.13).
     fn is_protected(offset: u32) -> bool {
         matches!(offset, 0x00..=0x14 | 0x20..=0x24 | 0x50..=0x64 | ABSR | 0xA0..=0xA4)
     }
@@ -177,7 +177,7 @@ impl Peripheral for Pio {
             0x28 => self.filters.0,
             ODSR => self.levels,
             PDSR => {
-                self.look(context);
+                self.sample_pins(context);
                 self.pins
             }
             ISR => self.interrupts.take_status(),
@@ -206,30 +206,30 @@ impl Peripheral for Pio {
             self.protection.set_mode(value);
         } else if !Self::is_protected(offset) || self.protection.permits(offset) {
             self.write_register(offset, value, context);
-            self.tell(context);
-            if self.interrupts.wanted() {
-                self.look(context);
+            self.report_pins(context);
+            if self.interrupts.enabled() {
+                self.sample_pins(context);
             }
         }
     }
 
     fn advance(&mut self, context: &mut Context) {
-        if self.interrupts.wanted() && self.next_look <= context.now {
-            self.look(context);
-            // On a grid, so that it does not matter who else called.
-            self.next_look = (context.now / POLL + 1) * POLL;
+        if self.interrupts.enabled() && self.next_sample <= context.now {
+            self.sample_pins(context);
+            // On a fixed grid, independent of samples taken for other reasons.
+            self.next_sample = (context.now / POLL + 1) * POLL;
         }
     }
 
     fn signal(&mut self, signal: Signal, context: &mut Context) {
         if let Signal::Reset(_) = signal {
-            self.told_pins = None;
-            self.tell(context);
+            self.reported_peripherals = None;
+            self.report_pins(context);
         }
     }
 
     fn next_event(&self) -> Option<Cycles> {
-        self.interrupts.wanted().then_some(self.next_look)
+        self.interrupts.enabled().then_some(self.next_sample)
     }
 
     fn interrupt(&self) -> bool {
@@ -237,8 +237,8 @@ impl Peripheral for Pio {
     }
 
     fn reset(&mut self) {
-        // The world is told of the difference.
-        *self = Self { told: self.told, ..Self::new(self.port) };
+        // The difference is reported to the world afterwards.
+        *self = Self { reported: self.reported, ..Self::new(self.port) };
     }
 }
 

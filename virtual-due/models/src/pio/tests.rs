@@ -41,14 +41,14 @@ fn an_undriven_input_reads_its_pull_up() {
 }
 
 #[test]
-fn an_open_drain_line_lets_go_when_high() {
+fn an_open_drain_line_is_released_when_high() {
     let mut bench = pio();
     bench.write(MDER, BIT);
     bench.write(OER, BIT);
     bench.write(SODR, BIT);
     assert_eq!(bench.read(PDSR) & BIT, BIT);
     bench.world.levels.insert(PIN, false);
-    assert_eq!(bench.read(PDSR) & BIT, 0, "someone else holds it low");
+    assert_eq!(bench.read(PDSR) & BIT, 0, "the outside holds it low");
     assert_eq!(bench.world.driven.last().map(|(_, level, _)| *level), Some(None));
 }
 
@@ -65,7 +65,7 @@ fn any_edge_interrupts_once_enabled_and_reading_clears_it() {
 }
 
 #[test]
-fn a_rising_edge_does_not_interrupt_where_a_falling_one_is_asked_for() {
+fn a_rising_edge_does_not_interrupt_where_a_falling_one_is_selected() {
     let mut bench = pio();
     bench.world.levels.insert(PIN, false);
     for register in [FELLSR, AIMER] {
@@ -96,18 +96,18 @@ fn a_low_level_interrupts_again_and_again() {
 }
 
 #[test]
-fn the_chip_hears_which_peripheral_has_a_pin() {
+fn the_peripheral_that_has_a_pin_is_signalled_to_the_chip() {
     let mut bench = pio();
     bench.write(PDR, BIT);
-    assert_eq!(bench.told().last(), Some(&Signal::Pins { port: 1, a: BIT, b: 0 }));
+    assert_eq!(bench.signalled().last(), Some(&Signal::Pins { port: 1, a: BIT, b: 0 }));
     bench.write(ABSR, BIT);
-    assert_eq!(bench.told().last(), Some(&Signal::Pins { port: 1, a: 0, b: BIT }));
+    assert_eq!(bench.signalled().last(), Some(&Signal::Pins { port: 1, a: 0, b: BIT }));
     bench.write(PER, BIT);
-    assert_eq!(bench.told().last(), Some(&Signal::Pins { port: 1, a: 0, b: 0 }));
+    assert_eq!(bench.signalled().last(), Some(&Signal::Pins { port: 1, a: 0, b: 0 }));
 }
 
 #[test]
-fn a_reset_lets_go_of_all_pins() {
+fn a_reset_releases_all_pins() {
     let mut bench = pio();
     bench.write(OER, BIT);
     bench.model.reset();

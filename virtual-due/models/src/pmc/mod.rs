@@ -55,12 +55,12 @@ const SLOW_CLOCK_HZ: u32 = 32_768;
 const FAST_RC_HZ: [u32; 4] = [4_000_000, 8_000_000, 12_000_000, 4_000_000];
 const UPLL_HZ: u32 = 480_000_000;
 const RESET_HZ: u32 = FAST_RC_HZ[0];
-/// What the flash and core are specified for (datasheet 45.4).
+/// Highest frequency that flash and core are specified for, Hz (datasheet 45.4).
 const HIGHEST_HZ: u32 = 84_000_000;
 /// Identifiers 2…44; those below 8 belong to the system controller and always run (datasheet 28.14.4).
 const GATED: u64 = 0x1FFF_FFFF_FF00;
 
-/// What takes time to become ready, and the status bit that says so.
+/// Status bits of the parts that take time to become ready.
 const SETTLING: [u32; 8] = [MOSCXTS, LOCKA, MCKRDY, LOCKU, PCKRDY0, PCKRDY0 << 1, PCKRDY0 << 2, MOSCSELS];
 
 /// The power management controller.
@@ -77,12 +77,12 @@ pub struct Pmc {
     startup: [u32; 2],
     requested: u32,
     status: u32,
-    /// When each bit of [`SETTLING`] comes.
+    /// Instant at which each bit of [`SETTLING`] is set.
     ready: [Option<Cycles>; 8],
-    /// When MAINF has been counted.
+    /// Instant at which MAINF has been counted.
     counted: Option<Cycles>,
     protection: WriteProtection,
-    told_hz: u32,
+    signalled_hz: u32,
 }
 
 impl Pmc {
@@ -104,12 +104,12 @@ impl Pmc {
             ready: [None; 8],
             counted: Some(0),
             protection: WriteProtection::new(*b"PMC"),
-            told_hz: RESET_HZ,
+            signalled_hz: RESET_HZ,
         }
     }
 
-    /// The bit comes after a time, and is clear until then.
-    fn settle(&mut self, bit: u32, then: Cycles) {
+    /// Clears the bit until `then`, when it is set.
+    fn become_ready_at(&mut self, bit: u32, then: Cycles) {
         self.status &= !bit;
         self.set_ready(bit, Some(then));
     }
@@ -169,11 +169,11 @@ impl Pmc {
         self.source_hz(self.master & 3) / divider
     }
 
-    /// Tells the chip when the master clock has changed.
-    fn tell_master(&mut self, context: &mut Context) {
+    /// Signals a change of the master clock to the chip.
+    fn signal_master_clock(&mut self, context: &mut Context) {
         let hz = self.master_hz();
         if hz == 0 {
-            context.report.once("the master clock's source is off: a real chip stops here".to_owned());
+            context.report.warn_once("the master clock's source is off: a real chip stops here".to_owned());
             return;
         }
         let lock = match self.master & 3 {
@@ -182,13 +182,13 @@ impl Pmc {
             _ => 0,
         };
         if self.status & lock != lock {
-            context.report.once("the master clock was switched to a PLL that has not locked".to_owned());
+            context.report.warn_once("the master clock was switched to a PLL that has not locked".to_owned());
         }
         if hz > HIGHEST_HZ {
-            context.report.once(format!("master clock of {hz} Hz: the chip is specified up to {HIGHEST_HZ} Hz"));
+            context.report.warn_once(format!("master clock of {hz} Hz: the chip is specified up to {HIGHEST_HZ} Hz"));
         }
-        if hz != self.told_hz {
-            self.told_hz = hz;
+        if hz != self.signalled_hz {
+            self.signalled_hz = hz;
             context.signals.push(Signal::MasterClock(hz));
         }
     }
@@ -207,27 +207,27 @@ impl Pmc {
         let before = std::mem::replace(&mut self.oscillator, value & !0x00FF_0000);
         if before & MOSCXTEN == 0 && value & MOSCXTEN != 0 {
             // MOSCXTST counts eight slow clocks (datasheet 28.14.7).
-            self.settle(MOSCXTS, context.now + slow_clocks(8 * u64::from(value >> 8 & 0xFF)));
+            self.become_ready_at(MOSCXTS, context.now + slow_clocks(8 * u64::from(value >> 8 & 0xFF)));
         } else if value & (MOSCXTEN | MOSCXTBY) == 0 {
             self.stop(MOSCXTS);
         }
         if (before ^ value) & MOSCSEL != 0 {
-            self.settle(MOSCSELS, context.now + slow_clocks(3));
+            self.become_ready_at(MOSCSELS, context.now + slow_clocks(3));
         }
         self.status = if value & MOSCRCEN != 0 { self.status | MOSCRCS } else { self.status & !MOSCRCS };
         // MAINF is counted over 16 slow clocks (datasheet 28.14.8).
         self.counted = Some(context.now + slow_clocks(16));
-        self.tell_master(context);
+        self.signal_master_clock(context);
     }
 
     fn write_master(&mut self, value: u32, context: &mut Context) {
         let changed = std::mem::replace(&mut self.master, value & 0x3073) ^ self.master;
         if changed != 0 {
-            self.tell_master(context);
+            self.signal_master_clock(context);
             // A few periods of both clocks.
-            let slowest = self.told_hz.min(context.master_clock_hz).max(1);
+            let slowest = self.signalled_hz.min(context.master_clock_hz).max(1);
             let wait = 8 * CYCLES_PER_SECOND / u64::from(slowest);
-            self.settle(MCKRDY, context.now + wait);
+            self.become_ready_at(MCKRDY, context.now + wait);
         }
     }
 
@@ -244,7 +244,7 @@ impl Pmc {
                 if value & UPLLEN == 0 {
                     self.stop(LOCKU);
                 } else {
-                    self.settle(LOCKU, context.now + slow_clocks(8 * u64::from(value >> 20 & 0xF)));
+                    self.become_ready_at(LOCKU, context.now + slow_clocks(8 * u64::from(value >> 20 & 0xF)));
                 }
             }
             MOR => self.write_oscillator(value, context),
@@ -253,7 +253,7 @@ impl Pmc {
                 if self.plla_hz() == 0 {
                     self.stop(LOCKA);
                 } else {
-                    self.settle(LOCKA, context.now + slow_clocks(u64::from(value >> 8 & 0x3F)));
+                    self.become_ready_at(LOCKA, context.now + slow_clocks(u64::from(value >> 8 & 0x3F)));
                 }
             }
             MCKR => self.write_master(value, context),
@@ -261,7 +261,7 @@ impl Pmc {
             PCK0..=PCK2 => {
                 let index = (offset - PCK0) / 4;
                 self.programmable[index as usize] = value;
-                self.settle(PCKRDY0 << index, context.now + slow_clocks(1));
+                self.become_ready_at(PCKRDY0 << index, context.now + slow_clocks(1));
             }
             PCR => {
                 self.requested = value & 0x3F;

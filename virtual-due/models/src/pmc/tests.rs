@@ -21,7 +21,7 @@ fn the_usual_sequence_leads_to_84_mhz() {
     assert_eq!(wait(&mut bench, LOCKA), 161_500);
     bench.write(MCKR, 0x12);
     wait(&mut bench, MCKRDY);
-    assert_eq!(bench.told(), [12_000_000, 6_000_000, 84_000_000].map(Signal::MasterClock));
+    assert_eq!(bench.signalled(), [12_000_000, 6_000_000, 84_000_000].map(Signal::MasterClock));
     assert!(bench.report.take().is_empty());
 }
 
@@ -48,7 +48,7 @@ fn peripheral_clocks_are_set_one_by_one() {
     bench.write(PCER0, 1 << 8);
     bench.write(PCER0, 1 << 11);
     assert_eq!(bench.read(PCSR0), 0x900);
-    assert_eq!(bench.told().last(), Some(&Signal::PeripheralClocks(0x900)));
+    assert_eq!(bench.signalled().last(), Some(&Signal::PeripheralClocks(0x900)));
 }
 
 #[test]

@@ -3,6 +3,9 @@
 use crate::model::Cycles;
 use crate::ticks::Ticks;
 
+/// Channels of the controller.
+pub const CHANNELS: usize = 8;
+
 /// A frequency, Hz, and its divisor.
 pub type Clock = (u32, u32);
 
@@ -10,6 +13,22 @@ const CALG: u32 = 1 << 8;
 const CPOL: u32 = 1 << 9;
 const DTE: u32 = 1 << 16;
 const DTLI: u32 = 1 << 18;
+
+/// The clock that CMR.CPRE selects: MCK / 2^CPRE, CLKA, or CLKB (datasheet 38.6.1).
+pub fn channel_clock(mode: u32, clock_register: u32, master_clock_hz: u32) -> Clock {
+    let linear = |shift: u32| {
+        let divisor = (clock_register >> shift) & 0xFF;
+        let prescaler = (clock_register >> (shift + 8)) & 15;
+        // DIV = 0 turns it off.
+        (if prescaler <= 10 { master_clock_hz } else { 0 }, divisor << prescaler.min(10))
+    };
+    match mode & 15 {
+        prescaler @ 0..=10 => (master_clock_hz, 1 << prescaler),
+        11 => linear(0),
+        12 => linear(16),
+        _ => (0, 1),
+    }
+}
 
 /// Period and alignment.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -37,7 +56,7 @@ pub struct Channel {
     pub next_period: Option<u32>,
     pub next_dead_time: Option<u32>,
     pub enabled: bool,
-    /// It was disabled, which waits for the end of the period.
+    /// It was disabled, and stops at the end of the period.
     pub stopping: bool,
     ticks: Ticks,
     /// The tick at which the period began.
@@ -77,7 +96,7 @@ impl Channel {
         }
     }
 
-    /// A clock that has changed begins a period anew.
+    /// Begins a new period if the clock has changed.
     pub fn follow_clock(&mut self, (hz, divisor): Clock, now: Cycles) {
         if (self.ticks.hz, self.ticks.divisor) != (hz, divisor) {
             self.ticks = Ticks { origin: now, hz, divisor };
@@ -85,12 +104,12 @@ impl Channel {
         }
     }
 
-    pub fn stop_if_asked(&mut self) {
+    pub fn stop_if_requested(&mut self) {
         self.enabled &= !self.stopping;
         self.stopping = false;
     }
 
-    /// When the period ends.
+    /// End of the period.
     pub fn period_end(&self, timing: Timing) -> Option<Cycles> {
         if !self.enabled || timing.clocks() == 0 {
             return None;
@@ -121,7 +140,7 @@ impl Channel {
         self.next_duty.is_some() || self.next_period.is_some() || self.next_dead_time.is_some()
     }
 
-    /// What was written to the update registers acts.
+    /// Applies the update registers.
     pub fn update_all(&mut self) {
         self.update_duty();
         self.update_period();

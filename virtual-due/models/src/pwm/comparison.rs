@@ -1,4 +1,4 @@
-//! A comparison unit (datasheet 38.6.3). Matches are told at the end of the period that they lie in.
+//! A comparison unit (datasheet 38.6.3). Matches are signalled at the end of the period in which they occur.
 
 const CEN: u32 = 1;
 

@@ -13,17 +13,15 @@ mod protection;
 mod registers;
 mod synchronous;
 
-use crate::model::{Context, Cycles, Peripheral, Signal};
+use crate::model::{Context, Cycles};
 use crate::pdc::Pdc;
-use channel::{Channel, Timing};
+use channel::{CHANNELS, Channel, Timing, channel_clock};
 use comparison::Comparison;
 use protection::Protection;
 use synchronous::Synchronous;
 
-const CHANNELS: usize = 8;
 /// PIOC lines of PWML0 … PWML7, as peripheral B (datasheet 9.3.3).
 const LOW_SIDE_LINES: [u32; CHANNELS] = [2, 4, 6, 8, 21, 22, 23, 24];
-const PIOC: u8 = 2;
 
 /// The controller.
 #[derive(Debug, Clone)]
@@ -49,8 +47,8 @@ pub struct Pwm {
     pdc: Pdc,
     /// Lines of PIOC that belong to peripheral B.
     pins: u32,
-    /// What the world was told last.
-    told: [Option<(u32, u32)>; CHANNELS],
+    /// Duty of each channel as last reported to the world.
+    reported: [Option<(u32, u32)>; CHANNELS],
 }
 
 impl Default for Pwm {
@@ -81,7 +79,7 @@ impl Pwm {
             protection: Protection::default(),
             pdc: Pdc::new(),
             pins: 0,
-            told: [None; CHANNELS],
+            reported: [None; CHANNELS],
         }
     }
 
@@ -98,11 +96,11 @@ impl Pwm {
         let channels = if channels & 1 == 0 { channels } else { channels | self.synchronous.channels() };
         for index in 0..CHANNELS {
             if channels & (1 << index) != 0 {
-                let clock = registers::channel_clock(self.channels[index].mode, self.clock, context.master_clock_hz);
+                let clock = channel_clock(self.channels[index].mode, self.clock, context.master_clock_hz);
                 self.channels[index].enable(clock, context.now);
             }
         }
-        self.tell(context.now, context);
+        self.report_duties(context.now, context);
     }
 
     /// Disabling waits for the end of the period.
@@ -129,8 +127,8 @@ impl Pwm {
         (0..CHANNELS).filter(move |member| *member == index || followers & (1 << member) != 0)
     }
 
-    /// Whether the end of a period of this channel changes more than its flag.
-    fn has_business(&self, index: usize) -> bool {
+    /// True if the end of a period of this channel changes more than its flag.
+    fn acts_at_period_end(&self, index: usize) -> bool {
         let waits = |member: usize| {
             let overrides = (self.override_set | self.override_clear) & Self::override_bits(member) != 0;
             self.channels[member].stopping || overrides
@@ -147,7 +145,7 @@ impl Pwm {
         {
             self.channel_status |= 1 << index;
             let timing = self.timing(index);
-            if self.has_business(index) {
+            if self.acts_at_period_end(index) {
                 self.channels[index].next_period(timing);
                 self.end_period(index, end, context);
             } else {
@@ -156,10 +154,10 @@ impl Pwm {
         }
     }
 
-    /// What waits for the end of a period of a channel, and of those that follow it.
+    /// Applies the changes that wait for the end of a period of a channel, and of those that follow it.
     fn end_period(&mut self, index: usize, end: Cycles, context: &mut Context) {
         for member in self.members(index) {
-            self.channels[member].stop_if_asked();
+            self.channels[member].stop_if_requested();
             let bits = Self::override_bits(member);
             self.overridden = (self.overridden | self.override_set & bits) & !(self.override_clear & bits);
             self.override_set &= !bits;
@@ -177,7 +175,7 @@ impl Pwm {
                 self.update_status |= comparison.end_period(bit);
             }
         }
-        self.tell(end, context);
+        self.report_duties(end, context);
     }
 
     /// High clocks of PWML and clocks of its period; `None` where the pin is not the PWM's.
@@ -193,12 +191,12 @@ impl Pwm {
         })
     }
 
-    /// Tells the world what has changed.
-    fn tell(&mut self, at: Cycles, context: &mut Context) {
+    /// Reports changed duties to the world.
+    fn report_duties(&mut self, at: Cycles, context: &mut Context) {
         for index in 0..CHANNELS {
             let duty = self.low_side(index);
-            if duty != self.told[index] {
-                self.told[index] = duty;
+            if duty != self.reported[index] {
+                self.reported[index] = duty;
                 context.world.pwm(index as u8, duty, at);
             }
         }
@@ -208,56 +206,6 @@ impl Pwm {
         let end = if self.pdc.end_of_transmit() { synchronous::ENDTX } else { 0 };
         let empty = if self.pdc.transmit_buffer_empty() { synchronous::TXBUFE } else { 0 };
         self.update_status | end | empty
-    }
-}
-
-impl Peripheral for Pwm {
-    fn read(&mut self, offset: u32, context: &mut Context) -> u32 {
-        self.read_register(offset, context)
-    }
-
-    fn write(&mut self, offset: u32, value: u32, context: &mut Context) {
-        self.write_register(offset, value, context);
-        self.tell(context.now, context);
-    }
-
-    fn advance(&mut self, context: &mut Context) {
-        for index in 0..CHANNELS {
-            if self.leader(index) == index {
-                self.advance_channel(index, context);
-            }
-        }
-    }
-
-    fn next_event(&self) -> Option<Cycles> {
-        (0..CHANNELS)
-            .filter(|index| self.leader(*index) == *index)
-            .filter(|index| self.has_business(*index) || self.channel_mask & !self.channel_status & (1 << index) != 0)
-            .filter_map(|index| self.channels[index].period_end(self.timing(index)))
-            .min()
-    }
-
-    fn interrupt(&self) -> bool {
-        self.channel_status & self.channel_mask != 0 || self.update_status() & self.update_mask != 0
-    }
-
-    fn signal(&mut self, signal: Signal, context: &mut Context) {
-        match signal {
-            Signal::Pins { port: PIOC, b, .. } => self.pins = b,
-            Signal::MasterClock(hz) => {
-                for channel in &mut self.channels {
-                    let clock = registers::channel_clock(channel.mode, self.clock, hz);
-                    channel.follow_clock(clock, context.now);
-                }
-            }
-            _ => {}
-        }
-        self.tell(context.now, context);
-    }
-
-    /// The world learns of it with the next signal.
-    fn reset(&mut self) {
-        *self = Self { told: self.told, ..Self::new() };
     }
 }
 

@@ -31,7 +31,7 @@ impl Protection {
         self.software | self.hardware << 8 | violation
     }
 
-    /// Whether the register at `offset` may be written; notes the violation where not.
+    /// True if the register at `offset` may be written; else records the violation.
     pub fn permits(&mut self, offset: u32) -> bool {
         let Some(group) = group(offset) else { return true };
         let refused = (self.software | self.hardware) & (1 << group) != 0;
@@ -42,7 +42,7 @@ impl Protection {
     }
 }
 
-/// The group of a register, where it has one.
+/// The group of a register, if it has one.
 fn group(offset: u32) -> Option<u32> {
     match offset {
         0x00 => Some(0),

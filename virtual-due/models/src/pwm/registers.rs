@@ -1,8 +1,9 @@
-//! The PWM's registers (datasheet 38.7).
+//! The PWM as a peripheral: access to its registers (datasheet 38.7), time, its pins.
 
-use super::channel::Clock;
-use super::{Pdc, Pwm};
-use crate::model::Context;
+use super::Pwm;
+use super::channel::{CHANNELS, channel_clock};
+use crate::model::{Context, Cycles, Peripheral, Signal};
+use crate::pdc::Pdc;
 
 const CLK: u32 = 0x00;
 const ENA: u32 = 0x04;
@@ -53,24 +54,10 @@ const DTUPD: u32 = 0x1C;
 
 const OVERRIDE_BITS: u32 = 0xFF_00FF;
 
-/// The clock that CMR.CPRE selects: MCK / 2^CPRE, CLKA, or CLKB (datasheet 38.6.1).
-pub fn channel_clock(mode: u32, clock_register: u32, master_clock_hz: u32) -> Clock {
-    let linear = |shift: u32| {
-        let divisor = (clock_register >> shift) & 0xFF;
-        let prescaler = (clock_register >> (shift + 8)) & 15;
-        // DIV = 0 turns it off.
-        (if prescaler <= 10 { master_clock_hz } else { 0 }, divisor << prescaler.min(10))
-    };
-    match mode & 15 {
-        prescaler @ 0..=10 => (master_clock_hz, 1 << prescaler),
-        11 => linear(0),
-        12 => linear(16),
-        _ => (0, 1),
-    }
-}
+const PIOC: u8 = 2;
 
 impl Pwm {
-    pub(super) fn read_register(&mut self, offset: u32, context: &mut Context) -> u32 {
+    fn read_register(&mut self, offset: u32, context: &mut Context) -> u32 {
         match offset {
             CLK => self.clock,
             SR => self.enabled(),
@@ -128,7 +115,7 @@ impl Pwm {
         }
     }
 
-    pub(super) fn write_register(&mut self, offset: u32, value: u32, context: &mut Context) {
+    fn write_register(&mut self, offset: u32, value: u32, context: &mut Context) {
         if !self.protection.permits(offset) {
             return;
         }
@@ -163,7 +150,7 @@ impl Pwm {
         }
     }
 
-    /// Registers that are kept and do nothing: what would make them act is reported.
+    /// Stores registers that have no effect; values that would have one are reported.
     fn store(&mut self, offset: u32, value: u32, context: &mut Context) {
         let acts = matches!(offset, FPE1 | FPE2 | ELMR0 | ELMR1 | SMMR) && value != 0;
         if acts {
@@ -214,5 +201,57 @@ impl Pwm {
             let clock = channel_clock(channel.mode, self.clock, context.master_clock_hz);
             channel.follow_clock(clock, context.now);
         }
+    }
+}
+
+impl Peripheral for Pwm {
+    fn read(&mut self, offset: u32, context: &mut Context) -> u32 {
+        self.read_register(offset, context)
+    }
+
+    fn write(&mut self, offset: u32, value: u32, context: &mut Context) {
+        self.write_register(offset, value, context);
+        self.report_duties(context.now, context);
+    }
+
+    fn advance(&mut self, context: &mut Context) {
+        for index in 0..CHANNELS {
+            if self.leader(index) == index {
+                self.advance_channel(index, context);
+            }
+        }
+    }
+
+    fn next_event(&self) -> Option<Cycles> {
+        (0..CHANNELS)
+            .filter(|index| self.leader(*index) == *index)
+            .filter(|index| {
+                self.acts_at_period_end(*index) || self.channel_mask & !self.channel_status & (1 << index) != 0
+            })
+            .filter_map(|index| self.channels[index].period_end(self.timing(index)))
+            .min()
+    }
+
+    fn interrupt(&self) -> bool {
+        self.channel_status & self.channel_mask != 0 || self.update_status() & self.update_mask != 0
+    }
+
+    fn signal(&mut self, signal: Signal, context: &mut Context) {
+        match signal {
+            Signal::Pins { port: PIOC, b, .. } => self.pins = b,
+            Signal::MasterClock(hz) => {
+                for channel in &mut self.channels {
+                    let clock = channel_clock(channel.mode, self.clock, hz);
+                    channel.follow_clock(clock, context.now);
+                }
+            }
+            _ => {}
+        }
+        self.report_duties(context.now, context);
+    }
+
+    /// The change is reported to the world with the next signal.
+    fn reset(&mut self) {
+        *self = Self { reported: self.reported, ..Self::new() };
     }
 }

@@ -1,9 +1,8 @@
 //! Synchronous channels: they share channel 0's counter, and their registers are updated together (datasheet 38.6.2.6).
 
-use super::channel::Channel;
-use super::{CHANNELS, Pdc};
+use super::channel::{CHANNELS, Channel};
 use crate::model::Memory;
-use crate::pdc::Width;
+use crate::pdc::{Pdc, Width};
 
 pub const WRDY: u32 = 1 << 0;
 pub const ENDTX: u32 = 1 << 1;
@@ -41,7 +40,7 @@ impl Synchronous {
         (self.mode >> 16) & 3
     }
 
-    /// Whether the end of a period may change anything.
+    /// True if the end of a period may change anything.
     pub fn acts(&self) -> bool {
         self.unlocked || self.update_mode() != 0
     }

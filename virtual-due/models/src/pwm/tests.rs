@@ -44,7 +44,7 @@ fn cprdupd(channel: u32) -> u32 {
     cmr(channel) + 0x10
 }
 
-/// With all PWML pins given to it, and nothing told so far.
+/// A controller with all PWML pins, before any report to the world.
 fn pwm() -> Bench<Pwm> {
     let mut bench = Bench::new(Pwm::new());
     let lines = [2, 4, 6, 8, 21, 22, 23, 24].iter().fold(0, |lines, line| lines | 1 << line);
@@ -63,7 +63,7 @@ fn running(channel: u32, mode: u32) -> Bench<Pwm> {
 }
 
 fn last(bench: &Bench<Pwm>) -> (u8, Option<(u32, u32)>, u64) {
-    *bench.world.duties.last().expect("the world was told something")
+    *bench.world.duties.last().expect("a duty was reported")
 }
 
 #[test]

@@ -35,7 +35,7 @@ const MTIOB: u32 = 1 << 18;
 /// Status bits that the counter itself sets.
 const COUNTER_EVENTS: u32 = COVFS | CPAS | CPBS | CPCS;
 
-/// Whether WPMR protects the register at this offset of a channel (datasheet 36.7.21).
+/// True if WPMR protects the register at this offset of a channel (datasheet 36.7.21).
 pub fn is_protected(offset: u32) -> bool {
     matches!(offset, CMR | SMMR | RA | RB | RC)
 }
@@ -68,7 +68,7 @@ pub struct Channel {
     pub(super) unread: [bool; 2],
     /// TIOA may trigger the ADC: its edges are events.
     triggers: bool,
-    /// Rising edges of such a TIOA that were not told yet.
+    /// Rising edges of such a TIOA that were not signalled yet.
     pub(super) edges: usize,
 }
 
@@ -133,7 +133,7 @@ impl Channel {
 
     /// False where there is no such register. RA and RB are read-only in capture mode.
     pub fn write(&mut self, offset: u32, value: u32, context: &mut Context) -> bool {
-        self.settle(context.now);
+        self.latch_counter(context.now);
         match offset {
             CCR => self.control(value, context.now),
             CMR => {
@@ -187,7 +187,7 @@ impl Channel {
     }
 
     pub(super) fn stop_clock(&mut self, now: Cycles) {
-        self.settle(now);
+        self.latch_counter(now);
         self.started = false;
     }
 
@@ -205,25 +205,25 @@ impl Channel {
         if self.counting_down { self.value.wrapping_sub(passed) } else { self.value.wrapping_add(passed) }
     }
 
-    /// Notes the counter's value as of now, so that what is written next does not act on the past.
-    fn settle(&mut self, now: Cycles) {
+    /// Latches the counter's value now, so that registers written next have no effect on the past.
+    fn latch_counter(&mut self, now: Cycles) {
         self.value = self.counter(now);
         if self.started {
             self.value_tick = self.value_tick.max(self.clock.at(now));
         }
     }
 
-    /// Takes over a clock that has changed: the counter goes on from its value.
+    /// Switches to a changed clock: the counter continues from its value.
     fn follow_clock(&mut self, context: &Context) {
         let (hz, divisor) = self.mode.clock(context.master_clock_hz);
         if (self.clock.hz, self.clock.divisor) != (hz, divisor) {
-            self.settle(context.now);
+            self.latch_counter(context.now);
             self.clock = Ticks { origin: context.now, hz, divisor };
             self.value_tick = 0;
         }
     }
 
-    /// Does all that the counter meets up to now.
+    /// Advances the counter to now, with all compare events on the way.
     pub fn advance(&mut self, context: &Context) {
         while let Some((ticks, value)) = self.next_meeting()
             && let Some(at) = self.clock.time(self.value_tick + ticks)
@@ -302,7 +302,7 @@ impl Channel {
         }
     }
 
-    /// When the counter next meets something that raises the interrupt or moves a TIOA that is watched.
+    /// Time of the counter's next event that raises the interrupt or moves a TIOA that may trigger the ADC.
     pub fn next_event(&self) -> Option<Cycles> {
         let raises = self.interrupt_mask & COUNTER_EVENTS & !self.status != 0;
         let moves = self.triggers && self.mode.is_waveform() && (self.mode.a_at_ra() != 0 || self.mode.a_at_rc() != 0);

@@ -1,8 +1,8 @@
 //! A timer counter block (datasheet chapter 36): three channels of 32 bits, each with an interrupt of its own.
 //!
 //! Channel `c` has its registers at `0x40 · c`; the block's own follow at 0xC0. There is an interrupt line for each
-//! channel. Block 0 tells of the rising edges of its TIOA outputs, which may trigger the ADC, each at its time. The quadrature
-//! decoder is not modelled, and the external clocks XC0 to XC2 stand still.
+//! channel. Block 0 signals the rising edges of its TIOA outputs, which may trigger the ADC, each at its time. The quadrature
+//! decoder is not modelled, and the external clocks XC0 to XC2 do not run.
 
 mod capture;
 mod channel;
@@ -64,14 +64,14 @@ impl Tc {
         }
     }
 
-    fn tell_edges(&mut self, context: &mut Context) {
+    fn signal_edges(&mut self, context: &mut Context) {
         for (number, channel) in (0..).zip(&mut self.channels) {
             let edges = std::mem::take(&mut channel.edges);
             context.signals.extend((0..edges).map(|_| Signal::Tioa(number)));
         }
     }
 
-    /// Shows the channels the levels that the outside gives to their pins; of edges between two looks only the last is seen.
+    /// Samples the outside levels of the channels' pins; of edges between two samples only the last is detected.
     fn watch_pins(&mut self, context: &mut Context) {
         let pins = PINS[3 * self.block..].iter();
         for (channel, (tioa, tiob)) in self.channels.iter_mut().zip(pins) {
@@ -139,7 +139,7 @@ impl Peripheral for Tc {
         let name = self.name();
         let Some(channel) = self.channels.get_mut((offset / 0x40) as usize) else {
             self.write_block(offset, value, context);
-            self.tell_edges(context);
+            self.signal_edges(context);
             return;
         };
         if channel::is_protected(offset % 0x40) && !self.protection.permits(offset) {
@@ -148,7 +148,7 @@ impl Peripheral for Tc {
         if !channel.write(offset % 0x40, value, context) {
             context.report.unmodelled(name, offset);
         }
-        self.tell_edges(context);
+        self.signal_edges(context);
     }
 
     fn advance(&mut self, context: &mut Context) {
@@ -156,10 +156,10 @@ impl Peripheral for Tc {
             channel.advance(context);
         }
         self.watch_pins(context);
-        self.tell_edges(context);
+        self.signal_edges(context);
     }
 
-    /// The counters go on from where they are at another master clock.
+    /// At another master clock the counters continue from their values.
     fn signal(&mut self, signal: Signal, context: &mut Context) {
         if let Signal::MasterClock(_) = signal {
             self.advance(context);

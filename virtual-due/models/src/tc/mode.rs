@@ -4,7 +4,7 @@
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Mode(pub u32);
 
-/// What the counter does at its top in waveform mode.
+/// Behaviour of the counter at its top in waveform mode.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Waveform {
     Up,
@@ -13,12 +13,12 @@ pub enum Waveform {
     UpDownRc,
 }
 
-/// Which edges a field selects.
+/// The edges that a field selects.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Edges(u32);
 
 impl Edges {
-    /// Whether a change to `level` is one of them.
+    /// True if a change to `level` is one of them.
     pub fn include(self, level: bool) -> bool {
         self.0 & (if level { 1 } else { 2 }) != 0
     }

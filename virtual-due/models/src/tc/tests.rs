@@ -207,7 +207,7 @@ fn software_trigger_sets_outputs() {
 }
 
 #[test]
-fn capture_loads_ra_and_rb_and_tells_what_was_lost() {
+fn capture_loads_ra_and_rb_and_flags_lost_values() {
     // RA on rising, RB on falling edges.
     let mut bench = started(1 << 16 | 2 << 18, 0, 0, 0);
     let edge = |bench: &mut Bench<Tc>, at: u64, level: bool| {

@@ -1,4 +1,4 @@
-//! Waveform mode (datasheet 36.6.9 to 36.6.14): what happens where the counter meets RA, RB, RC or an end.
+//! Waveform mode (datasheet 36.6.9 to 36.6.14): the counter's events at RA, RB, RC and its ends.
 
 use super::channel::{CPAS, CPBS, CPCS, Channel, ETRGS};
 use super::mode::Waveform;

@@ -1,14 +1,14 @@
 //! The master (datasheet 33.8): a frame is a chain of steps, each of a byte or a condition on the wires.
 //!
-//! The last byte that a write has sent is followed by a clock held low until THR is written again or STOP is asked for. A read
-//! goes on byte by byte until STOP is asked for, whether or not RHR is read in time.
+//! After the last byte of a write the clock is held low until THR is written again or STOP is requested. A read continues byte
+//! by byte until STOP is requested, whether or not RHR is read in time.
 
-use super::{ARBLST, NACK, OVRE, RXRDY, TXCOMP, TXRDY};
+use super::status::{ARBLST, NACK, OVRE, RXRDY, TXCOMP, TXRDY};
 use crate::model::{Context, Cycles};
 
 const MREAD: u32 = 1 << 12;
 
-/// What is on the wires.
+/// A step on the wires.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Step {
     /// A start condition and the address.
@@ -19,7 +19,7 @@ enum Step {
     Write(u8),
     /// A byte from the device.
     Read,
-    /// The clock is held low: nothing to send, and no STOP asked for.
+    /// The clock is held low: nothing to send, and no STOP requested.
     Hold,
     /// A stop condition.
     Stop,
@@ -31,17 +31,17 @@ struct Frame {
     step: Step,
     /// The step's clocks run; before that a device may stretch the clock.
     clocking: bool,
-    /// When the clocks begin, or end.
+    /// Instant at which the clocks begin, or end.
     at: Cycles,
     /// It has the device's internal address still to send.
     internal: bool,
     quick: bool,
 }
 
-/// What the firmware asked for after the byte under way.
+/// The state that the firmware requested after the byte under way.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Then {
-    GoOn,
+enum NextState {
+    Continue,
     Stop,
     Start,
     /// A frame, and the end of that one after its first byte.
@@ -65,7 +65,7 @@ pub struct Master {
     received: u8,
     holding: Option<u8>,
     frame: Option<Frame>,
-    then: Then,
+    next_state: NextState,
 }
 
 impl Master {
@@ -82,7 +82,7 @@ impl Master {
             received: 0,
             holding: None,
             frame: None,
-            then: Then::GoOn,
+            next_state: NextState::Continue,
         }
     }
 
@@ -118,13 +118,13 @@ impl Master {
         (self.status & RXRDY != 0).then_some(self.received)
     }
 
-    /// RHR, whatever it holds; RXRDY is cleared.
+    /// RHR, also if it was read already; RXRDY is cleared.
     pub fn take_received(&mut self) -> u8 {
         self.status &= !RXRDY;
         self.received
     }
 
-    /// THR is free, and what it is given goes to a device.
+    /// True if THR is free, and its next byte is for a device.
     pub fn wants_byte(&self) -> bool {
         self.enabled && self.status & TXRDY != 0 && !self.reads()
     }
@@ -147,13 +147,13 @@ impl Master {
         }
     }
 
-    /// START begins a frame, or another one on the heels of the one under way.
+    /// START begins a frame, or another one immediately after the one under way.
     pub fn start(&mut self, context: &mut Context) {
         match self.frame {
             _ if !self.enabled => {}
             None => self.begin_frame(false, context),
             Some(frame) => {
-                self.then = Then::Start;
+                self.next_state = NextState::Start;
                 if frame.step == Step::Hold {
                     self.next_to_device(context.now, context);
                 }
@@ -161,13 +161,13 @@ impl Master {
         }
     }
 
-    /// STOP ends the frame after the byte under way, and after the one in THR; behind a START that still waits, the frame
+    /// STOP ends the frame after the byte under way, and after the one in THR; after a START that still waits, the frame
     /// that this begins.
     pub fn stop(&mut self, context: &mut Context) {
         if let Some(frame) = self.frame {
-            self.then = match self.then {
-                Then::Start | Then::StartAndStop => Then::StartAndStop,
-                Then::GoOn | Then::Stop => Then::Stop,
+            self.next_state = match self.next_state {
+                NextState::Start | NextState::StartAndStop => NextState::StartAndStop,
+                NextState::Continue | NextState::Stop => NextState::Stop,
             };
             if frame.step == Step::Hold {
                 self.next_to_device(context.now, context);
@@ -184,19 +184,19 @@ impl Master {
 
     fn begin_frame(&mut self, quick: bool, context: &mut Context) {
         self.status &= !TXCOMP;
-        self.then = Then::GoOn;
+        self.next_state = NextState::Continue;
         let internal = !quick && (self.mode >> 8) & 3 != 0;
         let address = (self.mode >> 16) as u8 & 0x7F;
         let step = Step::Address { address, read: self.reads() && !internal };
         self.frame = Some(Frame { step, clocking: false, at: context.now, internal, quick });
     }
 
-    /// When the next step begins or ends. Where the clock is held low only the firmware can go on.
+    /// Time at which the next step begins or ends. While the clock is held low only the firmware can continue.
     pub fn next_event(&self) -> Option<Cycles> {
         self.frame.filter(|frame| frame.step != Step::Hold).map(|frame| frame.at)
     }
 
-    /// Begins or ends a step that is due; false where none is.
+    /// Begins or ends a step that is due; false if no step is.
     pub fn step(&mut self, context: &mut Context) -> bool {
         let Some(frame) = self.frame.filter(|frame| frame.step != Step::Hold && frame.at <= context.now) else {
             return false;
@@ -204,7 +204,7 @@ impl Master {
         let (scl_low, sda_low) =
             if self.connected { context.world.i2c(self.index).held(frame.at) } else { (false, false) };
         if scl_low {
-            // Nothing moves until the clock is let go; look again some bits later.
+            // Nothing moves until the clock is released; poll again some bits later.
             self.frame = Some(Frame { at: context.now + 8 * self.bit(context).max(1), ..frame });
         } else if !frame.clocking {
             let at = frame.at + self.duration(frame.step, context);
@@ -242,7 +242,7 @@ impl Master {
     fn end_frame(&mut self, more: u32) {
         self.frame = None;
         self.holding = None;
-        self.then = Then::GoOn;
+        self.next_state = NextState::Continue;
         self.status |= TXCOMP | TXRDY | more;
     }
 
@@ -275,19 +275,19 @@ impl Master {
                 }
                 self.end_frame(NACK);
             }
-            Step::Address { .. } if frame.quick => self.go_on(Step::Stop, at, context),
+            Step::Address { .. } if frame.quick => self.begin_step(Step::Stop, at, context),
             Step::Address { read: false, .. } if frame.internal => {
                 let after = ((self.mode >> 8) & 3).saturating_sub(1);
-                self.go_on(Step::InternalAddress { address: self.internal_address, after }, at, context);
+                self.begin_step(Step::InternalAddress { address: self.internal_address, after }, at, context);
             }
             Step::InternalAddress { address, after: after @ 1.. } => {
-                self.go_on(Step::InternalAddress { address, after: after - 1 }, at, context);
+                self.begin_step(Step::InternalAddress { address, after: after - 1 }, at, context);
             }
             Step::InternalAddress { .. } if self.reads() => {
                 let address = (self.mode >> 16) as u8 & 0x7F;
-                self.go_on(Step::Address { address, read: true }, at, context);
+                self.begin_step(Step::Address { address, read: true }, at, context);
             }
-            Step::Address { read: true, .. } => self.go_on(Step::Read, at, context),
+            Step::Address { read: true, .. } => self.begin_step(Step::Read, at, context),
             _ => self.next_to_device(at, context),
         }
     }
@@ -300,7 +300,7 @@ impl Master {
         self.status |= RXRDY;
     }
 
-    /// The next byte of a read, unless STOP was asked for meanwhile: then this one was not acknowledged.
+    /// The next byte of a read, unless STOP was requested meanwhile: then this one was not acknowledged.
     fn next_from_device(&mut self, at: Cycles, context: &mut Context) {
         self.after_byte(Step::Read, at, context);
     }
@@ -309,27 +309,27 @@ impl Master {
     fn next_to_device(&mut self, at: Cycles, context: &mut Context) {
         if let Some(byte) = self.holding.take() {
             self.status |= TXRDY;
-            self.go_on(Step::Write(byte), at, context);
+            self.begin_step(Step::Write(byte), at, context);
             return;
         }
         self.after_byte(Step::Hold, at, context);
     }
 
-    /// What was asked for, or else `step`.
+    /// Begins the requested step, or else `step`.
     fn after_byte(&mut self, step: Step, at: Cycles, context: &mut Context) {
-        match self.then {
-            Then::GoOn => self.go_on(step, at, context),
-            Then::Stop => self.go_on(Step::Stop, at, context),
-            Then::Start => self.begin_frame(false, context),
-            Then::StartAndStop => {
+        match self.next_state {
+            NextState::Continue => self.begin_step(step, at, context),
+            NextState::Stop => self.begin_step(Step::Stop, at, context),
+            NextState::Start => self.begin_frame(false, context),
+            NextState::StartAndStop => {
                 self.begin_frame(false, context);
-                self.then = Then::Stop;
+                self.next_state = NextState::Stop;
             }
         }
     }
 
-    /// The step begins when devices let go of the clock.
-    fn go_on(&mut self, step: Step, at: Cycles, context: &mut Context) {
+    /// Begins the step when devices release the clock.
+    fn begin_step(&mut self, step: Step, at: Cycles, context: &mut Context) {
         let stretch = if self.connected { context.world.i2c(self.index).stretch(at) } else { 0 };
         if let Some(frame) = &mut self.frame {
             *frame = Frame { step, clocking: false, at: at + stretch, ..*frame };
@@ -338,7 +338,7 @@ impl Master {
 }
 
 impl Step {
-    /// The master lets SDA rise in it, which it does not where a device holds it.
+    /// True if the master lets SDA rise in this step, which fails if a device holds SDA low.
     fn sends_a_one(self) -> bool {
         match self {
             Self::Address { address, read } => address != 0 || read,

@@ -1,12 +1,14 @@
 //! TWI0 and TWI1 (datasheet chapter 33) as masters. Slave mode is reported.
 
 mod master;
+mod status;
 #[cfg(test)]
 mod tests;
 
 use crate::model::{Context, Cycles, Peripheral, Signal};
 use crate::pdc::{Pdc, Width};
 use master::Master;
+use status::{ENDRX, ENDTX, RXBUFF, SVREAD, TXBUFE};
 
 const CR: u32 = 0x00;
 const MMR: u32 = 0x04;
@@ -27,18 +29,6 @@ const MSDIS: u32 = 1 << 3;
 const SVEN: u32 = 1 << 4;
 const QUICK: u32 = 1 << 6;
 const SWRST: u32 = 1 << 7;
-
-const TXCOMP: u32 = 1 << 0;
-const RXRDY: u32 = 1 << 1;
-const TXRDY: u32 = 1 << 2;
-const SVREAD: u32 = 1 << 3;
-const OVRE: u32 = 1 << 6;
-const NACK: u32 = 1 << 8;
-const ARBLST: u32 = 1 << 9;
-const ENDRX: u32 = 1 << 12;
-const ENDTX: u32 = 1 << 13;
-const RXBUFF: u32 = 1 << 14;
-const TXBUFE: u32 = 1 << 15;
 
 /// Port and lines of TWD and TWCK, as peripheral A: PA17 and PA18, PB12 and PB13 (datasheet 9.3).
 const PINS: [(u8, u32); 2] = [(0, 1 << 17 | 1 << 18), (1, 1 << 12 | 1 << 13)];
@@ -98,7 +88,7 @@ impl Twi {
         }
     }
 
-    /// All but the PDC, which is another macrocell, and which pins are connected.
+    /// Resets all but the PDC, which is another macrocell, and the connection of the pins.
     fn software_reset(&mut self) {
         let connected = self.master.connected;
         *self = Self { pdc: self.pdc.clone(), ..Self::new(self.index) };

@@ -176,7 +176,7 @@ fn stop_after_the_next_to_last_byte_reads_one_more() {
 }
 
 #[test]
-fn read_without_a_stop_goes_on_and_overruns() {
+fn read_without_a_stop_continues_and_overruns() {
     let mut bench = master(DEVICE | MREAD);
     bench.write(CR, START);
     bench.run(ADDRESS + 5 * BYTE);
@@ -326,7 +326,7 @@ fn slave_with_an_address_is_reported() {
 }
 
 #[test]
-fn stop_that_is_asked_for_while_the_last_byte_comes_ends_the_read_behind_it() {
+fn stop_that_is_requested_during_the_last_byte_ends_the_read_after_it() {
     let mut bench = master(DEVICE | MREAD);
     bench.world.device.to_read.extend([1, 2, 3]);
     bench.write(CR, START);
@@ -344,7 +344,7 @@ fn stop_that_is_asked_for_while_the_last_byte_comes_ends_the_read_behind_it() {
 }
 
 #[test]
-fn one_byte_is_read_behind_a_write_without_a_stop_between() {
+fn one_byte_is_read_after_a_write_without_a_stop_between() {
     let mut bench = master(DEVICE);
     bench.world.device.to_read.push_back(0xA0);
     bench.write(THR, 0x00);

@@ -1,15 +1,15 @@
-//! Sensors that the user breaks while the board runs: lines on standard input.
+//! Faults that the user injects while the board runs, by lines on standard input.
 
 use std::io::{BufRead, stdin};
 use std::sync::mpsc::{Receiver, channel};
 
 use virtual_due::rig::{Faults, ImuFault, Rail};
 
-/// Lines from standard input, where that is not the serial line.
-pub struct Breakage(Receiver<String>);
+/// Reader of faults from standard input, where that is not the serial line.
+pub struct FaultInjector(Receiver<String>);
 
-impl Breakage {
-    /// Begins to read.
+impl FaultInjector {
+    /// Starts to read lines.
     pub fn new() -> Self {
         let (sender, lines) = channel();
         std::thread::spawn(move || {
@@ -22,7 +22,7 @@ impl Breakage {
         Self(lines)
     }
 
-    /// Does what came, and says what it does not understand.
+    /// Applies the faults of the lines received; prints those that it cannot parse.
     pub fn apply(&self, faults: &mut Faults) {
         for line in self.0.try_iter() {
             if apply(line.trim(), faults).is_none() {

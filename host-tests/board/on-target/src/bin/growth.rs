@@ -4,7 +4,7 @@
 #![no_std]
 #![no_main]
 
-use board_probe::step::{TABLES, alone, steps};
+use on_target_tests::step::{TABLES, alone, steps};
 
 #[cortex_m_rt::entry]
 fn main() -> ! {

@@ -1,19 +1,19 @@
-//! The estimator against the method's mathematics written down literally, over random sessions.
+//! The estimator against the reference model, over random sessions.
 //!
 //! The tolerances: fixed point within 1e-6 rad and 0.002 mm of floats; floats within 1e-7 rad and m of the
-//! literal mathematics, as angles are whole numbers of 2⁻³² turns and the polynomials err by up to 2e-11.
+//! reference model, as angles are whole numbers of 2⁻³² turns and the polynomials err by up to 2e-11.
 
 mod synthetic;
 
 use estimator_core::{ArmConfig, Estimator, FusedOps, Method, Q};
-use host_tests::literal::{self, Answer, Shape};
+use host_tests::reference_model::{self, Answer, Shape};
 use synthetic::{Kind, NoiseRanges, Random};
 
-/// So close to the threshold one side may correct and the other not, rad.
+/// Distance from the threshold within which one side may correct and the other not, rad.
 const BRINK: f64 = 1e-6;
 
-/// The estimator's answers in the oracle's form.
-fn estimated<S: FusedOps>(arm: &literal::Arm, samples: &[estimator_core::Sample<16>]) -> Vec<[Shape; 4]> {
+/// The estimator's answers in the reference model's form.
+fn estimated<S: FusedOps>(arm: &reference_model::Arm, samples: &[estimator_core::Sample<16>]) -> Vec<[Shape; 4]> {
     let segments = synthetic::segments::<S>(arm);
     let (anchor, tare_samples) = synthetic::rule(arm);
     let table = ArmConfig { tare_samples, anchor, ..ArmConfig::uncalibrated(&segments) };
@@ -48,7 +48,7 @@ impl Differences {
         one: &[[Shape; 4]],
         other: &[[Shape; 4]],
         offsets: &[Answer],
-        arm: &literal::Arm,
+        arm: &reference_model::Arm,
     ) {
         let mut stepped = false;
         for (t, (one, other)) in one.iter().zip(other).enumerate() {
@@ -96,22 +96,32 @@ fn differs(one: &Shape, other: &Shape, by: f64) -> bool {
     one.theta.iter().zip(&other.theta).any(|pair| matches!(pair, (Some(one), Some(other)) if (one - other).abs() > by))
 }
 
-/// Runs a session by the oracle, f64 and Q, and compares; gives the oracle's answers and the rows.
-fn check(kind: &Kind, literal: &mut Differences, fixed: &mut Differences) -> (Vec<literal::Row>, Vec<Answer>) {
+/// Runs a session by the reference model, f64 and Q, and compares; returns the rows and the reference model's answers.
+fn check(
+    kind: &Kind,
+    against_model: &mut Differences,
+    against_float: &mut Differences,
+) -> (Vec<reference_model::Row>, Vec<Answer>) {
     let mut random = Random(kind.seed);
     let arm = synthetic::arm(kind, &mut random);
     let (rows, samples) = synthetic::session(kind, &arm, &mut random);
-    let answers = literal::replay(&arm, &rows);
+    let answers = reference_model::replay(&arm, &rows);
     let expected: Vec<_> =
         answers.iter().map(|a| [a.bend.clone(), a.imu_o.clone(), a.imu_c.clone(), a.fusion.clone()]).collect();
     let float = estimated::<f64>(&arm, &samples);
-    literal.compare(&format!("f64 core against literal, {kind:?}"), &float, &expected, &answers, &arm);
+    against_model.compare(
+        &format!("f64 core against the reference model, {kind:?}"),
+        &float,
+        &expected,
+        &answers,
+        &arm,
+    );
     let board = estimated::<Q>(&arm, &samples);
-    fixed.compare(&format!("Q core against f64 core, {kind:?}"), &board, &float, &answers, &arm);
+    against_float.compare(&format!("Q core against f64 core, {kind:?}"), &board, &float, &answers, &arm);
     (rows, answers)
 }
 
-/// Filters around those that calibration proposes, and every H that |θ| ≤ 21 rad leaves room for.
+/// Filters around those that calibration proposes, and every H that is possible with |θ| ≤ 21 rad.
 const NORMAL: NoiseRanges = NoiseRanges { q: [0.05, 10.0], r_imu: [0.05, 5.0], h: [0.8, 1.25] };
 
 fn kind(seed: u64) -> Kind {
@@ -137,30 +147,30 @@ fn kinds(rate: f64, rows: usize, seeds: u64) -> impl Iterator<Item = Kind> {
     })
 }
 
-/// Checks these sessions within the tolerances, and that they are as hard as they are meant to be.
+/// Checks these sessions within the tolerances, and that they wrap and drift enough.
 fn check_all(what: &str, kinds: impl Iterator<Item = Kind>) {
-    let (mut literal, mut fixed) = (Differences::default(), Differences::default());
+    let (mut against_model, mut against_float) = (Differences::default(), Differences::default());
     let (mut wraps, mut farthest) = (0, 0.0_f64);
     for kind in kinds {
-        let (rows, answers) = check(&kind, &mut literal, &mut fixed);
+        let (rows, answers) = check(&kind, &mut against_model, &mut against_float);
         let headings: Vec<_> = rows.iter().filter_map(|row| row.headings[0]).collect();
         wraps += headings.windows(2).filter(|pair| (pair[1] - pair[0]).abs() > 3.0).count();
         let angles = answers.iter().flat_map(|answer| answer.imu_o.theta.iter().flatten());
         farthest = angles.fold(farthest, |far, theta| far.max(theta.abs()));
     }
-    literal.assert_within(&format!("f64 core against literal, {what}"), 1e-7, 1e-7);
-    fixed.assert_within(&format!("Q core against f64 core, {what}"), 1e-6, 2e-6);
+    against_model.assert_within(&format!("f64 core against the reference model, {what}"), 1e-7, 1e-7);
+    against_float.assert_within(&format!("Q core against f64 core, {what}"), 1e-6, 2e-6);
     assert!(wraps > 50, "the sessions wrap through 0/360: {wraps} times");
     assert!(farthest.to_degrees() > 720.0, "the sessions drift beyond 720°: {}°", farthest.to_degrees());
 }
 
 #[test]
-fn the_estimator_says_what_the_literal_mathematics_says_at_10_hz() {
+fn the_estimator_agrees_with_the_reference_model_at_10_hz() {
     check_all("10 Hz", kinds(10.0, 1500, 4));
 }
 
 #[test]
-fn the_estimator_says_what_the_literal_mathematics_says_at_100_hz() {
+fn the_estimator_agrees_with_the_reference_model_at_100_hz() {
     check_all("100 Hz", kinds(100.0, 3000, 3));
 }
 
@@ -170,27 +180,27 @@ fn a_day_of_drift_costs_an_arm_with_bend_sensors_no_digit() {
     check_all("75 rad of drift", (0..4).map(day));
 }
 
-/// What the tables may say, far from what fixed point can hold: floats only.
+/// Parameters of all tables, also those outside fixed point's range: floats only.
 #[test]
-fn filters_of_any_parameters_are_the_literal_ones_in_floats() {
+fn filters_of_any_parameters_agree_with_the_reference_model_in_floats() {
     let noise = NoiseRanges { q: [1e-6, 10.0], r_imu: [1e-4, 31.0], h: [0.3, 3.0] };
-    let (mut literal, mut unused) = (Differences::default(), Differences::default());
+    let (mut against_model, mut unused) = (Differences::default(), Differences::default());
     for kind in kinds(10.0, 1500, 2) {
-        check(&Kind { noise, ..kind }, &mut literal, &mut unused);
+        check(&Kind { noise, ..kind }, &mut against_model, &mut unused);
     }
-    literal.assert_within("f64 core against literal, any filter", 1e-7, 1e-7);
+    against_model.assert_within("f64 core against the reference model, any filter", 1e-7, 1e-7);
 }
 
 #[test]
-fn an_arm_without_any_bend_sensor_says_imu_o_alone() {
-    let (mut literal, mut fixed) = (Differences::default(), Differences::default());
-    let (_, answers) = check(&Kind { bend: [0, 0], ..kind(1) }, &mut literal, &mut fixed);
-    literal.assert_within("f64 core against literal, no bend sensor", 1e-7, 1e-7);
-    fixed.assert_within("Q core against f64 core, no bend sensor", 1e-6, 2e-6);
-    let says =
+fn an_arm_without_any_bend_sensor_has_imu_o_alone() {
+    let (mut against_model, mut against_float) = (Differences::default(), Differences::default());
+    let (_, answers) = check(&Kind { bend: [0, 0], ..kind(1) }, &mut against_model, &mut against_float);
+    against_model.assert_within("f64 core against the reference model, no bend sensor", 1e-7, 1e-7);
+    against_float.assert_within("Q core against f64 core, no bend sensor", 1e-6, 2e-6);
+    let has_angles =
         |shape: fn(&Answer) -> &Shape| answers.iter().any(|answer| shape(answer).theta.iter().any(Option::is_some));
     assert_eq!(
-        [says(|a| &a.bend), says(|a| &a.imu_o), says(|a| &a.imu_c), says(|a| &a.fusion)],
+        [has_angles(|a| &a.bend), has_angles(|a| &a.imu_o), has_angles(|a| &a.imu_c), has_angles(|a| &a.fusion)],
         [false, true, false, false]
     );
 }

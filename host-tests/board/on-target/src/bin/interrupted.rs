@@ -7,13 +7,13 @@ use core::fmt::Write;
 use core::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
 use atsam3x8e_hal::pac::Peripherals;
-use board_probe::arithmetic::hashes;
-use board_probe::line::Line;
 use cortex_m::peripheral::SYST;
 use cortex_m::peripheral::syst::SystClkSource;
+use on_target_tests::arithmetic::hashes;
+use on_target_tests::line::Line;
 
 const INPUTS: u32 = 50_000;
-/// Time from one interrupt to the next, cycles: another each time, so that every instruction is hit some time.
+/// Shortest time from one interrupt to the next, cycles; the time varies, so that every instruction is interrupted some time.
 const SHORTEST: u32 = 97;
 const LONGEST: u32 = 211;
 
@@ -38,14 +38,14 @@ fn main() -> ! {
     line.close()
 }
 
-/// Entered by the processor: hands on where it stacked the registers.
+/// Entered by the processor: passes on the address of the stacked registers.
 #[unsafe(naked)]
 #[unsafe(no_mangle)]
 extern "C" fn SysTick() {
     naked_asm!("mov r0, sp", "b {handler}", handler = sym on_interrupt)
 }
 
-/// Counts, and changes registers and flags as it likes.
+/// Counts, and changes registers and flags.
 extern "C" fn on_interrupt(stacked: &[u32; 8]) {
     /// The lower half of the stacked ITSTATE; it is not zero inside an IT block (ARMv7-M A7.3.3, B1.4.2).
     const IT_BLOCK: u32 = 0x0600_0C00;

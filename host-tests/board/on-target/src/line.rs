@@ -1,4 +1,4 @@
-//! The serial line: what a probe has found out, as text.
+//! The serial line, for the results of a test as text.
 
 use core::convert::Infallible;
 use core::fmt;
@@ -30,7 +30,7 @@ impl Line {
         Self(line.expect("250 000 Bd is exact").0)
     }
 
-    /// Says that this is all, and sleeps for ever.
+    /// Marks the end of the output, and sleeps.
     pub fn close(mut self) -> ! {
         let Ok(()) = self.0.write_all(b"end\n");
         loop {

@@ -1,6 +1,6 @@
-//! The method's mathematics, literally: whole sessions at once, std's floats, two moving averages, dense filters.
+//! The method's equations as they are printed: whole sessions at once, std's floats, two moving averages, dense filters.
 //!
-//! Nothing here is shared with `estimator-core`, so that an error must be made twice, in two ways, to stay unseen.
+//! It shares nothing with `estimator-core`, so that an error stays undetected only if it is made twice, in two ways.
 
 mod dense;
 
@@ -40,7 +40,7 @@ pub struct Segment {
     pub length: f64,
     /// d_off, m.
     pub offset: f64,
-    /// Whether the connector follows the curve; else it precedes it.
+    /// True if the connector follows the curve; else it precedes it.
     pub offset_at_end: bool,
     /// No, one or two sensors.
     pub bend: Vec<Sensor>,
@@ -105,7 +105,7 @@ pub struct Answer {
 /// A value per row and segment, unknown where it is `None`.
 type Rows = Vec<Vec<Option<f64>>>;
 
-/// What the equations say of a session.
+/// Answers of the equations to all rows of a session.
 pub fn replay(arm: &Arm, rows: &[Row]) -> Vec<Answer> {
     let bend = bend_angles(arm, rows);
     let imu = imu_angles(arm, rows);
@@ -148,7 +148,7 @@ fn tare_rows(arm: &Arm) -> usize {
     (arm.rate * arm.tare_seconds).round() as usize
 }
 
-/// The V–Orient maps: mean of the sensors that were read.
+/// Angles by the V–Orient maps: mean of the sensors that were read.
 fn bend_angles(arm: &Arm, rows: &[Row]) -> Rows {
     let angle = |sensor: &Sensor, counts: u16| {
         let volts = f64::from(counts) * 3.3 / 4095.0;
@@ -257,7 +257,7 @@ fn pcc_shape(arm: &Arm, theta: Vec<Option<f64>>) -> Shape {
     Shape { end: world(&links), theta }
 }
 
-/// P_W,i = P_W,i−1 + R(Θ_{i−1}) P_i, as far as all is known.
+/// P_W,i = P_W,i−1 + R(Θ_{i−1}) P_i, up to the first segment without an estimate.
 fn world(links: &[Option<(f64, [f64; 2])>]) -> Vec<Option<[f64; 2]>> {
     let mut at = Some((0.0, [0.0, 0.0]));
     links
@@ -301,7 +301,7 @@ impl<'a> Fusion<'a> {
 
 /// One step of a filter with the measurements that there are, stacked.
 fn measure(filter: &mut Option<Filter>, rate: f64, noise: &Noise, imu: Option<Vec<f64>>, bend: Option<Vec<f64>>) {
-    /// The covariance ends here, in units of the larger R.
+    /// Largest covariance, in units of the larger R.
     const LIMIT: f64 = 16.0;
     let stacked = [(imu, noise.h_imu, noise.r_imu), (bend, noise.h_bend, noise.r_bend)];
     let (mut z, mut h, mut r) = (Vec::new(), Vec::new(), Vec::new());

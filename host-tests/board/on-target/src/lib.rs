@@ -1,10 +1,10 @@
-//! What the probes share: the arithmetic that board and host compare, and the line to tell of it.
+//! Shared parts of the on-target tests: the arithmetic that board and host compare, and the line for its results.
 //!
-//! | probe | what it shows |
+//! | test | subject |
 //! |---|---|
 //! | `arithmetic` | the estimator's arithmetic and soft float, hashed over random inputs |
 //! | `interrupted` | the same while a fast interrupt strikes everywhere |
-//! | `preemption` | in which order tasks of three priorities run |
+//! | `preemption` | the order in which tasks of three priorities run |
 //! | `step` | the estimator's step and nothing else, for the benchmark |
 //! | `bias_filter` | the same with bias filter, contact and uncertainty |
 //! | `bias_filter_growth` | that for an arm of eight segments |

@@ -25,7 +25,7 @@ impl Hash {
         self.int(value.to_bits());
     }
 
-    // The bits of a NaN are nobody's promise.
+    // The bits of a NaN are not specified.
     fn f32(&mut self, value: f32) {
         self.word(if value.is_nan() { 0x7FC0_0000 } else { value.to_bits() });
     }

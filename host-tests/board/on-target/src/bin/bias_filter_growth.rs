@@ -4,10 +4,10 @@
 #![no_std]
 #![no_main]
 
-use board_probe::step::{BIAS_FILTER_TABLES, ProbedEstimator, alone, steps_with_uncertainty};
+use on_target_tests::step::{BIAS_FILTER_TABLES, TestedEstimator, alone, steps_with_uncertainty};
 
 #[cortex_m_rt::entry]
 fn main() -> ! {
-    static mut EIGHT: ProbedEstimator<8> = ProbedEstimator::const_new(&BIAS_FILTER_TABLES[1]);
+    static mut EIGHT: TestedEstimator<8> = TestedEstimator::const_new(&BIAS_FILTER_TABLES[1]);
     alone(|| steps_with_uncertainty(EIGHT))
 }

@@ -1,12 +1,12 @@
-//! A run with all requests and many faults, in which the dearest of everything is looked for.
+//! A run with all requests and many faults, for worst cases: time of a task, depth of the stack.
 
 use board_tests::{Board, UART};
 use rig_twin::Scenario;
 use telemetry::{Command, SetPressures};
 use virtual_due::Rig;
-use virtual_due::rig::{Held, ImuFault, MuxFault, Rail};
+use virtual_due::rig::{HeldLow, ImuFault, MuxFault, Rail};
 
-/// Requests that the host sends at once now and then, more than a tick of the line.
+/// Requests that the host sends in one burst, more than the line carries in a tick.
 const FLOOD: usize = 40;
 
 /// Runs a board through it, by a function that lets a number of milliseconds pass.
@@ -23,9 +23,9 @@ pub fn board(mut run_ms: impl FnMut(&mut Board, u64)) -> Board {
         match second {
             3 => faults.imus[1] = ImuFault::Unplugged,
             5 => faults.imus[1] = ImuFault::None,
-            7 => faults.sda = Some(Held::Clocks(5)),
-            9 => faults.sda = Some(Held::UntilMuxReset),
-            11 => faults.scl = Some(Held::Forever),
+            7 => faults.sda = Some(HeldLow::Clocks(5)),
+            9 => faults.sda = Some(HeldLow::UntilMuxReset),
+            11 => faults.scl = Some(HeldLow::UntilRemoved),
             13 => faults.scl = None,
             14 => faults.mux = Some(MuxFault::Silent),
             16 => faults.bend[0] = Some(Rail::High),

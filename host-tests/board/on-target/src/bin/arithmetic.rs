@@ -5,8 +5,8 @@
 use core::fmt::Write;
 
 use atsam3x8e_hal::pac::Peripherals;
-use board_probe::arithmetic::hashes;
-use board_probe::line::Line;
+use on_target_tests::arithmetic::hashes;
+use on_target_tests::line::Line;
 
 const INPUTS: u32 = 1_000_000;
 

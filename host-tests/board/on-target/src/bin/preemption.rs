@@ -1,14 +1,14 @@
-//! In which order tasks run: what each does is a letter of the trace.
+//! The order in which tasks run, as a trace with a letter for each step.
 //!
 //! Capitals are where a task begins, small letters where it ends: low, middle, neighbour (of the middle's priority) and
 //! high. Brackets are where a lock or a critical section begins and ends: `(` up to the middle's priority, `{` up to the
-//! highest, `[` everything. A dot is what comes after something was pended.
+//! highest, `[` everything. A dot is the instruction after an interrupt was pended.
 #![no_std]
 #![no_main]
 
 use core::sync::atomic::{AtomicU8, AtomicUsize, Ordering::Relaxed};
 
-use board_probe as _;
+use on_target_tests as _;
 
 const ROOM: usize = 32;
 static TRACE: [AtomicU8; ROOM] = [const { AtomicU8::new(0) }; ROOM];
@@ -30,9 +30,9 @@ mod app {
     use core::sync::atomic::Ordering::Relaxed;
 
     use atsam3x8e_hal::pac::Interrupt;
-    use board_probe::line::Line;
     use cortex_m::interrupt;
     use cortex_m::peripheral::NVIC;
+    use on_target_tests::line::Line;
 
     use crate::{LENGTH, SCENE, TRACE, note, scene};
 

@@ -11,7 +11,7 @@ use estimator_core::{
 
 /// Samples of each arm that moves, those of the tare included.
 const STEPS: u32 = 1_000;
-/// Samples of the arm that comes to rest: after 20 s of rest the bias filter learns from it.
+/// Samples of the arm that stops: after 20 s of rest the bias filter updates from it.
 const STEPS_WITH_REST: u32 = STEPS + 3_000;
 const TARE: u32 = 100;
 const SAMPLE_US: u64 = 10_000;
@@ -89,7 +89,7 @@ const CURVE_SENSOR: BendSensorConfig<Q> = {
     BendSensorConfig { map: BendMap::Curve(curve), memory: Some(MemoryConfig { lags: [LAG; 2], plays: [PLAY; 2] }) }
 };
 
-/// Segments with all that a table can have beside the paper's method.
+/// Segments with everything that a table can have in addition to the paper's method.
 static BIAS_FILTER_SEGMENTS: [SegmentConfig<Q>; 8] = {
     let first = SegmentConfig {
         bend: [Some(CURVE_SENSOR); SENSORS_PER_SEGMENT],
@@ -133,20 +133,20 @@ pub static BIAS_FILTER_TABLES: [ArmConfig<'static, Q>; 2] = [bias_filter_table(6
 pub static TABLES: [ArmConfig<'static, Q>; 4] = [table(1), table(2), table(6), table(8)];
 
 /// The estimator of an arm of up to `N` segments.
-pub type ProbedEstimator<const N: usize> = Estimator<'static, Q, N, WINDOW>;
+pub type TestedEstimator<const N: usize> = Estimator<'static, Q, N, WINDOW>;
 
 /// All steps of one arm.
 #[inline(never)]
 pub fn steps<const N: usize>(table: &'static ArmConfig<'static, Q>) {
     // Made where it stays: the stack has no room for a copy.
-    run(&mut ProbedEstimator::<N>::const_new(table), STEPS, |estimator, sample| {
+    run(&mut TestedEstimator::<N>::const_new(table), STEPS, |estimator, sample| {
         core::hint::black_box(estimator.update(sample));
     });
 }
 
 /// All steps of one arm, at rest at last, each with the covariances of its shape.
 #[inline(never)]
-pub fn steps_with_uncertainty<const N: usize>(estimator: &mut ProbedEstimator<N>) {
+pub fn steps_with_uncertainty<const N: usize>(estimator: &mut TestedEstimator<N>) {
     run(estimator, STEPS_WITH_REST, |estimator, sample| {
         estimator.update(sample);
         core::hint::black_box(&estimator.uncertainties());
@@ -166,9 +166,9 @@ pub fn alone(run: impl FnOnce()) -> ! {
 
 #[inline]
 fn run<const N: usize>(
-    estimator: &mut ProbedEstimator<N>,
+    estimator: &mut TestedEstimator<N>,
     steps: u32,
-    step: impl Fn(&mut ProbedEstimator<N>, &Sample<N>),
+    step: impl Fn(&mut TestedEstimator<N>, &Sample<N>),
 ) {
     if estimator.start().is_err() {
         return;
@@ -226,7 +226,7 @@ impl<const N: usize> Arm<N> {
     }
 }
 
-/// At most 20 mrad on, within 1.9 rad.
+/// Turns an angle by at most 20 mrad, within ±1.9 rad.
 fn walk(angle: Phase, random: &mut Random) -> Phase {
     const STEP: u32 = 13_671_305;
     const LIMIT: i32 = 1_298_774_022;
@@ -234,14 +234,14 @@ fn walk(angle: Phase, random: &mut Random) -> Phase {
     Phase::from_bits(angle.bits().saturating_add(stride).clamp(-LIMIT, LIMIT))
 }
 
-/// What a bend sensor reads at an angle.
+/// Counts of a bend sensor at an angle.
 fn counts_at(angle: Phase) -> u16 {
     const RANGES_PER_RAD: Q = Q::from_f64(1.0 / RAD_PER_RANGE);
     let range = Q::from_phase(angle) * RANGES_PER_RAD;
     CENTER.wrapping_add_signed((range.to_bits() >> (Q::FRACTION_BITS - u32::from(RANGE))) as i16)
 }
 
-/// What a BNO055 reads at a heading, clockwise, in units of 2⁻³² turns.
+/// Reading of a BNO055 at a heading, clockwise, in units of 2⁻³² turns.
 fn quaternion(heading: i32) -> ImuReading {
     let half = UnitArc::new(Angle::from(Q::from_phase(Phase::from_bits(heading >> 1))));
     // Of 26 fractional bits it gives 14.
