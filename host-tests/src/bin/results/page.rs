@@ -92,7 +92,7 @@ impl Results {
     }
 }
 
-/// Which seeds chose constants and which judge them.
+/// Seeds on which constants were chosen, and seeds on which they are tested.
 fn write_seeds(page: &mut String) -> fmt::Result {
     let [development, test] = [&DEVELOPMENT[..], &TEST[..]].map(|seeds| [seeds[0], seeds[seeds.len() - 1]]);
     writeln!(page, "{SEEDS}")?;
@@ -106,11 +106,11 @@ fn write_seeds(page: &mut String) -> fmt::Result {
     writeln!(page, "| other simulators | | judge: no constant was chosen on them |\n\n{REPRODUCE}")
 }
 
-/// The floor of constant curvature on the real recording, where it is beside the checkout.
+/// Error of constant curvature on the real recording, if that is next to the checkout.
 fn real(root: &Path) -> Result<Option<[f64; 2]>, Problem> {
     let recording = root.join("../shared/data/trunk-planar.csv");
     if !recording.exists() {
-        eprintln!("no ../shared/data/trunk-planar.csv beside the checkout: its section stays empty");
+        eprintln!("no ../shared/data/trunk-planar.csv next to the checkout: its section stays empty");
         return Ok(None);
     }
     let path = root.join("host-tests/tables/trunk-planar.toml");
@@ -176,7 +176,7 @@ kinematics misses the tip by";
 const COMPARED: &str = "\
 ## Why the paper's figures cannot be compared with these
 
-Its recordings and its arm are not public, so nobody can run its sessions through this estimator. Errors here are distances of the tip to
-the truth in the world frame; the paper does not say its frame, and its text and its table differ in two places ([PAPER.md](PAPER.md)). A
+Its recordings and its arm are not public, so its sessions cannot be run through this estimator. Errors here are distances of the tip to
+the truth in the world frame; the paper does not state its frame, and its text and its table differ in two places ([PAPER.md](PAPER.md)). A
 simulated arm is as good as its makers' guesses. What can be checked against the paper is the order of the methods, and the one place
 where ours differs: in scenario III its raw IMUs are better than its fusion.";
