@@ -1,16 +1,17 @@
 //! The shape of a soft robot arm from its bend sensors and IMUs, without a camera.
 //!
 //! The method is that of arXiv 2511.01165: quadratic V–Orient maps turn bend-sensor voltages into bend angles, a
-//! moving-average anchor takes the drift out of the IMUs, two Kalman filters (KF_orient, KF_coord) fuse both, and
+//! moving-average anchor removes the drift of the IMUs, two Kalman filters (KF_orient, KF_coord) fuse both, and
 //! piecewise-constant-curvature kinematics (PCC) chain the segments to the arm's shape. `docs/PAPER.md` in the
 //! repository lists where the paper's text errs and what is done here instead.
 //!
-//! The crate is `no_std`, allocates nothing and knows no hardware, no file and no protocol. It is generic over its
-//! number ([`Scalar`]): a board without a float unit runs [`Q`], and a laptop that runs [`Q`] gets the same bits.
+//! The crate is `no_std`, does not allocate, and depends on no hardware, file or protocol. It is generic over its
+//! number type ([`Scalar`]): a board without a float unit runs [`Q`], and a laptop that runs [`Q`] computes the same
+//! bits.
 //!
 //! # The pipeline
 //!
-//! A sample passes through the stages in this order; each is a module, and each equation stands in one function.
+//! A sample passes through the stages in this order. Each stage is a module, and each equation is one function.
 //!
 //! | stage | equation | function |
 //! |---|---|---|

@@ -8,7 +8,7 @@ fn rule(window: u16, decimation: u16) -> AnchorConfig {
     AnchorConfig { window, rate_millihertz: 10_000, sample_rate_millihertz, threshold: Turns::ZERO }
 }
 
-/// The mean of what is there, rounded down as [`Turns::mean_of`] is.
+/// Mean of the values that are present, rounded down as [`Turns::mean_of`] is.
 fn mean(values: &[Option<i64>]) -> Option<i64> {
     let there: Vec<_> = values.iter().flatten().map(|value| i128::from(*value)).collect();
     (!there.is_empty()).then(|| there.iter().sum::<i128>().div_euclid(there.len() as i128) as i64)
@@ -109,8 +109,8 @@ fn a_group_counts_what_it_has_and_without_any_leaves_its_place_empty() {
     assert_eq!(pushed::<2>(&rule(2, 2), &values), expected);
 }
 
-/// 10⁸ samples at 100 Hz are 11 days; a drift of 45° in 15 min adds 5965 units to each, and every thousandth is missing.
-/// Running sums in f32 would have lost all digits.
+/// 10⁸ samples at 100 Hz are 11 days; a drift of 45° in 15 min adds 5965 units to each, and every thousandth is
+/// missing. Running sums in f32 would have lost all digits.
 #[test]
 fn sums_stay_exact_over_100_million_samples() {
     const SAMPLES: u64 = 100_000_000;

@@ -1,4 +1,4 @@
-//! Angles as whole numbers: exact, and wrapped only where that is meant.
+//! Angles as integers: exact, and wrapped only where specified.
 
 use std::f64::consts::{PI, TAU};
 
@@ -12,7 +12,7 @@ const UNIT: f64 = TAU / 4_294_967_296.0;
 /// 2.8 nrad.
 const ATAN2_ERROR: f64 = 2.0 * UNIT;
 
-/// How far apart two directions are, rad.
+/// Distance between two directions, rad.
 fn apart(one: f64, other: f64) -> f64 {
     let turns = (one - other) / TAU;
     ((turns - turns.round()) * TAU).abs()

@@ -8,7 +8,7 @@ use proptest::prelude::*;
 
 const LSB: f64 = 1.0 / 67_108_864.0;
 const ONE: i128 = 1 << Q::FRACTION_BITS;
-/// Half a unit of 2⁻³² turns, rad: what rounding to a whole number of them costs.
+/// Rounding error of a conversion to 2⁻³² turns: half a unit, rad.
 const HALF_TURN_UNIT: f64 = TAU / 8_589_934_592.0;
 
 /// The nearest Q to a count of units, of any size.

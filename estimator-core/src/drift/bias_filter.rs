@@ -1,10 +1,10 @@
 //! The bias filter: drift correction by a Kalman filter over all headings, with bend sensors that may be wrong.
 //!
-//! A line of stages: trusted bend angles, plausible headings, absent headings from their neighbours, then one segment's update
-//! of the [model](super::bias_state) in each sample, and the rules for rest. Every rule counts in time, not in samples.
+//! Stages: trusted bend angles, plausible headings, absent headings from their neighbours, then one segment's update of
+//! the [model](super::bias_state) in each sample, and the rules for rest. All limits are times, not numbers of samples.
 //!
-//! The bend sensors' error depends on the way that they came (map, hysteresis), and is not white in time: they inform the
-//! filter by travel, so that an arm at rest teaches nothing.
+//! The bend sensors' error depends on their path (map, hysteresis) and is not white in time. Measurements are therefore
+//! independent per travel, not per time: an arm at rest gives no new information about the bias.
 
 mod headings;
 mod tare;
@@ -27,14 +27,14 @@ use crate::numeric::scalar::{Constant, Scalar};
 use crate::numeric::variance::{smaller, variance_deg};
 use crate::types::Condition;
 
-/// An absent heading's own error: 0.5° after a second, growing with the root of time.
+/// Variance rate of an absent heading's own error: 0.5° after a second, growing with the square root of time.
 const ABSENT: Constant = variance_deg(0.5 * 8.0);
-/// A restart of an IMU and a step of a bend sensor are reported for so long.
+/// Time for which a restart of an IMU and a step of a bend sensor are reported.
 const RECENT_US: u64 = 60_000_000;
-/// Largest ratio of two errors: nothing is learned beyond it.
+/// Largest factor on the measurement noise; beyond it a measurement is ignored.
 const MAX_RATIO: i32 = 15;
 
-/// State of the bias filter for up to `N` segments, in its number `F`.
+/// State of the bias filter for up to `N` segments, in the number type `F`.
 ///
 /// ```
 /// use estimator_core::{
@@ -63,7 +63,7 @@ pub struct BiasFilter<F, const N: usize, T = ()> {
     is_started: bool,
     is_tare_bad: bool,
     last_us: Option<u64>,
-    /// The segment whose turn it is, and the one whose update is next.
+    /// Index of the segment to be processed next, and of the segment to be updated next.
     turn: usize,
     next_update: usize,
 }
@@ -85,29 +85,29 @@ struct SegmentTrack<F> {
     sensors: usize,
     /// Heading of the segment's end in {W}.
     heading: Turns,
-    /// Bias that it is corrected by.
+    /// Bias by which the heading is corrected.
     bias: Turns,
-    /// Sum of the steps of the heading with the biases that updates have changed.
+    /// Sum of the steps of the heading that updates of the biases have caused.
     bias_steps: Turns,
-    /// θ of the last sample, and of the last turn, rad.
+    /// θ of the last sample, and when the segment was last processed, rad.
     theta: F,
     turn_theta: F,
     turned_at_us: Option<u64>,
     /// Mean of θ over the last minutes, rad.
     lean: F,
-    /// θ_bend less its reference in the tare, until the first turn, rad.
+    /// θ_bend less its reference in the tare, until the segment's first update, rad.
     tare_bend: Option<F>,
-    /// Change over a window of rest, until the next turn.
+    /// Change over a window of rest, until the segment's next update.
     rest: Option<RestChange<F>>,
     /// θ_bend of this sample.
     bend: Option<TrustedBend<F>>,
     /// θ_bend of the last sample that had one, rad.
     last_bend: Option<F>,
-    /// Motion of the bend sensors since then, rad.
+    /// Motion of the bend sensors since that sample, rad.
     motion: F,
     is_heading_read: bool,
     heading_read_at_us: u64,
-    /// θ and θ_bend up to which travel is counted, and the travel since the last update.
+    /// θ and θ_bend up to which travel has been counted, and the travel since the last update, rad.
     counted_theta: F,
     counted_bend: F,
     travelled: F,
@@ -115,13 +115,13 @@ struct SegmentTrack<F> {
     gated_since_us: Option<u64>,
     restarted_at_us: Option<u64>,
     stepped_at_us: Option<u64>,
-    /// Variance of the offset that the tare shows, that of the prior, so², and the part of it that lost sensors have added.
+    /// Variance of the offset: from the tare, the prior's, and the part of the prior that lost sensors have added.
     session_offset: F,
     offset_prior: F,
     lost: F,
-    /// Whether one sensor of two is missing.
+    /// One sensor of two is missing.
     is_single: bool,
-    /// Whether any bend sensor is missing.
+    /// At least one bend sensor is missing.
     is_bend_missing: bool,
 }
 
@@ -160,12 +160,12 @@ impl<F: Scalar> SegmentTrack<F> {
         }
     }
 
-    /// Whether the segment has two bend sensors.
+    /// Returns `true` if the segment has two bend sensors.
     fn has_twins(&self) -> bool {
         self.sensors > 1
     }
 
-    /// Takes the angles of the bend sensors.
+    /// Updates θ_bend and its motion from the angles of the bend sensors.
     fn take_bend(&mut self, angles: [Option<F>; SENSORS_PER_SEGMENT], time_us: u64) {
         self.bend = self.monitor.mean(angles, self.has_twins(), time_us);
         self.motion = self.bend.zip(self.last_bend).map_or(F::zero(), |(now, last)| now.theta - last);
@@ -173,7 +173,8 @@ impl<F: Scalar> SegmentTrack<F> {
 }
 
 impl<F: Scalar, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
-    /// At the start of a session. The number's `zero` and the trace are parameters, so that a static can hold the filter.
+    /// At the start of a session. `zero` and `trace` are parameters so that the constructor is `const` (a static holds
+    /// the filter).
     pub const fn new(zero: F, trace: T) -> Self {
         Self {
             state: BiasState::with_trace(zero, trace),
@@ -188,7 +189,7 @@ impl<F: Scalar, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
         }
     }
 
-    /// Forgets everything, at the start of a session: in parts, as a whole new one would not fit a small stack.
+    /// Clears all state at the start of a session, part by part: a temporary of the whole would not fit a small stack.
     pub fn start(&mut self) {
         let zero = F::zero();
         self.state.clear();
@@ -211,7 +212,8 @@ impl<F: Scalar, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
         self.state.bias_covariance(i)
     }
 
-    /// Variance of heading `i` in addition to its bias: that of the bend sensors for an absent heading, else zero.
+    /// Variance of heading `i` in addition to that of its bias: that of the bend sensors for an absent heading, else
+    /// zero.
     pub fn absence_variance(&self, config: &BendErrorConfig, i: usize) -> F {
         let Some(track) = self.segments.get(i).filter(|track| !track.is_heading_read) else { return F::zero() };
         let absent = since(track.heading_read_at_us, self.last_us.unwrap_or(0));
@@ -219,7 +221,7 @@ impl<F: Scalar, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
         smaller(grown, track.offset_prior + F::from_q(config.mean))
     }
 
-    /// Whether the tare is complete, so that the covariance is known.
+    /// Returns `true` once the tare is complete, so that the covariance is known.
     pub fn is_started(&self) -> bool {
         self.is_started
     }
@@ -260,17 +262,17 @@ impl<F: Scalar, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
 }
 
 impl<F: FusedOps, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
-    /// Whether the covariance is not up to date yet.
+    /// Returns `true` while block rows of the covariance remain to be updated.
     pub fn is_updating(&self) -> bool {
         self.state.is_updating()
     }
 
-    /// Brings the next block row of the covariance up to date.
+    /// Updates the next block row of the covariance.
     pub fn reduce_covariance(&mut self) {
         self.state.reduce_row();
     }
 
-    /// Brings all of the covariance up to date.
+    /// Updates all remaining block rows of the covariance.
     pub fn finish_covariance(&mut self) {
         self.state.finish_update();
     }
@@ -287,7 +289,7 @@ impl<S: Scalar, F: FusedOps, const N: usize, T: BiasTrace<F>> DriftCorrection<S,
             track.take_bend(*angles, sensed.time_us);
         }
         if !self.is_started && !self.tare(config, filter, sensed) {
-            // Before the IMUs have a zero, the bend sensors alone.
+            // Until the IMUs are tared, the bend sensors alone.
             let fused = sensed.bend.map(|bend| bend.mean.map(S::to_turns));
             return CorrectedArm { fused, ..CorrectedArm::UNKNOWN };
         }
@@ -317,13 +319,13 @@ impl<S: Scalar, F: FusedOps, const N: usize, T: BiasTrace<F>> DriftCorrection<S,
     }
 }
 
-/// Turns in a sample: each segment has ten a second at least.
+/// Number of segments processed in one sample: each segment at least ten times a second.
 fn turns<S>(config: &ArmConfig<S>) -> u32 {
     let (count, rate_millihertz) = (config.segments.len() as u32, config.anchor.sample_rate_millihertz.max(1));
     (10_000 * count).div_ceil(rate_millihertz).min(count)
 }
 
-/// An angle in another number.
+/// Converts an angle to another number type.
 fn converted<S: Scalar, F: Scalar>(theta: S) -> F {
     F::from_q(theta.to_q())
 }

@@ -8,10 +8,10 @@
 //! | model | β̇ = v + white noise, v̇ = white noise, o a Gauss–Markov process |
 //! | measurement | z_i = θ_imu,i − θ_bend,i = β_i − β_{i−1} − o_i + noise |
 //!
-//! The covariance is that of all states, because an error of one heading is in two bend angles with opposite signs: what is
-//! wrong with one angle is undone by the next, and hardly moves the tip.
+//! The covariance is that of all states, because an error of one heading enters two bend angles with opposite signs:
+//! the error of one angle is cancelled by the next, and hardly moves the tip.
 //!
-//! Each IMU and its segment are predicted when it is their turn, so that a sample costs a share of the whole.
+//! Each IMU and its segment are predicted in a sample of their own, so that the cost is spread over the samples.
 
 mod update;
 
@@ -33,15 +33,16 @@ pub const OFFSET: usize = 2;
 /// Covariances of one state with all others: bias, rate and offset of each IMU and segment.
 pub type Row<S, const N: usize> = [[S; 3]; N];
 
-/// Largest variance of a bias, 29°: beyond it the state is unknown, and its variance stays.
+/// Largest variance of a bias, (29°)²: beyond it the state counts as unknown, and its variance is not increased.
 const LARGEST: Constant = Constant::new(16.0);
-/// Largest variance of a rate, 0.23 °/s.
+/// Largest variance of a rate, (0.23 °/s)².
 const LARGEST_RATE: Constant = Constant::new(4.0);
 /// Longest prediction, µs: 384 s, six time units.
 pub const LONGEST_PREDICTION_US: u64 = 384_000_000;
-/// Growth of a bias's variance by its rate in one step of a prediction, 9°: the variance stays within fixed point.
+/// Largest growth of a bias's variance by its rate in one step of a prediction, (9°)²: the variance stays within fixed
+/// point.
 const LARGEST_GROWTH: Constant = Constant::new(1.6);
-/// A prediction over a time unit's quarter grows by less.
+/// Time below which the growth is smaller in any case, time units.
 const SHORT: Constant = Constant::new(0.25);
 
 /// States and covariance, and a [trace](BiasTrace) of the operations on them.
@@ -56,7 +57,7 @@ pub struct BiasState<S, const N: usize, T = ()> {
     /// P, [`VARIANCE_SCALE`](crate::VARIANCE_SCALE) times as large.
     covariance: [[Row<S, N>; 3]; N],
     predicted_at_us: [u64; N],
-    /// What the newest update has not yet taken off P.
+    /// Part of the newest update that has not been applied to P yet.
     reduction: Reduction<S, N>,
     trace: T,
 }
@@ -68,7 +69,7 @@ impl<S: Scalar, const N: usize> Default for BiasState<S, N> {
 }
 
 impl<S: Scalar, const N: usize> BiasState<S, N> {
-    /// Nothing known: states of `zero` without variance.
+    /// States of `zero` without variance.
     pub const fn new(zero: S) -> Self {
         Self::with_trace(zero, ())
     }
@@ -88,7 +89,7 @@ impl<S: Scalar, const N: usize, T: BiasTrace<S>> BiasState<S, N, T> {
         }
     }
 
-    /// Forgets all states, but not the trace.
+    /// Clears all states, but not the trace.
     pub fn clear(&mut self) {
         let trace = core::mem::take(&mut self.trace);
         *self = Self::with_trace(S::zero(), trace);
@@ -99,8 +100,8 @@ impl<S: Scalar, const N: usize, T: BiasTrace<S>> BiasState<S, N, T> {
         &mut self.trace
     }
 
-    /// The prior at the end of a tare. Each IMU's zero and each segment's straightness have an error of their own; those of
-    /// the segments add up along the arm.
+    /// Initialises the covariance at the end of a tare. Each IMU's zero and each segment's straightness have
+    /// independent errors; those of the segments add up along the arm.
     pub fn initialise(&mut self, config: &BiasFilterConfig, straightness: S, offsets: &[S; N], time_us: u64) {
         self.clear();
         self.predicted_at_us = [time_us; N];
@@ -121,8 +122,8 @@ impl<S: Scalar, const N: usize, T: BiasTrace<S>> BiasState<S, N, T> {
         }
     }
 
-    /// Predicts IMU and segment `i` to `time_us`: x⁻ = A x, P⁻ = A P Aᵀ + Q. The process noise of the offset keeps its
-    /// variance at `offset`.
+    /// Predicts IMU and segment `i` to `time_us`: x⁻ = A x, P⁻ = A P Aᵀ + Q. The process noise Q of the bias is an
+    /// angle random walk, that of the rate a rate random walk; that of the offset keeps its variance at `offset`.
     pub fn predict(&mut self, i: usize, config: &BiasFilterConfig, offset: S, time_us: u64) {
         let Some(dt) = self.elapsed(i, time_us) else { return };
         self.follow_rate(i, dt);
@@ -170,7 +171,7 @@ impl<S: Scalar, const N: usize, T: BiasTrace<S>> BiasState<S, N, T> {
         }
     }
 
-    /// The offset's factor over `dt`, applied to the state.
+    /// Applies the offset's decay over `dt` to the state; returns the factor.
     fn decay_offset(&mut self, i: usize, config: &BiasFilterConfig, dt: S) -> S {
         let share = S::from_q(config.offset_rate) * dt;
         let decay = if share < S::one() { S::one() - share } else { S::zero() };
@@ -180,8 +181,8 @@ impl<S: Scalar, const N: usize, T: BiasTrace<S>> BiasState<S, N, T> {
         decay
     }
 
-    /// P ← A P Aᵀ, where A adds the rate times `dt` to the bias and multiplies the offset by `decay`. A bias that is unknown
-    /// already learns nothing more from its rate.
+    /// P ← A P Aᵀ, where the Jacobian A of the model adds the rate times `dt` to the bias and multiplies the offset by
+    /// `decay`. The variance of a bias that is unknown already is not increased by its rate.
     fn propagate(&mut self, i: usize, dt: S, decay: S) {
         let rate = self.diagonal(i, RATE);
         let (mut step, mut rest) = (dt, dt);
@@ -198,7 +199,7 @@ impl<S: Scalar, const N: usize, T: BiasTrace<S>> BiasState<S, N, T> {
 
     #[expect(clippy::needless_range_loop, reason = "each index is of two arrays")]
     fn propagate_step(&mut self, i: usize, dt: S, decay: S) {
-        // Indices that this and the loops bound by the arrays' lengths: the compiler leaves out their checks.
+        // With this and the loops' bounds the compiler omits the checks of the indices.
         if i >= N {
             return;
         }
@@ -220,7 +221,7 @@ impl<S: Scalar, const N: usize, T: BiasTrace<S>> BiasState<S, N, T> {
         p[i][OFFSET][i] = offset;
     }
 
-    /// Adds process noise to one state, up to a variance of `limit`; gives what it has added.
+    /// Adds process noise to one state, up to a variance of `limit`; returns the added variance.
     fn grow(&mut self, i: usize, state: usize, variance: S, limit: S) -> S {
         match self.diagonal_mut(i, state) {
             Some(diagonal) if *diagonal < limit => {
@@ -240,7 +241,7 @@ impl<S: Scalar, const N: usize, T: BiasTrace<S>> BiasState<S, N, T> {
         self.covariance.get_mut(i)?.get_mut(state)?.get_mut(i)?.get_mut(state)
     }
 
-    /// Adds to the variance of a state that has become doubtful.
+    /// Inflates the variance of a state that has become uncertain.
     pub fn doubt(&mut self, i: usize, state: usize, variance: S) {
         let limit = if state == RATE { LARGEST_RATE } else { LARGEST };
         let added = self.grow(i, state, variance, S::constant(limit));
@@ -251,7 +252,7 @@ impl<S: Scalar, const N: usize, T: BiasTrace<S>> BiasState<S, N, T> {
         self.trace.record(BiasOperation::Noise { segment: i, noise });
     }
 
-    /// β_i, predicted to `time_us`; the states stay.
+    /// β_i, predicted to `time_us`, without a change of the states.
     pub fn bias_at(&self, i: usize, time_us: u64) -> Turns {
         let grown = self.elapsed_until(i, time_us).map_or(Turns::ZERO, |dt| (self.rate_of(i) * dt).to_turns());
         self.bias_of(i) + grown

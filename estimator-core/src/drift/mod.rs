@@ -1,4 +1,5 @@
-//! Drift correction of the IMUs: the paper's moving-average anchor, and a Kalman filter over the biases of all headings.
+//! Drift correction of the IMUs: the paper's moving-average anchor, and a Kalman filter over the biases of all
+//! headings.
 
 pub mod bend_monitor;
 pub mod bias_filter;
@@ -24,7 +25,7 @@ pub struct SensedArm<S, const N: usize> {
     pub time_us: u64,
     /// Position of the sample between two values of the anchor.
     pub decimated: Decimated,
-    /// Share of the work on covariances that the sample does.
+    /// Share of the work on covariances that belongs to the sample.
     pub share: Share,
     /// Bend angles.
     pub bend: [BendAngles<S>; N],
@@ -48,7 +49,7 @@ impl<S, const N: usize> SensedArm<S, N> {
 pub struct CorrectedArm<const N: usize> {
     /// θ_c,i of the IMUs; `None` where one of the two was not read, or is not trusted.
     pub imu: [Option<Turns>; N],
-    /// θ_i of all sensors; `None` where the correction leaves fusion to KF_orient and KF_coord.
+    /// θ_i of all sensors; `None` where KF_orient and KF_coord fuse them.
     pub fused: [Option<Turns>; N],
     /// Angles for the contact detector.
     pub measured: [MeasuredAngles; N],
@@ -59,9 +60,9 @@ pub struct CorrectedArm<const N: usize> {
 pub struct MeasuredAngles {
     /// θ_c,i without `steps`; `None` where one of the two IMUs was not read, or is not trusted.
     pub imu: Option<Turns>,
-    /// Sum of the steps that updates of the bias have made in θ_c,i: no motion of the segment.
+    /// Sum of the steps of θ_c,i that updates of the bias have caused: no motion of the segment.
     pub steps: Turns,
-    /// θ_bend of the trusted sensors; `None` where there are none.
+    /// θ_bend of the trusted sensors; `None` without any.
     pub bend: Option<Turns>,
 }
 
@@ -77,6 +78,6 @@ impl<const N: usize> CorrectedArm<N> {
 
 /// Removes the drift from the IMUs' bend angles.
 pub trait DriftCorrection<S, const N: usize> {
-    /// Takes one sample's angles; gives the corrected ones.
+    /// Corrects the angles of one sample.
     fn correct(&mut self, config: &ArmConfig<S>, sensed: &SensedArm<S, N>) -> CorrectedArm<N>;
 }

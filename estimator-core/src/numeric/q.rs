@@ -12,11 +12,10 @@ use crate::numeric::scalar::{Constant, Scalar};
 
 /// Fixed point with 26 fractional bits: ±32 in steps of 1.5·10⁻⁸.
 ///
-/// One format holds angles (rad), lengths (m) and covariances (ratios to the larger R). Products and quotients by operators
-/// are rounded to nearest, while some sums inside the pipeline are cut off; what does not fit saturates and is counted
-/// ([`saturations`](crate::saturations)), and a division by zero is
-/// such an overflow. There is no NaN. The Cortex-M3 has no float unit: a product is one `smull` and a shift here, and
-/// 47 instructions in `f32`, which carries 24 bits instead of 31.
+/// One format holds angles (rad), lengths (m) and covariances (ratios to the larger R). Operators round products and
+/// quotients to nearest; some sums inside the pipeline are truncated. A result out of range saturates and is counted
+/// ([`saturations`](crate::saturations)); so does a division by zero. There is no NaN. The Cortex-M3 has no float unit:
+/// a product is one `smull` and a shift here, and 47 instructions in `f32`, which has 24 bits instead of 31.
 ///
 /// ```
 /// use estimator_core::Q;

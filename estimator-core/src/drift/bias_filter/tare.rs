@@ -1,4 +1,4 @@
-//! Start of the bias filter: prior, bend sensors and plausibility of the tare.
+//! Start of the bias filter: prior, use of the bend sensors and plausibility of the tare.
 
 use crate::config::{ArmConfig, BiasFilterConfig, SegmentConfig};
 use crate::drift::SensedArm;
@@ -8,17 +8,17 @@ use crate::numeric::phase::Turns;
 use crate::numeric::scalar::{Constant, Scalar};
 use crate::numeric::variance::{degrees, magnitude, scaled_square, smaller, variance_deg};
 
-/// A tare is bad where headings spread by more than this, or the bend sensors' root mean square is this far off the reference
-/// pose; its straightness is the last one.
+/// A tare is bad if the headings spread by more than `STILL`, or the bend sensors deviate from the reference pose by an
+/// RMS of more than `BENT`; the prior of the straightness is then `BAD_TARE`.
 const STILL: Constant = degrees(1.5);
 const BENT: Constant = variance_deg(6.0);
 const BAD_TARE: Constant = variance_deg(12.0);
 
-/// A heading that changes by more than this from one reading to the next, and by twice what the bend sensors below have
-/// moved, has a new zero.
+/// A heading has a new zero if it changes from one reading to the next by more than this plus twice the motion of the
+/// bend sensors below.
 const STEP: Constant = degrees(6.0);
 
-/// Weight of the offsets' prior variance, in segments that show their offset.
+/// Weight of the offsets' prior variance, as a number of segments with a measured offset.
 const PRIOR_SEGMENTS: i32 = 2;
 
 /// Sums of the tare.
@@ -35,7 +35,7 @@ struct SegmentTare<F> {
     first: Option<Turns>,
     range: [F; 2],
     newest: Option<Turns>,
-    /// Whether the IMU has restarted with another zero.
+    /// The IMU has restarted with another zero.
     has_stepped: bool,
     newest_bend: Option<F>,
     bend_sum: Turns,
@@ -43,7 +43,7 @@ struct SegmentTare<F> {
 }
 
 impl<F: Scalar> SegmentTare<F> {
-    /// Takes a heading; the bend sensors up to this segment have moved by `moved` since the last sample.
+    /// Adds a heading; the bend sensors up to this segment have moved by `moved` since the last sample.
     fn add_heading(&mut self, heading: Turns, moved: F) {
         let change = self.newest.replace(heading).map_or(F::zero(), |last| F::from_phase((heading - last).phase()));
         if magnitude(change) > F::constant(STEP) + moved + moved {
@@ -55,7 +55,7 @@ impl<F: Scalar> SegmentTare<F> {
         self.range = [smaller(lowest, deviation), -smaller(-highest, -deviation)];
     }
 
-    /// Takes a bend angle; gives its change since the last one.
+    /// Adds a bend angle; returns the size of its change since the last one.
     fn add_bend(&mut self, theta: F) -> F {
         if self.bend_count < u16::MAX {
             self.bend_sum = self.bend_sum + theta.to_turns();
@@ -119,7 +119,7 @@ impl<F: Scalar, const N: usize> TareStatistics<F, N> {
 }
 
 impl<F: Scalar, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
-    /// Gathers the tare, and starts at its end; `false` until then.
+    /// Adds a sample to the tare, and starts the filter at its end; returns `false` until then.
     pub(super) fn tare<S: Scalar>(
         &mut self,
         config: &ArmConfig<S>,
@@ -147,8 +147,8 @@ impl<F: Scalar, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
         true
     }
 
-    /// Whether the tare is bad; if not, what the bend sensors read of a straight arm, beyond their scatter, is the size of
-    /// their offsets in this session.
+    /// Checks the plausibility of the tare. If it is good, the variance of the offsets in this session is estimated
+    /// from the bend sensors' readings of the straight arm.
     fn judge<S: Scalar>(&mut self, segments: &[SegmentConfig<S>]) {
         let spread = self.tare.bend_variance(segments);
         self.is_tare_bad = self.tare.has_moved() || spread > F::constant(BENT);
@@ -163,7 +163,7 @@ impl<F: Scalar, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
         }
     }
 
-    /// Headings at the end of the tare, and the offsets' priors.
+    /// Initialises the headings at the end of the tare, and the offsets' priors.
     fn start_tracks<S: Scalar>(&mut self, config: &ArmConfig<S>, filter: &BiasFilterConfig, sensed: &SensedArm<S, N>) {
         let mut below = Turns::ZERO;
         let headings = sensed.headings.iter().zip(config.segments);
@@ -176,7 +176,7 @@ impl<F: Scalar, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
             track.motion = F::zero();
             let is_tared = config.tare_samples > 0;
             let in_world = heading.in_world().filter(|_| is_tared || heading.is_read());
-            // The mean over the tare is no zero of an IMU that restarted in it: the newest reading is.
+            // An IMU that restarted during the tare: the newest reading is its zero, not the mean.
             let in_world = if tare.has_stepped { Some(segment.reference) } else { in_world };
             if tare.has_stepped {
                 track.restarted_at_us = Some(sensed.time_us);
@@ -194,7 +194,7 @@ impl<F: Scalar, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
         }
     }
 
-    /// What the bend sensors read in the tare, which the filter uses in the first turn of each segment.
+    /// Stores the bend sensors' mean over the tare, by which the first update of each segment is made.
     fn keep_bend_of_tare<S: Scalar>(&mut self, segments: &[SegmentConfig<S>]) {
         let mut below = Turns::ZERO;
         for ((track, segment), tare) in self.segments.iter_mut().zip(segments).zip(&self.tare.segments) {
@@ -204,7 +204,7 @@ impl<F: Scalar, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
         }
     }
 
-    /// θ of all segments with the biases that the tare gives.
+    /// Corrects θ of all segments by the biases of the tare.
     fn correct_tracks(&mut self, time_us: u64) {
         let mut below = Turns::ZERO;
         for (track, bias) in self.segments.iter_mut().zip(self.state.bias) {

@@ -1,7 +1,7 @@
 //! Updates of the model by scalar measurements.
 //!
-//! The states take K ν at once. P loses K (P⁻Hᵀ)ᵀ, which is quadratic in N, a block row at a time, so that a sample can take
-//! one of them.
+//! The states are updated at once, x = x⁻ + K ν. P = P⁻ − K (P⁻Hᵀ)ᵀ is quadratic in N; it is updated by block rows, of
+//! which a sample can process one.
 
 use crate::drift::bias_state::{BiasState, Row};
 use crate::drift::bias_trace::{BiasMeasurement, BiasOperation, BiasTrace};
@@ -16,25 +16,25 @@ const SMALLEST: Constant = Constant::new(3e-7);
 /// Variance S = H P⁻ Hᵀ of a scalar measurement's innovation, without the measurement noise.
 #[derive(Debug, Clone, Copy)]
 pub struct Innovation<S> {
-    /// H P⁻ Hᵀ; in fixed point no more than it holds.
+    /// H P⁻ Hᵀ; saturated in fixed point.
     pub variance: S,
-    /// An eighth of it, which fits in any case.
+    /// An eighth of H P⁻ Hᵀ, which never saturates.
     eighth: S,
     measurement: BiasMeasurement,
 }
 
-/// An update of P under way.
+/// State of an update of P by block rows.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Reduction<S, const N: usize> {
     /// K, and P⁻Hᵀ of the newest innovation.
     gain: Row<S, N>,
     cross: Row<S, N>,
-    /// Block rows that are reduced.
+    /// Number of block rows that have been updated.
     reduced: usize,
 }
 
 impl<S: Copy, const N: usize> Reduction<S, N> {
-    /// Nothing is left to be done.
+    /// No update is pending.
     pub const fn complete(zero: S) -> Self {
         Self { gain: [[zero; 3]; N], cross: [[zero; 3]; N], reduced: N }
     }
@@ -45,7 +45,8 @@ fn eighth<S: Scalar>(value: S) -> S {
 }
 
 impl<S: FusedOps, const N: usize, T: BiasTrace<S>> BiasState<S, N, T> {
-    /// Innovation of segment `i`'s bend sensors against its IMUs, H = (β_i: 1, β_{i−1}: −1, o_i: −1), for [`Self::update`].
+    /// Innovation of segment `i`'s bend sensors against its IMUs, H = (β_i: 1, β_{i−1}: −1, o_i: −1), for
+    /// [`Self::update`].
     pub fn innovation(&mut self, i: usize) -> Innovation<S> {
         self.finish_update();
         let cross = &mut self.reduction.cross;
@@ -84,7 +85,7 @@ impl<S: FusedOps, const N: usize, T: BiasTrace<S>> BiasState<S, N, T> {
         self.finish_update();
     }
 
-    /// [`Self::update`] but for P, which [`Self::reduce_row`] brings up to date.
+    /// Updates the states as [`Self::update`] does; P is updated by [`Self::reduce_row`].
     pub fn begin_update(&mut self, innovation: Innovation<S>, nu: S, r: S) {
         self.trace.record(BiasOperation::Update { measurement: innovation.measurement, nu, r });
         let Reduction { gain, cross, reduced } = &mut self.reduction;
@@ -106,19 +107,19 @@ impl<S: FusedOps, const N: usize, T: BiasTrace<S>> BiasState<S, N, T> {
         }
     }
 
-    /// An update that changes nothing, and takes as many block rows of P.
+    /// Begins an update without effect: its block rows take as many samples as those of any other.
     pub fn begin_no_update(&mut self) {
         self.finish_update();
         self.reduction.gain.as_flattened_mut().fill(S::zero());
         self.reduction.reduced = 0;
     }
 
-    /// Whether P is not up to date.
+    /// Returns `true` while block rows of P remain to be updated.
     pub fn is_updating(&self) -> bool {
         self.reduction.reduced < N
     }
 
-    /// Brings the next block row of P up to date.
+    /// Updates the next block row of P.
     pub fn reduce_row(&mut self) {
         let Reduction { gain, cross, reduced } = &mut self.reduction;
         let Some(rows) = self.covariance.get_mut(*reduced) else { return };
@@ -126,7 +127,7 @@ impl<S: FusedOps, const N: usize, T: BiasTrace<S>> BiasState<S, N, T> {
         *reduced += 1;
         let (gain, cross) = (gain.as_flattened(), cross.as_flattened());
         for (k, row) in (first..).zip(rows) {
-            // Of two factors K that of the earlier state, here and in its own row: so P stays symmetric to the bit.
+            // Each pair of states uses K of the earlier one in both rows, which keeps P symmetric to the bit.
             let halves = row.as_flattened_mut().split_at_mut_checked(k);
             let (Some((before, after)), Some(gain_k), Some(cross_k)) = (halves, gain.get(k), cross.get(k)) else {
                 return;
@@ -141,7 +142,7 @@ impl<S: FusedOps, const N: usize, T: BiasTrace<S>> BiasState<S, N, T> {
         }
     }
 
-    /// Brings all of P up to date.
+    /// Updates all remaining block rows of P.
     pub fn finish_update(&mut self) {
         while self.is_updating() {
             self.reduce_row();
