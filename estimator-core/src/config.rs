@@ -1,7 +1,7 @@
 //! Configuration of an arm: types alone, in the estimator's number and for one sample rate.
 //!
 //! The firmware holds an [`ArmConfig`] as a constant; on the host `calibration-tables` makes it from TOML. Variances
-//! are stored multiplied by [`VARIANCE_SCALE`], times in units of [`TIME_UNIT_S`](crate::TIME_UNIT_S).
+//! are stored multiplied by [`VARIANCE_SCALE`](crate::VARIANCE_SCALE), times in units of [`TIME_UNIT_S`](crate::TIME_UNIT_S).
 
 mod contact;
 
@@ -20,9 +20,6 @@ pub const PLAYS: usize = 3;
 
 /// Knots of a [`CurveMap`].
 pub const KNOTS: usize = 65;
-
-/// Factor of all variances in fixed point: one step is 2⁻³² rad² or m², the largest value 0.5.
-pub const VARIANCE_SCALE: f64 = 64.0;
 
 /// An arm's calibration.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -6,13 +6,14 @@ use crate::config::{ArmConfig, ConfigError, UncertaintyConfig};
 use crate::contact::monitor::ContactMonitor;
 use crate::drift::bias_filter::BiasFilter;
 use crate::drift::bias_trace::BiasTrace;
+use crate::drift::correction::{CorrectedArm, DriftCorrection, SensedArm};
 use crate::drift::decimator::Decimator;
 use crate::drift::moving_average::MovingAverage;
 use crate::drift::share::{Share, ShareCounter};
-use crate::drift::{CorrectedArm, DriftCorrection, SensedArm};
 use crate::kinematics::forward::forward_kinematics;
+use crate::numeric::angle::Angle;
 use crate::numeric::fused::FusedOps;
-use crate::numeric::phase::{Angle, Turns};
+use crate::numeric::phase::Turns;
 use crate::numeric::q::Q;
 use crate::segment::SegmentState;
 use crate::sensing::heading::SegmentHeading;
@@ -90,7 +91,7 @@ impl<const N: usize, const W: usize, T: BiasTrace<Q>> Drift<N, W, T> {
     /// Ends a sample, after the last use of the covariance.
     fn finish(&mut self, share: Share, segments: usize) {
         if let Share::Row(row) = share {
-            self.bias_filter.reduce_covariance();
+            self.bias_filter.update_covariance_row();
             if row + 1 >= segments {
                 // Rows beyond the arm's number of segments.
                 self.bias_filter.finish_covariance();
@@ -215,7 +216,7 @@ impl<'t, S: FusedOps, const N: usize, const W: usize, T: BiasTrace<Q>> Estimator
         }
         self.fuse(&corrected);
         self.detect_contact(&corrected);
-        self.follow_uncertainty();
+        self.update_uncertainty();
         self.drift.finish(self.sensed.share, self.segments.len());
     }
 
@@ -223,7 +224,7 @@ impl<'t, S: FusedOps, const N: usize, const W: usize, T: BiasTrace<Q>> Estimator
     fn sense(&mut self, sample: &Sample<N>) {
         let sensed = &mut self.sensed;
         sensed.time_us = sample.time_us;
-        sensed.decimated = self.decimator.tick(&self.config.anchor);
+        sensed.decimated = self.decimator.advance(&self.config.anchor);
         sensed.share = self.drift.shares.share(&self.config.anchor);
         let rows = sensed.share.rows(N);
         let readings = sample.bend.iter().zip(&sample.imu);
@@ -320,7 +321,7 @@ impl<'t, S: FusedOps, const N: usize, const W: usize, T: BiasTrace<Q>> Estimator
     }
 
     /// Computes this sample's share of the uncertainties.
-    fn follow_uncertainty(&mut self) {
+    fn update_uncertainty(&mut self) {
         let Some(sources) = &self.config.uncertainty else { return };
         for i in self.sensed.share.rows(self.segments.len()) {
             self.propagate(sources, i);

@@ -3,10 +3,12 @@
 use heapless::Vec;
 use nalgebra::Vector2;
 
-use crate::config::{SENSORS_PER_SEGMENT, VARIANCE_SCALE};
+use crate::config::SENSORS_PER_SEGMENT;
 use crate::kinematics::pcc::Link;
-use crate::numeric::phase::{Angle, Phase};
+use crate::numeric::angle::Angle;
+use crate::numeric::phase::Phase;
 use crate::numeric::q::Q;
+use crate::numeric::variance::VARIANCE_SCALE;
 
 /// Raw readings of one tick, for an arm of up to `N` segments. A missing reading is `None`.
 #[derive(Debug, Clone, Copy, PartialEq)]

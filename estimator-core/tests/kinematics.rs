@@ -156,8 +156,8 @@ fn a_fixed_point_arc_does_not_step_at_its_seams() {
 #[test]
 fn whole_turns_beside_the_remainder_join_where_it_wraps() {
     for turns in [-1000, -1, 0, 5, 1000] {
-        let below = UnitArc::new(Angle { rest: Q::from_f64(PI - 1e-8), turns });
-        let above = UnitArc::new(Angle { rest: Q::from_f64(1e-8 - PI), turns: turns + 1 });
+        let below = UnitArc::new(Angle { remainder: Q::from_f64(PI - 1e-8), whole_turns: turns });
+        let above = UnitArc::new(Angle { remainder: Q::from_f64(1e-8 - PI), whole_turns: turns + 1 });
         let step = differ(numbers(below), numbers(above));
         assert!(step <= 2.0 * LSB + FIXED_ERROR, "a step of {step} after {turns} turns");
     }

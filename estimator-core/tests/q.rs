@@ -136,7 +136,7 @@ proptest! {
         prop_assert!(error <= LSB / 2.0 + HALF_TURN_UNIT + 1.4e-9, "{} rad", error);
     }
 
-    /// `rest` may be half a step off 2π·turns' own rounding; the quotient is as good as 26 bits allow.
+    /// `remainder` may be half a step off the rounding of 2π·`whole_turns`; the quotient is as good as 26 bits allow.
     #[test]
     fn the_share_of_an_unwrapped_angle_is_that_of_floats(rest in -3.1..3.1, turns in prop_oneof![-9..0, 1..9, 100..10_000]) {
         let exact = <f64 as FusedOps>::share_of_unwrapped(rest, turns);

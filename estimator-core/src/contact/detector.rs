@@ -139,33 +139,33 @@ impl ChangeDetector {
     }
 
     /// Updates the detector with one value. A missing value clears the window.
-    fn update(&mut self, limits: Thresholds, value: Option<Residual>) {
-        let score_percent = value.map_or(0, |value| self.score(limits, value));
+    fn update(&mut self, thresholds: Thresholds, value: Option<Residual>) {
+        let score_percent = value.map_or(0, |value| self.score(thresholds, value));
         if value.is_none() {
             (self.len, self.exceeded) = (0, 0);
         }
         self.contact = Contact { score_percent, in_contact: self.active.is_some() };
     }
 
-    fn score(&mut self, limits: Thresholds, value: Residual) -> u16 {
-        let later = self.head + limits.window - SHORT_WINDOW;
-        let later = if later < limits.window { later } else { later - limits.window };
+    fn score(&mut self, thresholds: Thresholds, value: Residual) -> u16 {
+        let later = self.head + thresholds.window - SHORT_WINDOW;
+        let later = if later < thresholds.window { later } else { later - thresholds.window };
         let Some(half_second_ago) = self.recent.get(usize::from(later)).copied() else { return 0 };
         let Some(place) = self.recent.get_mut(usize::from(self.head)) else { return 0 };
         let before = core::mem::replace(place, value);
-        self.head = if self.head + 1 < limits.window { self.head + 1 } else { 0 };
-        let is_known = self.len == limits.window;
+        self.head = if self.head + 1 < thresholds.window { self.head + 1 } else { 0 };
+        let is_known = self.len == thresholds.window;
         let motion = if is_known { value.angle.wrapping_sub(half_second_ago.angle).unsigned_abs() } else { 0 };
-        self.motion = motion.max(self.motion - (self.motion >> limits.hold_shift));
-        let score_percent = if is_known { limits.percent(before, value, self.motion) } else { 0 };
+        self.motion = motion.max(self.motion - (self.motion >> thresholds.hold_shift));
+        let score_percent = if is_known { thresholds.percent(before, value, self.motion) } else { 0 };
         self.len += u8::from(!is_known);
         self.exceeded = if score_percent > 100 { self.exceeded.saturating_add(1) } else { 0 };
         self.active = match self.active {
-            None if self.exceeded >= limits.debounce => {
+            None if self.exceeded >= thresholds.debounce => {
                 let is_rise = value.residual.wrapping_sub(before.residual) > 0;
                 Some(ActiveContact { from: before.residual, is_rise, values: 0 })
             }
-            Some(departure) if departure.lasts(limits, value) => {
+            Some(departure) if departure.lasts(thresholds, value) => {
                 Some(ActiveContact { values: departure.values + 1, ..departure })
             }
             Some(_) => {
@@ -181,10 +181,10 @@ impl ChangeDetector {
 
 impl ActiveContact {
     /// Returns `false` once the residual has returned to its value before the contact, or near zero.
-    fn lasts(self, limits: Thresholds, value: Residual) -> bool {
-        let half = limits.change / 2;
+    fn lasts(self, thresholds: Thresholds, value: Residual) -> bool {
+        let half = thresholds.change / 2;
         let away = value.residual.wrapping_sub(self.from);
-        let departure = if limits.has_zero {
+        let departure = if thresholds.has_zero {
             away.unsigned_abs().min(value.residual.unsigned_abs())
         } else if (away > 0) == self.is_rise {
             away.unsigned_abs()
@@ -230,9 +230,9 @@ impl Thresholds {
 
     fn percent(self, before: Residual, now: Residual, motion: u32) -> u16 {
         let change = now.residual.wrapping_sub(before.residual).unsigned_abs();
-        let rest = change.saturating_sub(motion.saturating_sub(self.motion) >> self.excess_shift);
+        let excess = change.saturating_sub(motion.saturating_sub(self.motion) >> self.excess_shift);
         // 2²⁴ steps are a 256th of a turn, and times 100 in range.
-        ((rest >> 8) * 100 / ((self.change >> 8) | 1)).min(u32::from(u16::MAX)) as u16
+        ((excess >> 8) * 100 / ((self.change >> 8) | 1)).min(u32::from(u16::MAX)) as u16
     }
 }
 
@@ -259,11 +259,11 @@ mod tests {
         Thresholds::of_limit(&ChangeLimit { change: LIMIT, motion: Turns::from_bits(5 * DEGREE as i64) });
 
     /// Contact after each of the residuals, in degrees; the segment moves ten times as far.
-    fn touched(limits: Thresholds, degrees: impl IntoIterator<Item = i32>) -> Vec<bool> {
+    fn touched(thresholds: Thresholds, degrees: impl IntoIterator<Item = i32>) -> Vec<bool> {
         let mut detector = ChangeDetector::new();
         let step = |degrees: i32| {
             let angle = (degrees * DEGREE).wrapping_mul(10);
-            detector.update(limits, Some(Residual { residual: degrees * DEGREE, angle }));
+            detector.update(thresholds, Some(Residual { residual: degrees * DEGREE, angle }));
             detector.contact.in_contact
         };
         degrees.into_iter().map(step).collect()

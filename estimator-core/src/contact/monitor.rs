@@ -6,7 +6,7 @@
 use crate::config::{ArmConfig, ContactConfig, CoupledSegment, SegmentConfig};
 use crate::contact::coupling::CouplingModel;
 use crate::contact::detector::{ContactDetector, Residual, Thresholds};
-use crate::drift::MeasuredAngles;
+use crate::drift::correction::MeasuredAngles;
 use crate::drift::decimator::{Decimated, Decimator};
 use crate::numeric::phase::Turns;
 use crate::types::{Condition, Contact, Contacts};
@@ -101,10 +101,10 @@ impl<const N: usize> ContactMonitor<N> {
         if !self.has_value {
             return;
         }
-        let phases = decimator.phases(&config.anchor, decimated);
+        let stagger = decimator.stagger(&config.anchor, decimated);
         let share = config.anchor.sample_rate_millihertz / (config.segments.len() as u32).max(1);
         for (i, segment) in config.segments.iter().enumerate().take(N) {
-            if phases.contains(&(share * i as u32)) {
+            if stagger.contains(&(share * i as u32)) {
                 self.detect(i, segment, thresholds, &condition);
             }
         }

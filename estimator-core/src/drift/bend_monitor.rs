@@ -135,7 +135,7 @@ impl<S: Scalar> BendMonitor<S> {
         self.steps
             .iter_mut()
             .zip(angles)
-            .fold(false, |any, (step, angle)| any | step.take(angle, motion, limit, time_us))
+            .fold(false, |any, (step, angle)| any | step.update(angle, motion, limit, time_us))
     }
 
     /// Updates the running mean over the elapsed time, a minute at most.
@@ -206,7 +206,7 @@ impl<S: Scalar> BendMonitor<S> {
 
 impl<S: Scalar> StepDetector<S> {
     /// Updates the detector with one sample; returns `true` if the sensor has a new zero.
-    fn take(&mut self, angle: Option<S>, motion: Option<S>, least: S, time_us: u64) -> bool {
+    fn update(&mut self, angle: Option<S>, motion: Option<S>, least: S, time_us: u64) -> bool {
         let (Some(angle), Some(motion), Some(last)) = (angle, motion, self.expected) else {
             (self.expected, self.suspect_since_us) = (angle.filter(|_| motion.is_some()), None);
             return false;

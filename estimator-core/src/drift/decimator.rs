@@ -35,21 +35,21 @@ impl Decimator {
     }
 
     /// Advances by one sample.
-    pub fn tick(&mut self, rule: &AnchorConfig) -> Decimated {
-        self.phase = self.phase.saturating_add(rule.rate_millihertz);
-        let complete = self.phase >= rule.sample_rate_millihertz;
-        let slot = Decimated { oldest: self.oldest, complete: -i32::from(complete) };
+    pub fn advance(&mut self, config: &AnchorConfig) -> Decimated {
+        self.phase = self.phase.saturating_add(config.rate_millihertz);
+        let complete = self.phase >= config.sample_rate_millihertz;
+        let decimated = Decimated { oldest: self.oldest, complete: -i32::from(complete) };
         if complete {
-            self.phase = (self.phase - rule.sample_rate_millihertz).min(rule.sample_rate_millihertz);
-            self.oldest = if self.oldest + 1 < rule.window { self.oldest + 1 } else { 0 };
+            self.phase = (self.phase - config.sample_rate_millihertz).min(config.sample_rate_millihertz);
+            self.oldest = if self.oldest + 1 < config.window { self.oldest + 1 } else { 0 };
         }
-        slot
+        decimated
     }
 
     /// Range of phases of the newest sample. The ranges of all samples from one complete value to the next cover each
     /// phase from 0 to the sample rate once.
-    pub(crate) fn phases(self, rule: &AnchorConfig, slot: Decimated) -> Range<u32> {
-        let first = if slot.is_complete() { 0 } else { self.phase };
-        first..self.phase.saturating_add(rule.rate_millihertz)
+    pub(crate) fn stagger(self, config: &AnchorConfig, decimated: Decimated) -> Range<u32> {
+        let first = if decimated.is_complete() { 0 } else { self.phase };
+        first..self.phase.saturating_add(config.rate_millihertz)
     }
 }

@@ -48,7 +48,7 @@ struct Freeze<S> {
 
 /// Prediction of one heading.
 #[derive(Debug, Clone, Copy)]
-pub struct Expected<S> {
+pub struct HeadingPrediction<S> {
     /// Heading that the bend sensors predict in {W}.
     pub heading: Turns,
     /// Motion of the bend sensors since the last sample, rad.
@@ -104,11 +104,11 @@ impl<S: Scalar> HeadingGate<S> {
 
     /// Checks a reading, unwrapped, or `None` where the IMU was not read. `scale_error` is the gyroscope's, in units of
     /// 2⁻³². `above` returns the deviation of the next IMU's reading from the same prediction, where it was read.
-    pub fn take(
+    pub fn check(
         &mut self,
         reading: Option<Turns>,
         scale_error: i32,
-        expected: &Expected<S>,
+        expected: &HeadingPrediction<S>,
         above: impl Fn() -> Option<Turns>,
         time_us: u64,
     ) -> Verdict<S> {
@@ -157,7 +157,7 @@ impl<S: Scalar> HeadingGate<S> {
     fn is_far(
         &self,
         deviation: Turns,
-        expected: &Expected<S>,
+        expected: &HeadingPrediction<S>,
         above: impl Fn() -> Option<Turns>,
         absence_us: u64,
     ) -> bool {
@@ -188,7 +188,7 @@ impl<S: Scalar> HeadingGate<S> {
     }
 
     /// θ by the bend sensors if the output has not changed by a bit while they have moved.
-    fn frozen_theta(&mut self, reading: Turns, expected: &Expected<S>, time_us: u64) -> Option<S> {
+    fn frozen_theta(&mut self, reading: Turns, expected: &HeadingPrediction<S>, time_us: u64) -> Option<S> {
         let freeze = &mut self.freeze;
         if reading != freeze.reading || freeze.bend.is_none() {
             let theta = expected.theta + expected.motion;

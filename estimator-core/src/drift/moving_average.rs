@@ -1,8 +1,8 @@
 //! Drift anchor: the moving average of the IMUs' bend angle less that of the bend sensors (paper, eq. 2 and 3).
 
 use crate::config::{AnchorConfig, ArmConfig};
+use crate::drift::correction::{CorrectedArm, DriftCorrection, MeasuredAngles, SensedArm};
 use crate::drift::decimator::Decimated;
-use crate::drift::{CorrectedArm, DriftCorrection, MeasuredAngles, SensedArm};
 use crate::numeric::phase::Turns;
 use crate::numeric::scalar::Scalar;
 use crate::sensing::heading::SegmentHeading;
@@ -16,7 +16,7 @@ use crate::sensing::heading::SegmentHeading;
 /// ```
 /// use estimator_core::{MovingAverageAnchor, AnchorConfig, Decimator, Turns};
 ///
-/// let rule = AnchorConfig {
+/// let config = AnchorConfig {
 ///     window: 2,
 ///     rate_millihertz: 10_000,
 ///     sample_rate_millihertz: 10_000,
@@ -24,7 +24,7 @@ use crate::sensing::heading::SegmentHeading;
 /// };
 /// let (mut decimator, mut anchor) = (Decimator::new(), MovingAverageAnchor::<2>::new());
 /// for value in [1, 3, 5] {
-///     anchor.push(decimator.tick(&rule), Some(Turns::from_bits(value)));
+///     anchor.push(decimator.advance(&config), Some(Turns::from_bits(value)));
 /// }
 /// assert_eq!(anchor.offset(), Some(Turns::from_bits(4)));
 /// ```
@@ -65,8 +65,8 @@ impl<const W: usize> MovingAverageAnchor<W> {
     ///
     /// The cost is the same for samples that complete a value of the window and for those that do not.
     #[inline]
-    pub fn push(&mut self, slot: Decimated, difference: Option<Turns>) {
-        self.take(difference.unwrap_or_default(), i32::from(difference.is_some()), slot);
+    pub fn push(&mut self, decimated: Decimated, difference: Option<Turns>) {
+        self.take(difference.unwrap_or_default(), i32::from(difference.is_some()), decimated);
     }
 
     /// Updates the window. Not inlined, so that the loop over the segments leaves it all registers.
@@ -91,8 +91,8 @@ impl<const W: usize> MovingAverageAnchor<W> {
     /// Correction to subtract from the untared θ_imu,i for θ_c,i: the tare's zero or, where offset_i is over the
     /// threshold, the offset, which includes the tare.
     #[inline]
-    pub(crate) fn zero(&self, rule: &AnchorConfig, zero: Turns) -> Turns {
-        self.offset.filter(|offset| (*offset - zero).exceeds(rule.threshold)).unwrap_or(zero)
+    pub(crate) fn zero(&self, config: &AnchorConfig, zero: Turns) -> Turns {
+        self.offset.filter(|offset| (*offset - zero).exceeds(config.threshold)).unwrap_or(zero)
     }
 
     /// The newest offset; `None` before the first.

@@ -57,7 +57,7 @@ impl<S: Scalar> Mean<S> {
     }
 
     /// Adds a value; `share` is its weight in the mean.
-    fn take(&mut self, value: Turns, share: S) {
+    fn add(&mut self, value: Turns, share: S) {
         self.is_read = true;
         let start = *self.start.get_or_insert(value);
         let deviation = S::from_phase((value - start).phase());
@@ -87,12 +87,12 @@ impl<S: Scalar, const N: usize> RestDetector<S, N> {
     }
 
     /// Adds the readings of IMU and segment `i`, `dt` after the last ones: the uncorrected heading, and the bend angle.
-    pub fn take(&mut self, i: usize, heading: Option<Turns>, bend: Option<Turns>, dt: S) {
+    pub fn update(&mut self, i: usize, heading: Option<Turns>, bend: Option<Turns>, dt: S) {
         // In two steps, as 128 does not fit the fixed-point range.
         let share = if dt < S::constant(MEAN_TIME) { dt * S::from_int(16) * S::from_int(8) } else { S::one() };
         for (means, value) in [(&mut self.headings, heading), (&mut self.bend, bend)] {
             if let (Some(mean), Some(value)) = (means.get_mut(i), value) {
-                mean.take(value, share);
+                mean.add(value, share);
             }
         }
     }

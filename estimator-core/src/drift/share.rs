@@ -38,8 +38,8 @@ impl ShareCounter {
     }
 
     /// Share of this sample.
-    pub fn share(&self, rule: &AnchorConfig) -> Share {
-        if rule.sample_rate_millihertz <= WHOLE_UP_TO_MILLIHERTZ { Share::Whole } else { self.share }
+    pub fn share(&self, config: &AnchorConfig) -> Share {
+        if config.sample_rate_millihertz <= WHOLE_UP_TO_MILLIHERTZ { Share::Whole } else { self.share }
     }
 
     /// Selects the next sample's share, for an arm of `segments`.

@@ -62,7 +62,7 @@ impl<const N: usize> CovariancePropagation<N> {
     pub fn step(&mut self, headings: &[Q; N], chord: Vector2<Q>, lever: Q, end: Q) -> Q {
         let Self { before, cross, point, segment } = self;
         let zero = Q::from_bits(0);
-        let rest = Q::from_f64(1.0) - lever;
+        let complement = Q::from_f64(1.0) - lever;
         // Derivative of the chord with respect to its angle, clockwise positive: (x, y) to (y, −x).
         let turn = Vector2::new(chord.y, -chord.x);
         let (k, k_before) = (Some(*segment), segment.checked_sub(1));
@@ -72,19 +72,19 @@ impl<const N: usize> CovariancePropagation<N> {
         let cross_at = |k: Option<usize>| k.and_then(|k| cross.get(k)).copied().unwrap_or(Vector2::new(zero, zero));
         let (of_own, of_below) = (cross_at(k), cross_at(k_before));
         // Covariance of the chord's angle (weighted by λ) with the heading, and with the one before.
-        let with_own = lever.mul_unchecked_range(own) + rest.mul_unchecked_range(at(before, k));
-        let with_before = lever.mul_unchecked_range(shared) + rest.mul_unchecked_range(of_before);
-        let half = Q::dot([lever, rest], [with_own, with_before]).half();
+        let with_own = lever.mul_unchecked_range(own) + complement.mul_unchecked_range(at(before, k));
+        let with_before = lever.mul_unchecked_range(shared) + complement.mul_unchecked_range(of_before);
+        let half = Q::dot([lever, complement], [with_own, with_before]).half();
         // Covariance of the angle with the point, and half of its variance along the turn.
         let side = Vector2::new(
-            Q::dot([lever, rest, half], [of_own.x, of_below.x, turn.x]),
-            Q::dot([lever, rest, half], [of_own.y, of_below.y, turn.y]),
+            Q::dot([lever, complement, half], [of_own.x, of_below.x, turn.x]),
+            Q::dot([lever, complement, half], [of_own.y, of_below.y, turn.y]),
         );
         point.xx += Q::dot([turn.x; 2], [side.x; 2]) + end;
         point.xy += Q::dot([turn.x, turn.y], [side.y, side.x]);
         point.yy += Q::dot([turn.y; 2], [side.y; 2]) + end;
         for (cross, (own, before)) in cross.iter_mut().zip(headings.iter().zip(before.iter_mut())) {
-            let angle = lever.mul_unchecked_range(*own) + rest.mul_unchecked_range(*before);
+            let angle = lever.mul_unchecked_range(*own) + complement.mul_unchecked_range(*before);
             *cross += Vector2::new(turn.x.mul_unchecked_range(angle), turn.y.mul_unchecked_range(angle));
             *before = *own;
         }

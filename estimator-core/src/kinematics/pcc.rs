@@ -3,8 +3,8 @@
 use nalgebra::Vector2;
 
 use crate::config::{OffsetAt, SegmentConfig};
+use crate::numeric::angle::Angle;
 use crate::numeric::fused::FusedOps;
-use crate::numeric::phase::Angle;
 use crate::numeric::polynomial::{AXIAL, COSINE, Terms, VERSINE};
 use crate::numeric::scalar::{Constant, TWO_PI};
 
@@ -40,27 +40,27 @@ impl<S: FusedOps> UnitArc<S> {
     /// The unit arc that turns by `theta`, of any size.
     #[must_use]
     pub fn new(theta: Angle<S>) -> Self {
-        if theta.turns == 0 && theta.rest.is_within(S::constant(LIMIT)) {
-            Self::within_2_rad(theta.rest)
+        if theta.whole_turns == 0 && theta.remainder.is_within(S::constant(LIMIT)) {
+            Self::within_2_rad(theta.remainder)
         } else {
             Self::reduced(theta)
         }
     }
 
     #[cold]
-    fn reduced(Angle { rest, turns }: Angle<S>) -> Self {
+    fn reduced(Angle { remainder, whole_turns }: Angle<S>) -> Self {
         const PI: Constant = Constant::new(core::f64::consts::PI);
-        if turns == 0 && rest.is_within(S::constant(PI)) {
-            return Self::within_half_turn(rest);
+        if whole_turns == 0 && remainder.is_within(S::constant(PI)) {
+            return Self::within_half_turn(remainder);
         }
-        // Whole turns do not change sine and cosine, and shrink the chord by r/θ.
-        let extra = (rest / S::constant(TWO_PI)).round();
-        let rest = rest - S::constant(TWO_PI) * S::from_int(extra);
-        let arc = Self::within_half_turn(rest);
-        match turns.saturating_add(extra) {
+        // Whole turns do not change sine and cosine, and shrink the chord by the remainder over θ.
+        let extra = (remainder / S::constant(TWO_PI)).round();
+        let remainder = remainder - S::constant(TWO_PI) * S::from_int(extra);
+        let arc = Self::within_half_turn(remainder);
+        match whole_turns.saturating_add(extra) {
             0 => arc,
-            turns => {
-                let share = S::share_of_unwrapped(rest, turns);
+            whole_turns => {
+                let share = S::share_of_unwrapped(remainder, whole_turns);
                 Self { lateral: share * arc.lateral, axial: share * arc.axial, ..arc }
             }
         }
@@ -144,8 +144,8 @@ impl<S: FusedOps> Pcc<S> {
     #[inline]
     #[must_use]
     pub fn link(&self, theta: Angle<S>) -> Link<S> {
-        let (x, y) = if theta.turns == 0 && theta.rest.is_within(self.limit) {
-            theta.rest.polynomials(&self.lateral, &self.axial)
+        let (x, y) = if theta.whole_turns == 0 && theta.remainder.is_within(self.limit) {
+            theta.remainder.polynomials(&self.lateral, &self.axial)
         } else {
             self.by_arc(theta)
         };
@@ -166,8 +166,8 @@ impl<S: FusedOps> Pcc<S> {
 /// sin θ and cos θ.
 #[inline]
 pub(crate) fn sin_cos<S: FusedOps>(theta: Angle<S>) -> (S, S) {
-    if theta.turns == 0 && theta.rest.is_within(S::constant(LIMIT)) {
-        theta.rest.sin_cos()
+    if theta.whole_turns == 0 && theta.remainder.is_within(S::constant(LIMIT)) {
+        theta.remainder.sin_cos()
     } else {
         let arc = UnitArc::new(theta);
         (arc.sin, arc.cos)

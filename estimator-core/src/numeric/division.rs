@@ -39,8 +39,8 @@ impl<const FRAC: u32> Divisor<FRAC> {
             _ => return u32::MAX,
         };
         // The quotient is never too large, and so little too small that the remainder fits 32 bits.
-        let rest = (num << FRAC).wrapping_sub(quotient.wrapping_mul(self.den));
-        quotient.wrapping_add(rest.wrapping_add(self.den / 2) / self.den)
+        let remainder = (num << FRAC).wrapping_sub(quotient.wrapping_mul(self.den));
+        quotient.wrapping_add(remainder.wrapping_add(self.den / 2) / self.den)
     }
 }
 

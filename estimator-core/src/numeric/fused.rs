@@ -10,9 +10,9 @@ use crate::numeric::scalar::{Constant, Scalar, TWO_PI};
 pub mod plain {
     use super::{Constant, Scalar, TWO_PI};
 
-    /// `rest / (rest + 2π · turns)`.
-    pub fn share_of_unwrapped<S: Scalar>(rest: S, turns: i32) -> S {
-        rest / (rest + S::constant(TWO_PI) * S::from_int(turns))
+    /// `remainder / (remainder + 2π · whole_turns)`.
+    pub fn share_of_unwrapped<S: Scalar>(remainder: S, whole_turns: i32) -> S {
+        remainder / (remainder + S::constant(TWO_PI) * S::from_int(whole_turns))
     }
 
     /// θ Σ aₖ (θ²/8)ᵏ and Σ bₖ (θ²/8)ᵏ of `odd` = 8 aₖ and `even` = 8 bₖ.
@@ -66,12 +66,12 @@ pub mod plain {
 
 /// Operations with a faster form in fixed point.
 pub trait FusedOps: Scalar {
-    /// `rest / (rest + 2π · turns)`, both angles in rad: the share that the remainder has in an unwrapped angle.
+    /// `remainder / (remainder + 2π · whole_turns)`, both angles in rad: the share that the remainder has in an unwrapped angle.
     ///
-    /// `turns` is not 0, and `rest` is within ±π.
+    /// `whole_turns` is not 0, and `remainder` is within ±π.
     #[must_use]
-    fn share_of_unwrapped(rest: Self, turns: i32) -> Self {
-        plain::share_of_unwrapped(rest, turns)
+    fn share_of_unwrapped(remainder: Self, whole_turns: i32) -> Self {
+        plain::share_of_unwrapped(remainder, whole_turns)
     }
 
     /// θ Σ aₖ (θ²/8)ᵏ and Σ bₖ (θ²/8)ᵏ at this angle θ, |θ| < 2 rad, where `odd` are 8 aₖ, `even` 8 bₖ, and each sum of

@@ -7,7 +7,6 @@ use core::f64::consts::TAU;
 use core::ops::{Add, Neg, Sub};
 
 use crate::numeric::division::{reciprocal, signed_upper_word, upper_word};
-use crate::numeric::scalar::{Scalar, TWO_PI};
 
 /// 2⁻³² turns in a turn.
 const TURN: f64 = 4_294_967_296.0;
@@ -167,7 +166,7 @@ impl Turns {
 
     /// The whole turns that [`Turns::phase`] leaves out.
     #[must_use]
-    pub const fn whole(self) -> i32 {
+    pub const fn whole_turns(self) -> i32 {
         ((self.0.wrapping_sub(self.0 as i32 as i64)) >> 32) as i32
     }
 
@@ -206,10 +205,10 @@ impl Turns {
         }
         let (divisor, upper, lower) = (i32::from(count), (self.0 >> 32) as i32, self.0 as u32);
         // The first digit is the only signed one; it is rounded down.
-        let (first, rest) = (upper / divisor, upper % divisor);
-        let (first, rest) = (first + (rest >> 31), (rest + (divisor & (rest >> 31))) as u32);
+        let (first, remainder) = (upper / divisor, upper % divisor);
+        let (first, remainder) = (first + (remainder >> 31), (remainder + (divisor & (remainder >> 31))) as u32);
         let divisor = divisor as u32;
-        let part = (rest << 16) | (lower >> 16);
+        let part = (remainder << 16) | (lower >> 16);
         let last = ((part % divisor) << 16) | (lower & 0xFFFF);
         let quotient = ((part / divisor) << 16) | (last / divisor);
         Self((i64::from(first) << 32) | i64::from(quotient))
@@ -248,42 +247,4 @@ impl Neg for Turns {
 
 fn round_to_i64(value: f64) -> i64 {
     (value + if value < 0.0 { -0.5 } else { 0.5 }) as i64
-}
-
-/// A bend angle θ = `rest` + 2π·`turns`, rad, clockwise positive: a remainder and whole turns.
-///
-/// Only IMU angles have whole turns, once they have drifted past 180°: raw angles, and corrected angles without an
-/// anchor.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Angle<S> {
-    /// The angle without the turns, rad.
-    pub rest: S,
-    /// Whole turns on top of it.
-    pub turns: i32,
-}
-
-impl<S: Scalar> Angle<S> {
-    /// The whole angle as one scalar, rad; it saturates where `S` does ([`Q`](crate::Q): ±32 rad).
-    #[must_use]
-    pub fn value(self) -> S {
-        if self.turns == 0 { self.rest } else { self.rest + S::constant(TWO_PI) * S::from_int(self.turns) }
-    }
-
-    /// The whole angle as a float, rad. For reports.
-    #[must_use]
-    pub fn rad(self) -> f64 {
-        self.rest.to_f64() + TAU * f64::from(self.turns)
-    }
-}
-
-impl<S: Scalar> From<Turns> for Angle<S> {
-    fn from(turns: Turns) -> Self {
-        Self { rest: S::from_phase(turns.phase()), turns: turns.whole() }
-    }
-}
-
-impl<S> From<S> for Angle<S> {
-    fn from(rad: S) -> Self {
-        Self { rest: rad, turns: 0 }
-    }
 }

@@ -11,42 +11,6 @@ use crate::numeric::q::Q;
 use crate::numeric::scalar::{Constant, TWO_PI};
 
 impl Q {
-    /// Overflow indicator of a sum, below [`Self::ROOM`] if it fits; indicators of several sums can be combined by `|`.
-    /// Three products are below 2⁶⁴ − 2⁶² in size, so that a wrapped sum never seems to fit.
-    #[inline]
-    fn excess(sum: i64) -> u32 {
-        ((sum >> 32) as u32).wrapping_add(Self::ROOM / 2)
-    }
-
-    /// The value in the format of a sum of products, in units of 2⁻⁵².
-    #[inline]
-    fn wide(self) -> i64 {
-        // Word by word: the compiler does not find this form of the shift.
-        let upper = self.0 >> (32 - Self::FRACTION_BITS);
-        (i64::from(upper) << 32) | i64::from((self.0 << Self::FRACTION_BITS) as u32)
-    }
-
-    /// Converts a sum of products that fits.
-    #[inline]
-    fn narrow(sum: i64) -> Self {
-        Self((sum >> Self::FRACTION_BITS) as i32)
-    }
-
-    /// Returns `true` if all sums fit: one check instead of one per sum.
-    #[inline]
-    fn all_fit(sums: &[i64]) -> bool {
-        sums.iter().fold(0, |all, sum| all | Self::excess(*sum)) < Self::ROOM
-    }
-
-    /// [`FusedOps::dot`] out of range. Not inlined and by value, so that the fast path reserves no registers for it.
-    #[cold]
-    #[inline(never)]
-    fn saturated_dot<const K: usize>(a: [Self; K], b: [Self; K]) -> Self {
-        const { assert!(K <= 3) };
-        let quarters = a.iter().zip(b).map(|(a, b)| (i64::from(a.0) * i64::from(b.0)) >> 2);
-        Self::overflowed(quarters.sum::<i64>() < 0)
-    }
-
     /// [`FusedOps::rotate_clockwise`] where one of the two may be beyond the range.
     #[cold]
     #[inline(never)]
@@ -85,17 +49,6 @@ impl Q {
         });
         (sum >> 32) as i32
     }
-
-    /// `start` + Σ aₖ bₖ, wrapped.
-    #[inline]
-    fn sum<const K: usize>(start: i64, (a, b): &([Self; K], [Self; K])) -> i64 {
-        a.iter().zip(b).fold(start, |sum, (a, b)| sum.wrapping_add(i64::from(a.0) * i64::from(b.0)))
-    }
-
-    const ROOM: u32 = 1 << Self::FRACTION_BITS;
-
-    /// Half of the last bit of a result, in units of a sum of products: rounds to nearest.
-    const HALF: i64 = 1 << (Self::FRACTION_BITS - 1);
 }
 
 /// Converts a polynomial's terms to fixed point at compile time.
@@ -140,8 +93,7 @@ impl FusedOps for Q {
 
     #[inline]
     fn dot<const K: usize>(a: [Self; K], b: [Self; K]) -> Self {
-        let sum = Self::sum(Self::HALF, &(a, b));
-        if Self::all_fit(&[sum]) { Self::narrow(sum) } else { Self::saturated_dot(a, b) }
+        Self::rounded_dot(a, b)
     }
 
     #[inline]
@@ -222,9 +174,9 @@ impl FusedOps for Q {
     }
 
     #[inline]
-    fn share_of_unwrapped(rest: Self, turns: i32) -> Self {
-        let total = i64::from(rest.0) + i64::from(TWO_PI.q.0) * i64::from(turns);
+    fn share_of_unwrapped(remainder: Self, whole_turns: i32) -> Self {
+        let total = i64::from(remainder.0) + i64::from(TWO_PI.q.0) * i64::from(whole_turns);
         let excess = 33_u32.saturating_sub(total.unsigned_abs().leading_zeros());
-        Self(rest.0 >> excess) / Self((total >> excess) as i32)
+        Self(remainder.0 >> excess) / Self((total >> excess) as i32)
     }
 }

@@ -1,8 +1,10 @@
 //! Angles and variances of the bias filter: constants in degrees, and squares that are multiplied by
 //! [`VARIANCE_SCALE`](crate::VARIANCE_SCALE).
 
-use crate::config::VARIANCE_SCALE;
 use crate::numeric::scalar::{Constant, Scalar};
+
+/// Factor of all variances in fixed point: one step is 2⁻³² rad² or m², the largest value 0.5.
+pub const VARIANCE_SCALE: f64 = 64.0;
 
 const DEGREE: f64 = core::f64::consts::PI / 180.0;
 

@@ -132,8 +132,8 @@ impl<S: Scalar> CurveMap<S> {
         let from_first = counts.wrapping_sub(self.first);
         let knot = usize::from(from_first.wrapping_shr(self.shift.into()));
         let (below, above) = (*self.knots.get(knot)?, *self.knots.get(knot + 1)?);
-        let rest = i32::from(from_first) & ((1 << (self.shift & 15)) - 1);
-        Some(below + (above - below) * S::from_fraction(rest, self.shift.into()))
+        let remainder = i32::from(from_first) & ((1 << (self.shift & 15)) - 1);
+        Some(below + (above - below) * S::from_fraction(remainder, self.shift.into()))
     }
 }
 

@@ -1,8 +1,9 @@
 //! Heading of one IMU: from its quaternion, unwrapped from reading to reading, and tared in the reference pose.
 
 use crate::kinematics::pcc::sin_cos;
+use crate::numeric::angle::Angle;
 use crate::numeric::fused::FusedOps;
-use crate::numeric::phase::{Angle, Phase, Turns};
+use crate::numeric::phase::{Phase, Turns};
 use crate::types::ImuReading;
 
 impl ImuReading {

@@ -9,7 +9,7 @@ use telemetry::{Estimate, Event, SEGMENTS, Sample, Uncertainty, touched};
 /// Ticks a second of the board.
 const RATE_HZ: f64 = 100.0;
 
-/// The reference arm's table, which the firmware has baked in.
+/// The reference arm's table, which the firmware has compiled in.
 ///
 /// # Panics
 /// If the committed file is none.
@@ -35,8 +35,8 @@ pub struct Replayed {
 /// # Panics
 /// If the reference table is none.
 pub fn replay<'s>(samples: impl Iterator<Item = &'s Sample>) -> Vec<Replayed> {
-    let baked = table().bake::<Q>(RATE_HZ).expect("the reference table bakes");
-    let table = baked.config();
+    let compiled = table().compile::<Q>(RATE_HZ).expect("the reference file is a table");
+    let table = compiled.config();
     let start = || Estimator::<Q, SEGMENTS, 100>::new(&table).expect("the reference arm has six segments");
     let (mut estimator, mut tare, mut touched_before) = (start(), 0, [false; SEGMENTS]);
     let mut replayed = Vec::new();

@@ -1,11 +1,12 @@
 //! Headings of one sample: plausible readings, and absent headings from the bend sensors.
 
 use crate::config::{ArmConfig, BendErrorConfig};
-use crate::drift::SensedArm;
-use crate::drift::bias_filter::{BiasFilter, SegmentTrack};
+use crate::drift::bias_filter::filter::BiasFilter;
+use crate::drift::bias_filter::track::SegmentTrack;
 use crate::drift::bias_state::{BIAS, BiasState, RATE};
 use crate::drift::bias_trace::BiasTrace;
-use crate::drift::heading_gate::{Expected, Verdict};
+use crate::drift::correction::SensedArm;
+use crate::drift::heading_gate::{HeadingPrediction, Verdict};
 use crate::numeric::phase::Turns;
 use crate::numeric::scalar::{Constant, Scalar, TIME_UNIT_S};
 use crate::numeric::variance::{degrees, smaller, variance_deg};
@@ -45,8 +46,8 @@ impl<F: Scalar, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
                 let bias = self.state.bias_at(i + 1, sensed.time_us);
                 next.deviation_from(expected.heading, bias, heading, segment.imu_scale_error)
             };
-            let verdict = track.gate.take(reading, segment.imu_scale_error, &expected, above, sensed.time_us);
-            doubt(&mut self.state, i, verdict, &expected, &segment.bend_error);
+            let verdict = track.gate.check(reading, segment.imu_scale_error, &expected, above, sensed.time_us);
+            inflate_bias_variance(&mut self.state, i, verdict, &expected, &segment.bend_error);
             excess = track.apply(verdict, &expected, sensed.time_us);
             below = track.heading;
             tracks = next;
@@ -88,10 +89,10 @@ impl<F: Scalar> SegmentTrack<F> {
     }
 
     /// Prediction of the heading by the bend sensors and the heading `below`.
-    fn expected(&self, below: Turns, bias: Turns, error: &BendErrorConfig) -> Expected<F> {
+    fn expected(&self, below: Turns, bias: Turns, error: &BendErrorConfig) -> HeadingPrediction<F> {
         let motion = F::constant(FROZEN_MOTION);
         let is_beyond_errors = F::from_q(error.mean) < F::constant(FROZEN_VARIANCE);
-        Expected {
+        HeadingPrediction {
             heading: below + (self.theta + self.motion).to_turns(),
             motion: self.motion,
             bias,
@@ -103,7 +104,7 @@ impl<F: Scalar> SegmentTrack<F> {
 
     /// Applies the verdict on a heading; returns by how much a correction of it makes θ of the next segment too large,
     /// rad.
-    fn apply(&mut self, verdict: Verdict<F>, expected: &Expected<F>, time_us: u64) -> F {
+    fn apply(&mut self, verdict: Verdict<F>, expected: &HeadingPrediction<F>, time_us: u64) -> F {
         let mut excess = F::zero();
         self.bias = expected.bias;
         (self.heading, self.is_heading_read) = match verdict {
@@ -132,23 +133,23 @@ impl<F: Scalar> SegmentTrack<F> {
 }
 
 /// Inflates the variance of the bias of a heading that may have a new zero.
-fn doubt<F: Scalar, const N: usize, T: BiasTrace<F>>(
+fn inflate_bias_variance<F: Scalar, const N: usize, T: BiasTrace<F>>(
     state: &mut BiasState<F, N, T>,
     i: usize,
     verdict: Verdict<F>,
-    expected: &Expected<F>,
+    expected: &HeadingPrediction<F>,
     error: &BendErrorConfig,
 ) {
     match verdict {
-        Verdict::Returned(_) => state.doubt(i, BIAS, F::constant(RETURNED)),
+        Verdict::Returned(_) => state.inflate_variance(i, BIAS, F::constant(RETURNED)),
         Verdict::Restarted(deviation, absence_us) => {
             state.add_to_bias(i, deviation);
             let absence = F::from_micros(absence_us.min(400_000_000) as u32);
             let quarter = F::from_q(error.mean).half().half();
             let seen = F::constant(NEW_ZERO) + quarter + absence * F::constant(NEW_ZERO_CREEP);
             let variance = if expected.bend.is_some() { seen } else { F::constant(UNSEEN_ZERO) };
-            state.doubt(i, BIAS, variance);
-            state.doubt(i, RATE, F::constant(NEW_ZERO_RATE));
+            state.inflate_variance(i, BIAS, variance);
+            state.inflate_variance(i, RATE, F::constant(NEW_ZERO_RATE));
         }
         Verdict::Accepted(_) | Verdict::Absent | Verdict::Frozen(_) => {}
     }

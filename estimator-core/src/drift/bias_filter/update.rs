@@ -2,11 +2,12 @@
 //! at rest.
 
 use crate::config::{BendErrorConfig, BiasFilterConfig, SENSORS_PER_SEGMENT, SegmentConfig};
-use crate::drift::SensedArm;
 use crate::drift::bend_monitor::TrustedBend;
-use crate::drift::bias_filter::{BiasFilter, MAX_RATIO, RestChange, SegmentTrack, bounded_ratio, since};
+use crate::drift::bias_filter::filter::BiasFilter;
+use crate::drift::bias_filter::track::{MAX_RATIO, RestChange, SegmentTrack, bounded_ratio, since};
 use crate::drift::bias_state::{BIAS, OFFSET};
 use crate::drift::bias_trace::BiasTrace;
+use crate::drift::correction::SensedArm;
 use crate::drift::rest::RestWindow;
 use crate::drift::share::Share;
 use crate::numeric::fused::FusedOps;
@@ -32,14 +33,14 @@ const GATE: Constant = Constant::new(1.0 / 6.0);
 const RETRY_US: u64 = 500_000;
 /// Timeout of the innovation gate: the variances of the bias and the offset then grow by (3°)².
 const GATE_TIMEOUT_US: u64 = 30_000_000;
-const GATED: Constant = variance_deg(3.0);
+const GATE_TIMEOUT_VARIANCE: Constant = variance_deg(3.0);
 /// Variance added to the offset of a segment whose sensor has stepped.
-const STEPPED: Constant = variance_deg(1.0);
+const STEP_VARIANCE: Constant = variance_deg(1.0);
 /// Factor on the bend sensors' variance in the tare: a single pose does not average the hysteresis.
 const TARE_NOISE: Constant = Constant::new(4.0);
 /// Creep of bend sensors that stay bent: error as a share of the mean bend angle over this time, time units.
-const LEAN_ERROR: Constant = Constant::new(0.1);
-const LEAN_TIME: Constant = Constant::new(0.5);
+const CREEP_ERROR: Constant = Constant::new(0.1);
+const CREEP_TIME: Constant = Constant::new(0.5);
 /// Growth of the offset's variance where one sensor of two is lost, in slow variances of their difference.
 const LOST_SENSOR: Constant = Constant::new(1.5);
 /// Process noise of the heading of a resting arm, 0.02 °/√s, and measurement noise of its change.
@@ -51,20 +52,20 @@ const REST_GATE: Constant = Constant::new(1.0 / 3.0);
 impl<F: FusedOps, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
     /// Processes the next segment: checks its bend sensors against the IMUs and, where a sample does all work, predicts
     /// and updates its states. Returns `false` if it must be repeated in the next sample.
-    pub(super) fn take_turn<S: Scalar>(
+    pub(super) fn process_segment<S: Scalar>(
         &mut self,
         segments: &[SegmentConfig<S>],
         filter: &BiasFilterConfig,
         sensed: &SensedArm<S, N>,
         angles: &[[Option<F>; SENSORS_PER_SEGMENT]; N],
     ) -> bool {
-        let (i, time_us) = (self.turn, sensed.time_us);
+        let (i, time_us) = (self.next_segment, sensed.time_us);
         let (Some(segment), Some(angles)) = (segments.get(i), angles.get(i)) else { return false };
         let Some(are_headings_read) = self.are_headings_read(i, time_us) else { return false };
-        self.turn = following(i, segments);
+        self.next_segment = following(i, segments);
         self.check_bend(i, &segment.bend_error, *angles, are_headings_read, time_us);
         if sensed.share == Share::Whole {
-            self.grow_offset(i, &segment.bend_error);
+            self.inflate_offset_variance(i, &segment.bend_error);
             self.predict(i, filter, time_us);
             self.update_segment(i, &segment.bend_error, sensed, are_headings_read);
             self.state.finish_update();
@@ -73,7 +74,7 @@ impl<F: FusedOps, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
     }
 
     /// Predicts the states of the segment that is updated next.
-    pub(super) fn take_prediction<S: Scalar>(
+    pub(super) fn predict_next<S: Scalar>(
         &mut self,
         segments: &[SegmentConfig<S>],
         filter: &BiasFilterConfig,
@@ -81,21 +82,21 @@ impl<F: FusedOps, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
     ) {
         let i = self.next_update;
         let Some(segment) = segments.get(i) else { return };
-        self.grow_offset(i, &segment.bend_error);
+        self.inflate_offset_variance(i, &segment.bend_error);
         self.predict(i, filter, time_us);
     }
 
     /// Updates the states by the next segment; the covariance follows in the next samples. If the update must wait, so
     /// does the next share of the work. A sample without an update evaluates the window of rest.
-    pub(super) fn take_update<S: Scalar>(&mut self, segments: &[SegmentConfig<S>], sensed: &SensedArm<S, N>) {
+    pub(super) fn update_next<S: Scalar>(&mut self, segments: &[SegmentConfig<S>], sensed: &SensedArm<S, N>) {
         let i = self.next_update;
         let Some(segment) = segments.get(i) else { return };
         let Some(are_headings_read) = self.are_headings_read(i, sensed.time_us) else { return };
         self.next_update = following(i, segments);
         self.update_segment(i, &segment.bend_error, sensed, are_headings_read);
         if !self.state.is_updating() {
-            self.state.begin_no_update();
-            self.follow_rest(sensed.time_us);
+            self.state.begin_empty_update();
+            self.evaluate_rest(sensed.time_us);
         }
     }
 
@@ -121,7 +122,7 @@ impl<F: FusedOps, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
     ) {
         let biases = self.state.bias;
         self.use_tare(i, error);
-        self.learn_rate(i);
+        self.update_rate(i);
         let is_extrapolated = sensed.bend.get(i).is_none_or(|bend| bend.is_extrapolated);
         let bend = self.segments.get(i).and_then(|track| track.bend).filter(|_| !is_extrapolated);
         // One update at a time: that by the bend sensors can wait without loss.
@@ -129,12 +130,12 @@ impl<F: FusedOps, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
         if let Some(bend) = bend.filter(|_| are_headings_read && is_free) {
             self.update(i, error, bend, sensed.time_us);
         }
-        self.follow_biases(&biases);
+        self.shift_headings(&biases);
     }
 
     /// Shifts the headings by the change of the biases in an update, so that the next readings are compared with
     /// corrected headings.
-    fn follow_biases(&mut self, before: &[Turns; N]) {
+    fn shift_headings(&mut self, before: &[Turns; N]) {
         if self.state.bias == *before {
             return;
         }
@@ -146,7 +147,7 @@ impl<F: FusedOps, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
             track.theta = F::from_phase((track.heading - below).phase());
             let turned: F = F::from_phase((moved - below_moved).phase());
             track.counted_theta += turned;
-            track.turn_theta += turned;
+            track.processed_theta += turned;
             (below, below_moved) = (track.heading, moved);
         }
     }
@@ -162,23 +163,23 @@ impl<F: FusedOps, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
         time_us: u64,
     ) {
         let Some(track) = self.segments.get_mut(i) else { return };
-        let dt = since(track.turned_at_us.replace(time_us).unwrap_or(time_us), time_us);
-        track.lean += smaller(dt / F::constant(LEAN_TIME), F::one()) * (track.theta - track.lean);
+        let dt = since(track.processed_at_us.replace(time_us).unwrap_or(time_us), time_us);
+        track.mean_theta += smaller(dt / F::constant(CREEP_TIME), F::one()) * (track.theta - track.mean_theta);
         track.monitor.compare(angles, dt, time_us);
-        let motion = are_headings_read.then(|| track.theta - track.turn_theta);
+        let motion = are_headings_read.then(|| track.theta - track.processed_theta);
         if track.monitor.find_steps(error, angles, motion, dt, time_us) {
-            self.state.doubt(i, OFFSET, F::constant(STEPPED));
+            self.state.inflate_variance(i, OFFSET, F::constant(STEP_VARIANCE));
             track.stepped_at_us = Some(time_us);
         }
         if are_headings_read {
             let expected = track.theta + self.state.angle_offset(i);
             track.monitor.check(error, angles, expected, time_us);
         }
-        track.turn_theta = track.theta;
+        track.processed_theta = track.theta;
         // Without a sensor that has just stepped.
         track.bend = track.monitor.mean(angles, track.has_twins(), time_us);
         let heading = track.is_heading_read.then(|| track.heading + track.bias);
-        self.rest.take(i, heading, track.bend.map(|bend| bend.theta.to_turns()), dt);
+        self.rest.update(i, heading, track.bend.map(|bend| bend.theta.to_turns()), dt);
     }
 
     fn predict(&mut self, i: usize, filter: &BiasFilterConfig, time_us: u64) {
@@ -200,20 +201,20 @@ impl<F: FusedOps, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
     }
 
     /// Inflates the variance of the offset if the two sensors disagree more than before, or one is lost.
-    fn grow_offset(&mut self, i: usize, error: &BendErrorConfig) {
+    fn inflate_offset_variance(&mut self, i: usize, error: &BendErrorConfig) {
         let Some(track) = self.segments.get_mut(i) else { return };
         let is_single = track.bend.is_some_and(|bend| bend.is_single);
         if is_single && !track.is_single {
-            track.lost += F::constant(LOST_SENSOR) * scaled_square(F::from_q(error.slow_difference));
+            track.lost_sensor_variance += F::constant(LOST_SENSOR) * scaled_square(F::from_q(error.slow_difference));
         }
         track.is_single = is_single;
         track.is_bend_missing = is_single || (track.bend.is_none() && track.sensors > 0);
         let prior = track.session_offset
-            + track.lost
+            + track.lost_sensor_variance
             + track.monitor.offset_excess(error, false)
-            + scaled_square(F::constant(LEAN_ERROR) * track.lean);
+            + scaled_square(F::constant(CREEP_ERROR) * track.mean_theta);
         if prior > track.offset_prior {
-            self.state.doubt(i, OFFSET, prior - track.offset_prior);
+            self.state.inflate_variance(i, OFFSET, prior - track.offset_prior);
             track.offset_prior = prior;
         }
     }
@@ -227,8 +228,8 @@ impl<F: FusedOps, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
         let innovation = self.state.innovation(i);
         if is_beyond(nu, GATE, innovation.variance + sigma) {
             if track.is_gate_timed_out(time_us) {
-                self.state.doubt(i, BIAS, F::constant(GATED));
-                self.state.doubt(i, OFFSET, F::constant(GATED));
+                self.state.inflate_variance(i, BIAS, F::constant(GATE_TIMEOUT_VARIANCE));
+                self.state.inflate_variance(i, OFFSET, F::constant(GATE_TIMEOUT_VARIANCE));
             }
             return;
         }
@@ -245,7 +246,7 @@ impl<F: FusedOps, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
     }
 
     /// Stores the changes over a window of rest for the updates of the segments.
-    pub(super) fn follow_rest(&mut self, time_us: u64) {
+    pub(super) fn evaluate_rest(&mut self, time_us: u64) {
         let Some(RestWindow { headings, bend, length_us }) = self.rest.window(time_us) else { return };
         for (track, (heading, bend)) in self.segments.iter_mut().zip(headings.into_iter().zip(bend)) {
             track.rest = heading.map(|heading| RestChange { heading, bend, length_us });
@@ -254,7 +255,7 @@ impl<F: FusedOps, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
 
     /// Updates the rate by the change of heading `j` over a window of rest, per time: H = (v_j: 1). The change itself
     /// is added to the bias, so that the shape is held.
-    fn learn_rate(&mut self, j: usize) {
+    fn update_rate(&mut self, j: usize) {
         if self.state.is_updating() {
             return;
         }

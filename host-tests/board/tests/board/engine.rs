@@ -8,7 +8,7 @@ use virtual_due::{CYCLES_PER_SECOND, Machine, Rig};
 /// What a probe says until it ends.
 fn told_by(probe: &str) -> String {
     let mut machine =
-        Machine::new(&elf("board-probe", probe), Rig::new(Scenario::One, 1)).expect("a firmware for the Due");
+        Machine::new(&elf("board-probe", probe), Rig::new(Scenario::FreeSwing, 1)).expect("a firmware for the Due");
     let mut text = String::new();
     for _ in 0..1_000 {
         machine.run_for(CYCLES_PER_SECOND / 10);
