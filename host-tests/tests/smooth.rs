@@ -7,7 +7,7 @@ use host_tests::parallel::in_parallel;
 use host_tests::twin::{TwinSession, replay_smoothed};
 use proprio_analysis::metrics::Score;
 use proprio_calibration::calibrate::{CalibrationOptions, calibrate};
-use proprio_session::{NamedTable, NoProgress, OutputFile};
+use proprio_session::{LoadedTable, NoProgress, OutputFile};
 use proprio_simulation::{ImuColumns, SessionWriter, Simulation};
 use rig_twin::{Motion, Scenario, Setup};
 
@@ -27,7 +27,7 @@ fn table(arm_seed: u64, folder: &Path) -> ArmFile {
     samples.for_each(|sample| writer.write(&sample).expect("a temporary file can be written"));
     writer.into_inner().finish().expect("a temporary file can be renamed");
     let arm = Path::new(env!("CARGO_MANIFEST_DIR")).join("../calibration-tables/arms/planar-6.toml");
-    let arm = NamedTable::load(&arm).expect("the reference arm's description");
+    let arm = LoadedTable::load(&arm).expect("the reference arm's description");
     calibrate(&[sweep], &arm, CalibrationOptions::default(), &mut NoProgress).expect("a sweep calibrates").table
 }
 

@@ -4,7 +4,7 @@ use std::fmt;
 
 use calibration_tables::DriftKind;
 use estimator_core::{Method, Q};
-use proprio_session::{OnBoard, Row, is_version_0_1};
+use proprio_session::{BoardOutput, Row, is_version_0_1};
 use serde::Serialize;
 use telemetry::{Estimate, SegmentEstimate, Uncertainty, touched};
 
@@ -125,7 +125,7 @@ impl Comparison {
         }
     }
 
-    fn add_estimate(&mut self, board: &OnBoard, outcome: &Outcome<Q>) {
+    fn add_estimate(&mut self, board: &BoardOutput, outcome: &Outcome<Q>) {
         let Some(recorded) = board.estimate else { return };
         self.estimates += 1;
         if !board.complete {

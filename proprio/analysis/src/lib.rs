@@ -6,9 +6,9 @@
 //! use estimator_core::Q;
 //! use proprio_analysis::metrics::Score;
 //! use proprio_analysis::replay::replay;
-//! use proprio_session::{NamedTable, NoProgress};
+//! use proprio_session::{LoadedTable, NoProgress};
 //!
-//! let table = NamedTable::load(Path::new("table.toml"))?;
+//! let table = LoadedTable::load(Path::new("table.toml"))?;
 //! let mut score = Score::new(table.file.length_mm());
 //! replay::<Q>(Path::new("session.csv"), &table, &mut NoProgress, |row, outcome| {
 //!     score.add(row, outcome);

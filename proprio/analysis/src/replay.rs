@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use estimator_core::{Estimator, FusedOps, Q};
-use proprio_session::{Kind, NamedTable, Progress, Row, SessionReader, is_version_0_1};
+use proprio_session::{FileFormat, LoadedTable, Progress, Row, SessionReader, is_version_0_1};
 use telemetry::{Hello, TICK_HZ};
 
 use crate::agreement::RecordedBy;
@@ -36,7 +36,7 @@ pub struct Recording {
 }
 
 impl Recording {
-    fn new(hello: Option<&Hello>, table: &NamedTable) -> Result<Self, Error> {
+    fn new(hello: Option<&Hello>, table: &LoadedTable) -> Result<Self, Error> {
         let Some(hello) = hello else {
             return Ok(Self { firmware: None, table_matches: None, recorded_by: RecordedBy::default() });
         };
@@ -59,7 +59,7 @@ impl Recording {
 /// Never: the checks of the table's file are at least as strict as the estimator's.
 pub fn replay<S: FusedOps>(
     session: &Path,
-    table: &NamedTable,
+    table: &LoadedTable,
     progress: &mut dyn Progress,
     mut visit: impl FnMut(&Row, &Outcome<S>) -> Result<(), Error>,
 ) -> Result<Extent, Error> {
@@ -85,14 +85,19 @@ pub(crate) struct SessionRows<'p> {
 
 impl<'p> SessionRows<'p> {
     /// Opens a session; `work` names what is done with it.
-    pub fn open(session: &Path, table: &NamedTable, work: &str, progress: &'p mut dyn Progress) -> Result<Self, Error> {
-        let reader = SessionReader::open(session, &table.needs()?)?;
+    pub fn open(
+        session: &Path,
+        table: &LoadedTable,
+        work: &str,
+        progress: &'p mut dyn Progress,
+    ) -> Result<Self, Error> {
+        let reader = SessionReader::open(session, &table.required_columns()?)?;
         let work = format!("{work} {}", session.display());
         Ok(Self { reader, progress, work, samples: 0, first_us: None, last_us: 0 })
     }
 
     /// Rate of the rows; that of the table where there are too few.
-    pub fn rate_hz(&self, table: &NamedTable) -> f64 {
+    pub fn rate_hz(&self, table: &LoadedTable) -> f64 {
         self.reader.rate_hz(table.file.rate_hz)
     }
 
@@ -109,9 +114,10 @@ impl<'p> SessionRows<'p> {
     }
 
     /// The extent, after the last row.
-    pub fn extent(self, table: &NamedTable) -> Result<Extent, Error> {
+    pub fn extent(self, table: &LoadedTable) -> Result<Extent, Error> {
         let Self { reader, samples, first_us, last_us, .. } = self;
-        let recording = if reader.kind() == Kind::Csv { None } else { Some(Recording::new(reader.hello(), table)?) };
+        let recording =
+            if reader.kind() == FileFormat::Csv { None } else { Some(Recording::new(reader.hello(), table)?) };
         let seconds = (last_us - first_us.unwrap_or(last_us)) as f64 / 1e6;
         Ok(Extent { samples, seconds, ends_with_line: reader.ends_with_line(), recording })
     }

@@ -8,10 +8,10 @@ use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 use std::{env, fs};
 
-use proprio_link::{Intake, Taken};
+use proprio_link::{Received, StreamDecoder};
 use proprio_monitor::{Monitor, Options};
 use proprio_session::recording::Recorder;
-use proprio_session::{HostNs, NamedTable};
+use proprio_session::{HostNs, LoadedTable};
 use telemetry::{
     BEND_SENSORS, Encoder, Estimate, Hello, MAX_FRAME, Message, PROTOCOL_VERSION, ResetCause, SCHEMA, SEGMENTS, Sample,
     SegmentEstimate, Text,
@@ -56,8 +56,8 @@ fn main() {
 /// Records so many ticks of a board.
 fn record(sink: impl Write, ticks: u32, mut show: impl FnMut(u32)) -> io::Result<()> {
     let mut recorder = Recorder::new(sink, HostNs(START_NS), "a bench")?;
-    let (mut encoder, mut intake) = (Encoder::new(), Intake::new(None));
-    intake.open();
+    let (mut encoder, mut decoder) = (Encoder::new(), StreamDecoder::new(None));
+    decoder.open();
     for tick in 0..ticks {
         let at = HostNs(START_NS + u64::from(tick) * 10_000_000);
         for message in messages(tick) {
@@ -66,8 +66,8 @@ fn record(sink: impl Write, ticks: u32, mut show: impl FnMut(u32)) -> io::Result
             recorder.bytes(at, frame)?;
             let mut done = Ok(());
             for byte in frame {
-                intake.push(*byte, |taken| {
-                    if let Taken::Message(message) = taken {
+                decoder.push(*byte, |taken| {
+                    if let Received::Message(message) = taken {
                         done = recorder.message(at, &message);
                     }
                 });
@@ -76,7 +76,7 @@ fn record(sink: impl Write, ticks: u32, mut show: impl FnMut(u32)) -> io::Result
         }
         show(tick);
     }
-    assert_eq!(intake.counts().lost, 0);
+    assert_eq!(decoder.counts().lost, 0);
     recorder.finish().map(drop)
 }
 
@@ -100,7 +100,7 @@ fn feed(command: &mut Command, ticks: u32) -> Option<String> {
 
 /// The page's session, as a browser fetches it.
 fn open_on_the_page() {
-    let table = NamedTable::load(Path::new(TABLE)).expect("the reference table");
+    let table = LoadedTable::load(Path::new(TABLE)).expect("the reference table");
     let (folder, session) = (env::temp_dir(), Some("/dev/stdin".into()));
     let options = Options { port: 0, table: Some(table), folder, token: None, session, help: ToString::to_string };
     let monitor = Monitor::start(None, options).expect("a free port");

@@ -8,7 +8,7 @@ use calibration_tables::ArmFile;
 use divan::Bencher;
 use divan::counter::ItemsCount;
 use proprio_calibration::tune::Tuner;
-use proprio_session::{NamedTable, NoProgress, OutputFile};
+use proprio_session::{LoadedTable, NoProgress, OutputFile};
 use proprio_simulation::{ImuColumns, SessionWriter, Simulation};
 use rig_twin::Scenario;
 
@@ -37,9 +37,9 @@ fn session() -> PathBuf {
     folder.path().join("session.csv")
 }
 
-fn table() -> NamedTable<'static> {
+fn table() -> LoadedTable<'static> {
     let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../calibration-tables/planar-6.toml"));
-    NamedTable { file: ArmFile::load(path).expect("the reference table"), path }
+    LoadedTable { file: ArmFile::load(path).expect("the reference table"), path }
 }
 
 /// From the files to the table: reading, the search for an observer, descent until it converges, and the variances.

@@ -5,7 +5,7 @@ use std::io::IsTerminal;
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
-use proprio_link::What;
+use proprio_link::EventKind;
 
 use crate::terminal;
 
@@ -27,7 +27,7 @@ impl StatusLine {
     }
 
     /// Warns of what has happened on the link, where that deserves it.
-    pub fn warn_of(&self, what: &What) {
+    pub fn warn_of(&self, what: &EventKind) {
         if let Some(warning) = what.warning() {
             self.bar.suspend(|| terminal::warn(&warning));
         }

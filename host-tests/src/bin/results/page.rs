@@ -6,7 +6,7 @@ use std::path::Path;
 use estimator_core::Method;
 use proprio_analysis::metrics::Score;
 use proprio_analysis::replay::replay;
-use proprio_session::{NamedTable, NoProgress};
+use proprio_session::{LoadedTable, NoProgress};
 
 use crate::arm::{Problem, planar};
 use crate::contact;
@@ -114,7 +114,7 @@ fn real(root: &Path) -> Result<Option<[f64; 2]>, Problem> {
         return Ok(None);
     }
     let path = root.join("host-tests/tables/trunk-planar.toml");
-    let table = NamedTable::load(&path)?;
+    let table = LoadedTable::load(&path)?;
     let mut score = Score::new(table.file.length_mm());
     replay::<estimator_core::Q>(&recording, &table, &mut NoProgress, |row, outcome| {
         score.add(row, outcome);

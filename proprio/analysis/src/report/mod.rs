@@ -24,7 +24,7 @@ mod v_orient;
 use std::path::Path;
 
 use estimator_core::{Method, Q};
-use proprio_session::{NamedTable, Progress, Row};
+use proprio_session::{LoadedTable, Progress, Row};
 use serde::Serialize;
 
 use self::drift::Drift;
@@ -41,7 +41,7 @@ use crate::smooth;
 
 /// A report that is being gathered, session by session. Its memory grows with their number and not with their length.
 pub struct Gathering<'t> {
-    table: &'t NamedTable<'t>,
+    table: &'t LoadedTable<'t>,
     sessions: Vec<Session>,
     all: Score,
     readings: Readings,
@@ -84,7 +84,7 @@ struct TableName {
 impl<'t> Gathering<'t> {
     /// No session yet.
     #[must_use]
-    pub fn new(table: &'t NamedTable) -> Self {
+    pub fn new(table: &'t LoadedTable) -> Self {
         let (all, readings) = (Score::new(table.file.length_mm()), Readings::new(&table.file));
         Self { table, sessions: Vec::new(), all, readings }
     }
@@ -122,7 +122,7 @@ impl<'t> Gathering<'t> {
     /// # Errors
     /// [`Error::File`] on an arm description.
     pub fn finish(self) -> Result<Report, Error> {
-        let Self { table: NamedTable { file, path }, sessions, all, readings } = &self;
+        let Self { table: LoadedTable { file, path }, sessions, all, readings } = &self;
         let of_session = |session: &Session| SessionFigures {
             path: session.name.clone(),
             samples: session.extent.samples,

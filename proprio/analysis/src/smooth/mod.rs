@@ -30,7 +30,7 @@ mod tests;
 use std::path::Path;
 
 use estimator_core::FusedOps;
-use proprio_session::{NamedTable, Progress, Row};
+use proprio_session::{LoadedTable, Progress, Row};
 
 pub use adjoint::Adjoint;
 pub use backward::SmoothingPass;
@@ -47,7 +47,7 @@ use crate::replay::{Extent, SessionRows};
 /// [`Error::NotSmoothed`] where the table has no bias filter; else as [`replay`](crate::replay::replay).
 pub fn replay<S: FusedOps>(
     session: &Path,
-    table: &NamedTable,
+    table: &LoadedTable,
     progress: &mut dyn Progress,
     mut visit: impl FnMut(&Row, &Outcome<S>) -> Result<(), Error>,
 ) -> Result<Extent, Error> {

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 use std::path::Path;
 
-use proprio_session::{CameraReader, Pose, Problem, Progress, SessionError};
+use proprio_session::{CameraReader, Pose, Progress, SessionError, SessionProblem};
 
 use super::base;
 use super::error::AlignmentError;
@@ -48,7 +48,7 @@ impl Frames {
         }
         if frames.times_s.is_empty() {
             let path = camera.to_owned();
-            return Err(SessionError { path, line: None, column: None, problem: Problem::NoSamples }.into());
+            return Err(SessionError { path, line: None, column: None, problem: SessionProblem::NoSamples }.into());
         }
         let refuse = |source| Error::Alignment { path: camera.to_owned(), source };
         if frames.ends.iter().flatten().all(Option::is_none) {

@@ -18,7 +18,7 @@ mod truth;
 
 use std::path::Path;
 
-use proprio_session::{NamedTable, Progress};
+use proprio_session::{LoadedTable, Progress};
 
 pub use error::AlignmentError;
 pub use motion::Sensors;
@@ -73,7 +73,12 @@ pub struct AlignmentReport {
 ///
 /// # Errors
 /// [`Error::File`] where one of the files cannot be used, [`Error::Alignment`] where they do not fit together.
-pub fn align(session: &Path, camera: &Path, arm: &NamedTable, progress: &mut dyn Progress) -> Result<Alignment, Error> {
+pub fn align(
+    session: &Path,
+    camera: &Path,
+    arm: &LoadedTable,
+    progress: &mut dyn Progress,
+) -> Result<Alignment, Error> {
     let refuse = |path: &Path, source| Error::Alignment { path: path.to_owned(), source };
     let mut readings = Readings::read(session, &arm.file, progress)?;
     let frames = Frames::read(camera, arm.file.segments.len(), progress)?;

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use calibration_tables::ArmFile;
 use estimator_core::{ImuReading, SENSORS_PER_SEGMENT};
-use proprio_session::{Kind, Needs, Problem, Progress, Row, SessionError, SessionReader};
+use proprio_session::{FileFormat, Progress, RequiredColumns, Row, SessionError, SessionProblem, SessionReader};
 
 use super::error::AlignmentError;
 use super::frames::{Frames, near};
@@ -64,17 +64,17 @@ pub(super) struct Readings {
 
 impl Readings {
     pub fn read(session: &Path, arm: &ArmFile, progress: &mut dyn Progress) -> Result<Self, Error> {
-        let needs = Needs { truth: false, ..Needs::of_calibration(arm) };
+        let needs = RequiredColumns { truth: false, ..RequiredColumns::of_calibration(arm) };
         let mut reader = SessionReader::open(session, &needs)?;
         let refuse = |line, problem| SessionError { path: session.to_owned(), line, column: None, problem };
         if !reader.is_regular_file() {
-            return Err(refuse(None, Problem::NotAFile).into());
+            return Err(refuse(None, SessionProblem::NotAFile).into());
         }
-        if reader.kind() != Kind::Csv {
-            return Err(refuse(None, Problem::NotCsv).into());
+        if reader.kind() != FileFormat::Csv {
+            return Err(refuse(None, SessionProblem::NotCsv).into());
         }
         if let Some(column) = reader.truth_column() {
-            return Err(refuse(Some(1), Problem::HasTruth(column.to_owned())).into());
+            return Err(refuse(Some(1), SessionProblem::HasTruth(column.to_owned())).into());
         }
         let n = arm.segments.len();
         let mut readings = Self {

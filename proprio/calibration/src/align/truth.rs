@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use std::path::Path;
 
 use csv::ByteRecord;
-use proprio_session::{OutputFile, Pose, Problem, SessionError};
+use proprio_session::{OutputFile, Pose, SessionError, SessionProblem};
 
 use super::Alignment;
 use crate::error::Error;
@@ -27,7 +27,7 @@ impl Alignment {
     /// [`Error::File`] where the output cannot be written or the session cannot be read again.
     pub fn write(&self, session: &Path, sink: &mut OutputFile) -> Result<Written, Error> {
         let failed = |source| {
-            let problem = Problem::Read(source);
+            let problem = SessionProblem::Read(source);
             SessionError { path: session.to_owned(), line: None, column: None, problem }
         };
         let text = fs::read(session).map_err(failed)?;

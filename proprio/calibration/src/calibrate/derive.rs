@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use calibration_tables::{ArmFile, BendKeys, DriftKeys, DriftKind};
-use proprio_session::{NamedTable, Progress};
+use proprio_session::{LoadedTable, Progress};
 
 use super::error::{CalibrationError, Warning};
 use super::hysteresis::HysteresisMode;
@@ -26,7 +26,7 @@ pub(super) struct Derived {
 pub(super) fn table(
     sweep: &Sweep,
     sessions: &[PathBuf],
-    arm: &NamedTable,
+    arm: &LoadedTable,
     options: CalibrationOptions,
     warnings: &mut Vec<Warning>,
     progress: &mut dyn Progress,
@@ -53,7 +53,7 @@ pub(super) fn table(
     if table.bias_filter().is_some() {
         set_errors(sweep, &sensors, &mut table);
     } else {
-        let mut named = NamedTable { file: table, path: arm.path };
+        let mut named = LoadedTable { file: table, path: arm.path };
         residuals::set_filters(sessions, sweep, &mut named, progress)?;
         table = named.file;
     }

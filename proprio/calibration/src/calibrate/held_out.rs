@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use estimator_core::{Method, Q};
 use proprio_analysis::metrics::Score;
 use proprio_analysis::replay::replay;
-use proprio_session::{NamedTable, Progress};
+use proprio_session::{LoadedTable, Progress};
 
 use super::error::Warning;
 use super::sweep::Sweep;
@@ -28,7 +28,7 @@ pub struct HeldOut {
 pub(super) fn score(
     sweep: &Sweep,
     sessions: &[PathBuf],
-    arm: &NamedTable,
+    arm: &LoadedTable,
     options: CalibrationOptions,
     progress: &mut dyn Progress,
 ) -> Result<Option<HeldOut>, Error> {
@@ -37,7 +37,7 @@ pub(super) fn score(
     else {
         return Ok(None);
     };
-    let table = NamedTable { file: derived.table, path: arm.path };
+    let table = LoadedTable { file: derived.table, path: arm.path };
     let mut score = Score::new(table.file.length_mm());
     let mut rows = is_held_out.into_iter();
     for session in sessions {

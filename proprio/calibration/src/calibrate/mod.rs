@@ -34,7 +34,7 @@ mod sweep;
 use std::path::PathBuf;
 
 use calibration_tables::ArmFile;
-use proprio_session::{NamedTable, Progress};
+use proprio_session::{LoadedTable, Progress};
 
 pub(crate) use curvature::constant_curvature_error;
 pub use error::{CalibrationError, Warning};
@@ -113,7 +113,7 @@ pub struct Calibration {
 /// [`Error::File`] where a session cannot be used, [`Error::Calibration`] where no good table can be made of them.
 pub fn calibrate(
     sessions: &[PathBuf],
-    arm: &NamedTable,
+    arm: &LoadedTable,
     options: CalibrationOptions,
     progress: &mut dyn Progress,
 ) -> Result<Calibration, Error> {

@@ -18,7 +18,7 @@ use estimator_core::{
 };
 use nalgebra::Vector2;
 use proprio_analysis::replay::replay;
-use proprio_session::{NamedTable, Progress, Row};
+use proprio_session::{LoadedTable, Progress, Row};
 
 use super::sweep::Sweep;
 use crate::error::Error;
@@ -74,7 +74,7 @@ struct Residuals<'t> {
 pub(super) fn set_filters(
     sessions: &[PathBuf],
     sweep: &Sweep,
-    table: &mut NamedTable,
+    table: &mut LoadedTable,
     progress: &mut dyn Progress,
 ) -> Result<(), Error> {
     let baked = table.bake::<f64>(sweep.rate_hz)?;

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use calibration_tables::{ArmFile, MAX_SEGMENTS};
 use estimator_core::{HeadingTracker, ImuReading, Phase, SENSORS_PER_SEGMENT, SegmentConfig, Turns};
-use proprio_session::{Needs, Problem, Progress, Row, SENSOR_NAMES, SessionError, SessionReader};
+use proprio_session::{Progress, RequiredColumns, Row, SENSOR_NAMES, SessionError, SessionProblem, SessionReader};
 
 use super::curvature::{constant_curvature_error, end_error, geometry};
 use super::error::{CalibrationError, Warning};
@@ -96,7 +96,7 @@ impl Sweep {
             tip: MeanSquare::default(),
             segments: arm.segments.iter().map(geometry).collect(),
         };
-        let mut needs = Needs::of_calibration(arm);
+        let mut needs = RequiredColumns::of_calibration(arm);
         for (number, session) in sessions.iter().enumerate() {
             sweep.read_one(session, number, arm, &mut needs, progress)?;
         }
@@ -108,13 +108,13 @@ impl Sweep {
         session: &Path,
         number: usize,
         arm: &ArmFile,
-        needs: &mut Needs,
+        needs: &mut RequiredColumns,
         progress: &mut dyn Progress,
     ) -> Result<(), Error> {
         let mut reader = SessionReader::open(session, needs)?;
         if !reader.is_regular_file() {
             let path = session.to_owned();
-            return Err(SessionError { path, line: None, column: None, problem: Problem::NotAFile }.into());
+            return Err(SessionError { path, line: None, column: None, problem: SessionProblem::NotAFile }.into());
         }
         let refuse = |source| Error::Calibration { path: session.to_owned(), source };
         let rate_hz = reader.rate_hz(arm.rate_hz);

@@ -26,7 +26,7 @@ use std::time::{Duration, Instant};
 use calibration_tables::{ArmFile, DriftKeys, DriftTuningKeys, Stopped, TuningKeys};
 use proprio_analysis::consistency::Honesty;
 use proprio_analysis::replay::replay;
-use proprio_session::{NamedTable, Progress};
+use proprio_session::{LoadedTable, Progress};
 
 pub use dual::Dual;
 pub use error::TuningError;
@@ -40,7 +40,7 @@ use training::{Part, Training};
 
 /// Sessions on which a table can be tuned.
 pub struct Tuner<'t> {
-    table: &'t NamedTable<'t>,
+    table: &'t LoadedTable<'t>,
     objective: Objective,
     before: Evaluation,
 }
@@ -61,8 +61,8 @@ impl<'t> Tuner<'t> {
     ///
     /// # Errors
     /// [`Error::File`] and [`Error::Tuning`] where a session cannot be used or the table has no filters.
-    pub fn new(sessions: &[PathBuf], table: &'t NamedTable, progress: &mut dyn Progress) -> Result<Self, Error> {
-        let has_bend_sensors = table.needs()?.bend.iter().any(|sensors| *sensors != Some(0));
+    pub fn new(sessions: &[PathBuf], table: &'t LoadedTable, progress: &mut dyn Progress) -> Result<Self, Error> {
+        let has_bend_sensors = table.required_columns()?.bend.iter().any(|sensors| *sensors != Some(0));
         if !has_bend_sensors {
             return Err(Error::Tuning { path: table.path.to_owned(), source: TuningError::NoBendSensors });
         }
@@ -192,7 +192,7 @@ impl<'t> Tuner<'t> {
     fn widen(&self, table: &mut ArmFile, progress: &mut dyn Progress) -> Result<Option<f64>, Error> {
         let Some(keys) = table.uncertainty.clone() else { return Ok(None) };
         let mut honesty = Honesty::default();
-        let named = NamedTable { file: table.clone(), path: self.table.path };
+        let named = LoadedTable { file: table.clone(), path: self.table.path };
         for session in self.objective.sessions() {
             let mut rows = 0..session.seen();
             replay::<f64>(&session.path, &named, progress, |row, outcome| {

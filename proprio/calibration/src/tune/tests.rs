@@ -9,7 +9,7 @@ use estimator_core::{
 };
 use proprio_analysis::metrics::Score;
 use proprio_analysis::replay::replay;
-use proprio_session::{NamedTable, NoProgress};
+use proprio_session::{LoadedTable, NoProgress};
 use proprio_simulation::{ImuColumns, SessionWriter, Simulation};
 use rig_twin::Scenario;
 
@@ -45,13 +45,13 @@ fn session(folder: &Path, scenario: Scenario, rate_hz: f64, gaps: bool) -> PathB
 }
 
 /// The reference table, which has the bias filter.
-fn reference() -> NamedTable<'static> {
+fn reference() -> LoadedTable<'static> {
     let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../calibration-tables/planar-6.toml"));
-    NamedTable { file: ArmFile::load(path).expect("it is committed"), path }
+    LoadedTable { file: ArmFile::load(path).expect("it is committed"), path }
 }
 
 /// The reference table with the anchor, and with Kalman filters that remember, weigh and scale.
-fn table() -> NamedTable<'static> {
+fn table() -> LoadedTable<'static> {
     let mut table = reference();
     (table.file.drift, table.file.uncertainty) = (None, None);
     for (i, segment) in (1..).map(f64::from).zip(&mut table.file.segments) {
@@ -62,13 +62,13 @@ fn table() -> NamedTable<'static> {
     table
 }
 
-fn objective(table: &NamedTable, sessions: &[PathBuf]) -> Objective {
+fn objective(table: &LoadedTable, sessions: &[PathBuf]) -> Objective {
     let read = |path: &PathBuf| Training::read(path, Part::Both, table, &mut NoProgress).expect("a good session");
     let sessions = sessions.iter().map(read).collect();
     Objective::new(sessions, table.bake::<f64>(10.0).expect("a table").config().segments)
 }
 
-fn assert_gradient_is_exact(table: &NamedTable, sessions: &[PathBuf]) {
+fn assert_gradient_is_exact(table: &LoadedTable, sessions: &[PathBuf]) {
     let objective = objective(table, sessions);
     let place = objective.place(&table.file);
     let exact = objective.at(&place).gradient;
@@ -102,7 +102,7 @@ fn the_gradient_is_exact_over_sessions_of_two_rates_with_readings_and_truth_miss
     assert_gradient_is_exact(&table(), &sessions);
 }
 
-fn assert_errors_are_those_of_replay(table: &NamedTable) {
+fn assert_errors_are_those_of_replay(table: &LoadedTable) {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let path = session(folder.path(), Scenario::One, 10.0, true);
     let mut score = Score::new(table.file.length_mm());

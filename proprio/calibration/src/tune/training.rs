@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use calibration_tables::{ArmFile, MAX_SEGMENTS};
 use estimator_core::{Estimator, Sample};
 use proprio_analysis::HostEstimator;
-use proprio_session::{NamedTable, Needs, Progress, SessionReader, Truth};
+use proprio_session::{LoadedTable, Progress, RequiredColumns, SessionReader, Truth};
 
 use super::error::TuningError;
 use super::errors::{Errors, ends};
@@ -90,8 +90,8 @@ pub(super) struct Moment<'t> {
 
 impl Training {
     /// Reads a session and [measures](Self::measure) it.
-    pub fn read(session: &Path, part: Part, table: &NamedTable, progress: &mut dyn Progress) -> Result<Self, Error> {
-        let mut reader = SessionReader::open(session, &Needs { truth: true, ..table.needs()? })?;
+    pub fn read(session: &Path, part: Part, table: &LoadedTable, progress: &mut dyn Progress) -> Result<Self, Error> {
+        let mut reader = SessionReader::open(session, &RequiredColumns { truth: true, ..table.required_columns()? })?;
         let rate_hz = reader.rate_hz(table.file.rate_hz);
         let baked = table.bake::<f64>(rate_hz)?;
         let segments = baked.config().segments;

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
 use calibration_tables::ArmFile;
-use proprio_session::{NamedTable, OutputFile};
+use proprio_session::{LoadedTable, OutputFile};
 use proprio_simulation::{ImuColumns, SessionWriter, Simulation};
 use rig_twin::Scenario;
 
@@ -27,9 +27,9 @@ pub fn session(seconds: u32, rate_hz: u32) -> PathBuf {
     path
 }
 
-pub fn table() -> NamedTable<'static> {
+pub fn table() -> LoadedTable<'static> {
     let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../calibration-tables/planar-6.toml"));
-    NamedTable { file: ArmFile::load(path).expect("the reference table"), path }
+    LoadedTable { file: ArmFile::load(path).expect("the reference table"), path }
 }
 
 /// Prints the process's peak resident memory during `work`, where the system tells.

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use board_core::FULL_SCALE_PA;
 use proprio_link::drive::{DriveError, Driver, PERIOD, Profile, Ramp};
 use proprio_link::status::Status;
-use proprio_link::{FileRecorder, Subscription, What};
+use proprio_link::{EventKind, FileRecorder, Subscription};
 use proprio_session::check_seconds;
 use telemetry::{Message, REGULATORS};
 
@@ -138,13 +138,13 @@ impl Session {
             if let Some(recorder) = &mut self.recorder {
                 recorder.event(&event)?;
             }
-            match event.what {
-                What::Message(Message::Health(health)) => {
+            match event.kind {
+                EventKind::Message(Message::Health(health)) => {
                     self.board_kpa = Some(kpa(health.pressures_pa));
                     driver.check(&health)?;
                 }
-                What::Lost(reason) | What::Ended(reason) => return Err(DriveError::Lost(reason).into()),
-                What::Restarted => return Err(DriveError::Restarted.into()),
+                EventKind::Lost(reason) | EventKind::Ended(reason) => return Err(DriveError::Lost(reason).into()),
+                EventKind::Restarted => return Err(DriveError::Restarted.into()),
                 what => self.screen.warn_of(&what),
             }
         }

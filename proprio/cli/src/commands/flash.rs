@@ -1,8 +1,8 @@
 //! `proprio flash`.
 
 use estimator_core::Q;
-use proprio_link::{Baud, Kind, Link, LinkError, PortSource, find_due, list};
-use proprio_session::NamedTable;
+use proprio_link::{Baud, Link, LinkError, PortKind, PortSource, find_due, list};
+use proprio_session::LoadedTable;
 use telemetry::TICK_HZ;
 
 use crate::args::Flash;
@@ -15,7 +15,7 @@ use crate::terminal;
 const IMAGE: &str = "firmware.bin";
 
 pub fn run(args: &Flash) -> Result<(), Error> {
-    let checksum = NamedTable::load(&args.table)?.bake::<Q>(TICK_HZ)?.checksum();
+    let checksum = LoadedTable::load(&args.table)?.bake::<Q>(TICK_HZ)?.checksum();
     let port = args.port.clone().map_or_else(programming_port, Ok).map_err(FlashError::Port)?;
     if args.dry_run {
         let image = std::env::temp_dir().join(IMAGE);
@@ -52,6 +52,6 @@ fn flash(args: &Flash, port: &str) -> Result<(), FlashError> {
 
 /// The native port flashes otherwise, and the firmware does not talk on it.
 fn programming_port() -> Result<String, LinkError> {
-    let ports: Vec<_> = list()?.into_iter().filter(|port| port.kind == Kind::DueProgramming).collect();
+    let ports: Vec<_> = list()?.into_iter().filter(|port| port.kind == PortKind::DueProgramming).collect();
     Ok(find_due(&ports)?.name.clone())
 }

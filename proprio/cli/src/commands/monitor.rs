@@ -2,9 +2,9 @@
 
 use std::time::{Duration, Instant};
 
-use proprio_link::{Link, LinkError, Subscription, What};
+use proprio_link::{EventKind, Link, LinkError, Subscription};
 use proprio_monitor::{Monitor, Options, Plain, Token};
-use proprio_session::{HostClock, NamedTable, SessionReader};
+use proprio_session::{HostClock, LoadedTable, SessionReader};
 
 use super::link;
 use crate::error::Error;
@@ -30,7 +30,7 @@ pub fn run(args: &args::Monitor) -> Result<(), Error> {
     let monitor = start(args, Some((link, events)), table)?;
     // Nothing follows an end, but what came until then can still be looked at.
     while !shutdown.is_requested() {
-        if let Some(warning) = told.next(LOOK).and_then(|event| event.what.warning()) {
+        if let Some(warning) = told.next(LOOK).and_then(|event| event.kind.warning()) {
             terminal::warn(&warning);
         }
     }
@@ -43,10 +43,10 @@ pub fn run(args: &args::Monitor) -> Result<(), Error> {
 /// A session without a board.
 fn show(args: &args::Monitor) -> Result<(), Error> {
     let table = args.link.table.as_deref().ok_or(Error::SessionWithoutTable)?;
-    let table = NamedTable::load(table)?;
+    let table = LoadedTable::load(table)?;
     if let Some(session) = &args.session {
         // What is wrong with it is better said here than on the page.
-        SessionReader::open(session, &table.needs()?)?;
+        SessionReader::open(session, &table.required_columns()?)?;
     }
     let shutdown = ShutdownGuard::new();
     let monitor = start(args, None, Some(table))?;
@@ -61,7 +61,7 @@ fn show(args: &args::Monitor) -> Result<(), Error> {
 fn start(
     args: &args::Monitor,
     live: Option<(Link, Subscription)>,
-    table: Option<NamedTable>,
+    table: Option<LoadedTable>,
 ) -> Result<Monitor, Error> {
     let token = args.allow_control.then(Token::new).transpose().map_err(proprio_monitor::Error::Random)?;
     let address = |port: u16| match &token {
@@ -87,7 +87,7 @@ fn plain(link: &Link, events: &Subscription, shutdown: &ShutdownGuard) -> Result
     while !shutdown.is_requested() {
         if let Some(event) = events.next(due.saturating_duration_since(Instant::now()).min(LOOK)) {
             plain.take(&event);
-            if let What::Ended(reason) = event.what {
+            if let EventKind::Ended(reason) = event.kind {
                 return Err(LinkError::Ended(reason).into());
             }
         }

@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use proprio_link::{FileRecorder, Link, LinkError, Subscription, What};
+use proprio_link::{EventKind, FileRecorder, Link, LinkError, Subscription};
 use proprio_session::check_seconds;
 use telemetry::Counts;
 
@@ -49,8 +49,8 @@ impl Session {
         match events.next(Duration::from_millis(50)) {
             Some(event) => {
                 self.recorder.event(&event)?;
-                match event.what {
-                    What::Ended(reason) => self.ended = Some(reason),
+                match event.kind {
+                    EventKind::Ended(reason) => self.ended = Some(reason),
                     what => self.screen.warn_of(&what),
                 }
             }

@@ -9,7 +9,7 @@ use proprio_analysis::figures::{AllFigures, ByMethod, SessionFigures};
 use proprio_analysis::metrics::Score;
 use proprio_analysis::replay::{Extent, replay};
 use proprio_analysis::{Outcome, smooth};
-use proprio_session::{LAST_LINE, NamedTable, OutputFile, Row};
+use proprio_session::{LAST_LINE, LoadedTable, OutputFile, Row};
 
 use crate::args::Replay;
 use crate::error::Error;
@@ -21,7 +21,7 @@ pub fn run(args: &Replay) -> Result<(), Error> {
     if args.out.is_some() && args.sessions.len() != 1 {
         return Err(Error::OneSession(args.sessions.len()));
     }
-    let table = NamedTable::load(&args.table)?;
+    let table = LoadedTable::load(&args.table)?;
     let inputs: Vec<&Path> = args.sessions.iter().map(PathBuf::as_path).chain([table.path]).collect();
     let out = args.out.as_deref().map(|out| OutputFile::create(out, &inputs)).transpose()?;
     let mut out = out.map(|file| EstimateWriter::new(file, &table.file, args.smooth)).transpose()?;
@@ -59,7 +59,7 @@ type Compare<S> = fn(&mut Comparison, &Row, &Outcome<S>);
 
 fn replay_all<S: FusedOps>(
     args: &Replay,
-    table: &NamedTable,
+    table: &LoadedTable,
     mut out: Option<&mut EstimateWriter>,
     compare: Option<Compare<S>>,
 ) -> Result<AllFigures, Error> {

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use estimator_core::saturations;
 use proprio_analysis::report::Gathering;
-use proprio_session::{LAST_LINE, NamedTable, OutputFile};
+use proprio_session::{LAST_LINE, LoadedTable, OutputFile};
 
 use crate::args::Report;
 use crate::error::Error;
@@ -13,7 +13,7 @@ use crate::progress_bar::Bar;
 use crate::terminal;
 
 pub fn run(args: &Report) -> Result<(), Error> {
-    let table = NamedTable::load(&args.table)?;
+    let table = LoadedTable::load(&args.table)?;
     let inputs: Vec<&Path> = args.sessions.iter().map(PathBuf::as_path).chain([table.path]).collect();
     let outputs = [Some(&args.output), args.json.as_ref(), args.csv.as_ref()].into_iter().flatten();
     let outputs: Vec<PathBuf> =

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use calibration_tables::{Stopped, TuningKeys};
 use proprio_calibration::tune::{Tuner, Tuning};
-use proprio_session::{LAST_LINE, NamedTable, OutputFile};
+use proprio_session::{LAST_LINE, LoadedTable, OutputFile};
 
 use crate::args::Tune;
 use crate::error::Error;
@@ -15,7 +15,7 @@ use crate::terminal;
 use crate::text_tables;
 
 pub fn run(args: &Tune) -> Result<(), Error> {
-    let table = NamedTable::load(&args.table)?;
+    let table = LoadedTable::load(&args.table)?;
     let inputs: Vec<&Path> = args.sessions.iter().map(PathBuf::as_path).chain([table.path]).collect();
     let mut file = OutputFile::create(&args.output, &inputs)?;
     let mut progress = Bar::new();

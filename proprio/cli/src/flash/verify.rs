@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use proprio_link::{Link, LinkError, Mismatch, Subscription, What};
+use proprio_link::{EventKind, Link, LinkError, Mismatch, Subscription};
 use telemetry::{Hello, Message};
 
 use super::FlashError;
@@ -18,14 +18,14 @@ const PATIENCE_S: u64 = 10;
 pub fn verify(link: &Link, events: &Subscription) -> Result<Hello, FlashError> {
     let start = Instant::now();
     while start.elapsed().as_secs() < PATIENCE_S {
-        match events.next(Duration::from_millis(50)).map(|event| event.what) {
+        match events.next(Duration::from_millis(50)).map(|event| event.kind) {
             // Told before the Hello that shows it.
-            Some(What::Mismatch(Mismatch::Table { arm, board, given })) => {
+            Some(EventKind::Mismatch(Mismatch::Table { arm, board, given })) => {
                 return Err(FlashError::OtherTable { arm, board, given });
             }
-            Some(What::Mismatch(mismatch)) => return Err(FlashError::Other(mismatch)),
-            Some(What::Message(Message::Hello(hello))) => return Ok(hello),
-            Some(What::Ended(reason)) => return Err(FlashError::Unheard(LinkError::Ended(reason))),
+            Some(EventKind::Mismatch(mismatch)) => return Err(FlashError::Other(mismatch)),
+            Some(EventKind::Message(Message::Hello(hello))) => return Ok(hello),
+            Some(EventKind::Ended(reason)) => return Err(FlashError::Unheard(LinkError::Ended(reason))),
             _ => {}
         }
     }

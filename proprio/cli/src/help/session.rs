@@ -1,11 +1,11 @@
 //! Remedies of errors of sessions.
 
-use proprio_session::Problem;
+use proprio_session::SessionProblem;
 use proprio_session::recording::ReadError;
 
 use super::Help;
 
-impl Help for Problem {
+impl Help for SessionProblem {
     fn help(&self) -> String {
         let help = match self {
             Self::Read(_) | Self::Recording(ReadError::Read(_)) => "check the name and that you may read it",
