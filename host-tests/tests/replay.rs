@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use estimator_core::{FusedOps, Q};
 use proprio_analysis::Outcome;
 use proprio_analysis::estimates::{write_header, write_row};
-use proprio_analysis::metrics::Score;
+use proprio_analysis::metrics::ErrorMetrics;
 use proprio_analysis::replay::replay;
 use proprio_session::{LoadedTable, NoProgress};
 
@@ -140,13 +140,13 @@ fn the_real_recording_misses_the_tip_by_the_known_floor() {
     }
     let path = here("tables/trunk-planar.toml");
     let table = LoadedTable::load(&path).expect("the table is good");
-    let mut score = Score::new(table.file.length_mm());
+    let mut score = ErrorMetrics::new(table.file.length_mm());
     replay::<Q>(&recording, &table, &mut NoProgress, |row, outcome| {
         score.add(row, outcome);
         Ok(())
     })
     .expect("the recording is good");
-    let [bend, imu_o, _, _] = score.figures();
+    let [bend, imu_o, _, _] = score.metrics();
     let rmse_mm = imu_o.tip_rmse_mm.expect("the recording has truth");
     assert!((rmse_mm - 9.25).abs() < 0.02, "{rmse_mm} mm");
     assert_eq!(bend.tip_rmse_mm, None, "the arm has no bend sensors");

@@ -5,7 +5,7 @@ use std::path::Path;
 use calibration_tables::ArmFile;
 use host_tests::parallel::in_parallel;
 use host_tests::twin::{TwinSession, replay_smoothed};
-use proprio_analysis::metrics::Score;
+use proprio_analysis::metrics::ErrorMetrics;
 use proprio_calibration::calibrate::{CalibrationOptions, calibrate};
 use proprio_session::{LoadedTable, NoProgress, OutputFile};
 use proprio_simulation::{ImuColumns, SessionWriter, Simulation};
@@ -34,11 +34,11 @@ fn table(arm_seed: u64, folder: &Path) -> ArmFile {
 /// RMSE of the tip by fusion and smoothed, mm, and the share of true tips inside the smoothed ellipses, %.
 fn figures(table: &ArmFile, setup: &Setup) -> [f64; 3] {
     let session = TwinSession::new(setup, 900.0, 10.0).expect("a rate and a duration");
-    let mut score = Score::new(table.length_mm());
+    let mut score = ErrorMetrics::new(table.length_mm());
     replay_smoothed(table, 10.0, || session.rows(), |row, outcome| score.add(row, outcome)).expect("a table");
     let smoothed = score.smoothed().expect("there is truth");
     let inside = smoothed.uncertainty.and_then(|uncertainty| uncertainty.tip_inside_percent);
-    [score.figures()[3].tip_rmse_mm, smoothed.figures.tip_rmse_mm, inside].map(|figure| figure.expect("there is truth"))
+    [score.metrics()[3].tip_rmse_mm, smoothed.metrics.tip_rmse_mm, inside].map(|figure| figure.expect("there is truth"))
 }
 
 #[test]

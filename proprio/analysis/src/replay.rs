@@ -10,32 +10,32 @@ use crate::agreement::RecordedBy;
 use crate::error::Error;
 use crate::outcome::{HostEstimator, Outcome};
 
-/// The extent of a session.
+/// Summary of a session.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Extent {
+pub struct SessionSummary {
     /// Number of rows.
     pub samples: u64,
-    /// From the first row to the last.
+    /// Time from the first row to the last, s.
     pub seconds: f64,
-    /// Whether the file's last line is ended; if not, its last number may have been cut.
+    /// True where the file's last line has a line end; otherwise its last number may be cut.
     pub ends_with_line: bool,
-    /// Of a board's recording.
-    pub recording: Option<Recording>,
+    /// Facts about a board's recording; `None` for a CSV.
+    pub recording: Option<RecordingFacts>,
 }
 
-/// What is known of a recording, when it is replayed.
+/// Facts about a recording that is replayed.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Recording {
+pub struct RecordingFacts {
     /// Version and revision of the board's firmware; `None` where its `Hello` is not in the recording.
     pub firmware: Option<String>,
-    /// Whether the board's table was the one of the replay, likewise. `None` of firmware of version 0.1, too, where the same
-    /// table had another checksum.
+    /// True where the board's table was that of the replay. `None` where its `Hello` is not in the recording, and for firmware
+    /// of version 0.1, in which the same table has another checksum.
     pub table_matches: Option<bool>,
     /// The estimator of the board's firmware.
     pub recorded_by: RecordedBy,
 }
 
-impl Recording {
+impl RecordingFacts {
     fn new(hello: Option<&Hello>, table: &LoadedTable) -> Result<Self, Error> {
         let Some(hello) = hello else {
             return Ok(Self { firmware: None, table_matches: None, recorded_by: RecordedBy::default() });
@@ -62,7 +62,7 @@ pub fn replay<S: FusedOps>(
     table: &LoadedTable,
     progress: &mut dyn Progress,
     mut visit: impl FnMut(&Row, &Outcome<S>) -> Result<(), Error>,
-) -> Result<Extent, Error> {
+) -> Result<SessionSummary, Error> {
     let mut rows = SessionRows::open(session, table, "replaying", progress)?;
     let baked = table.bake::<S>(rows.rate_hz(table))?;
     let baked = baked.config();
@@ -70,10 +70,10 @@ pub fn replay<S: FusedOps>(
     while let Some(row) = rows.next_row()? {
         visit(&row, &Outcome::of_row(&mut estimator, &row))?;
     }
-    rows.extent(table)
+    rows.summary(table)
 }
 
-/// Rows of a session, with their progress and extent.
+/// Rows of a session, with their progress and summary.
 pub(crate) struct SessionRows<'p> {
     reader: SessionReader,
     progress: &'p mut dyn Progress,
@@ -113,12 +113,12 @@ impl<'p> SessionRows<'p> {
         Ok(row)
     }
 
-    /// The extent, after the last row.
-    pub fn extent(self, table: &LoadedTable) -> Result<Extent, Error> {
+    /// The summary, after the last row.
+    pub fn summary(self, table: &LoadedTable) -> Result<SessionSummary, Error> {
         let Self { reader, samples, first_us, last_us, .. } = self;
         let recording =
-            if reader.kind() == FileFormat::Csv { None } else { Some(Recording::new(reader.hello(), table)?) };
+            if reader.kind() == FileFormat::Csv { None } else { Some(RecordingFacts::new(reader.hello(), table)?) };
         let seconds = (last_us - first_us.unwrap_or(last_us)) as f64 / 1e6;
-        Ok(Extent { samples, seconds, ends_with_line: reader.ends_with_line(), recording })
+        Ok(SessionSummary { samples, seconds, ends_with_line: reader.ends_with_line(), recording })
     }
 }

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use estimator_core::{Method, Q};
-use proprio_analysis::metrics::Score;
+use proprio_analysis::metrics::ErrorMetrics;
 use proprio_analysis::replay::replay;
 use proprio_session::{LoadedTable, Progress};
 
@@ -25,7 +25,7 @@ pub struct HeldOut {
 }
 
 /// Replays whole sessions, as headings need the tare, and scores their last fifth; `None` where the rest makes no table.
-pub(super) fn score(
+pub(super) fn evaluate(
     sweep: &Sweep,
     sessions: &[PathBuf],
     arm: &LoadedTable,
@@ -38,17 +38,17 @@ pub(super) fn score(
         return Ok(None);
     };
     let table = LoadedTable { file: derived.table, path: arm.path };
-    let mut score = Score::new(table.file.length_mm());
+    let mut errors = ErrorMetrics::new(table.file.length_mm());
     let mut rows = is_held_out.into_iter();
     for session in sessions {
         replay::<Q>(session, &table, progress, |row, outcome| {
             if rows.next().is_some_and(|is_held_out| is_held_out) {
-                score.add(row, outcome);
+                errors.add(row, outcome);
             }
             Ok(())
         })?;
     }
-    Ok(Some(HeldOut { tip_rmse_mm: score.figures().map(|figures| figures.tip_rmse_mm) }))
+    Ok(Some(HeldOut { tip_rmse_mm: errors.metrics().map(|figures| figures.tip_rmse_mm) }))
 }
 
 impl HeldOut {

@@ -123,7 +123,7 @@ pub fn calibrate(
     warnings.extend(imus::check(&sweep).map_err(refuse)?);
     let derived = derive::table(&sweep, sessions, arm, options, &mut warnings, progress)?;
     let segments = derived.segment_reports(&sweep);
-    let held_out = held_out::score(&sweep, sessions, arm, options, progress)?;
+    let held_out = held_out::evaluate(&sweep, sessions, arm, options, progress)?;
     warnings.extend(held_out.as_ref().and_then(HeldOut::warning));
     let sensors = derived.sensors.into_iter().map(|sensor| sensor.report).collect();
     Ok(Calibration { table: derived.table, sensors, segments, held_out, warnings })

@@ -24,7 +24,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use calibration_tables::{ArmFile, DriftKeys, DriftTuningKeys, Stopped, TuningKeys};
-use proprio_analysis::consistency::Honesty;
+use proprio_analysis::consistency::FilterConsistency;
 use proprio_analysis::replay::replay;
 use proprio_session::{LoadedTable, Progress};
 
@@ -191,18 +191,18 @@ impl<'t> Tuner<'t> {
     /// Motion to come may be less gentle: what is too large stays.
     fn widen(&self, table: &mut ArmFile, progress: &mut dyn Progress) -> Result<Option<f64>, Error> {
         let Some(keys) = table.uncertainty.clone() else { return Ok(None) };
-        let mut honesty = Honesty::default();
+        let mut consistency = FilterConsistency::default();
         let named = LoadedTable { file: table.clone(), path: self.table.path };
         for session in self.objective.sessions() {
             let mut rows = 0..session.seen();
             replay::<f64>(&session.path, &named, progress, |row, outcome| {
                 if rows.next().is_some() {
-                    honesty.add(row, outcome);
+                    consistency.add(row, outcome);
                 }
                 Ok(())
             })?;
         }
-        let factor = honesty.figures().end_nees.filter(|nees| nees.is_finite()).map_or(1.0, |nees| nees.max(1.0));
+        let factor = consistency.metrics().end_nees.filter(|nees| nees.is_finite()).map_or(1.0, |nees| nees.max(1.0));
         table.uncertainty = Some(keys.scaled(factor));
         Ok(Some(factor))
     }

@@ -7,7 +7,7 @@ use estimator_core::{
     ArmConfig, BendMap, BendSensorConfig, Estimator, FusedOps, ImuReading, KalmanParams, Method, Phase, Q,
     QuadraticMap, Sample, SegmentConfig,
 };
-use proprio_analysis::metrics::Score;
+use proprio_analysis::metrics::ErrorMetrics;
 use proprio_analysis::replay::replay;
 use proprio_session::{LoadedTable, NoProgress};
 use proprio_simulation::{ImuColumns, SessionWriter, Simulation};
@@ -105,13 +105,13 @@ fn the_gradient_is_exact_over_sessions_of_two_rates_with_readings_and_truth_miss
 fn assert_errors_are_those_of_replay(table: &LoadedTable) {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let path = session(folder.path(), Scenario::One, 10.0, true);
-    let mut score = Score::new(table.file.length_mm());
+    let mut errors = ErrorMetrics::new(table.file.length_mm());
     let visit = |row: &_, outcome: &_| {
-        score.add(row, outcome);
+        errors.add(row, outcome);
         Ok(())
     };
     replay::<f64>(&path, table, &mut NoProgress, visit).expect("a good session");
-    let [.., fusion] = score.figures();
+    let [.., fusion] = errors.metrics();
 
     let found = objective(table, &[path]).of_table(&table.file);
     let mut errors = pooled(&found, |session| &session.training);

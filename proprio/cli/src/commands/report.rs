@@ -4,7 +4,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use estimator_core::saturations;
-use proprio_analysis::report::Gathering;
+use proprio_analysis::report::ReportBuilder;
 use proprio_session::{LAST_LINE, LoadedTable, OutputFile};
 
 use crate::args::Report;
@@ -27,7 +27,7 @@ pub fn run(args: &Report) -> Result<(), Error> {
     let csv = args.csv.as_ref().map(create).transpose()?;
 
     let mut progress = Bar::new();
-    let mut gathering = Gathering::new(&table);
+    let mut gathering = ReportBuilder::new(&table);
     for path in &args.sessions {
         if !gathering.add(path, &mut progress)?.ends_with_line {
             terminal::warn(&format_args!("{}: {LAST_LINE}", path.display()));
