@@ -137,7 +137,7 @@ impl ErrorMetrics {
         }
     }
 
-    /// ErrorHistogram of the tip from its true place by `method`.
+    /// Distances of the tip from its true place by `method`.
     #[must_use]
     pub fn tips(&self, method: Method) -> &ErrorHistogram {
         &self.errors[method as usize].tips
@@ -156,7 +156,7 @@ impl ErrorMetrics {
         self.errors.each_ref().map(|errors| errors.metrics(self.length_m))
     }
 
-    /// ErrorHistogram of the smoothed tip from its true place.
+    /// Distances of the smoothed tip from its true place.
     #[must_use]
     pub fn smoothed_tips(&self) -> &ErrorHistogram {
         &self.smoothed.tips

@@ -7,14 +7,15 @@ use proprio_analysis::metrics::ErrorMetrics;
 use proprio_analysis::replay::replay;
 use proprio_session::{LoadedTable, Progress};
 
+use super::derive;
 use super::error::Warning;
+use super::options::CalibrationOptions;
 use super::sweep::Sweep;
-use super::{CalibrationOptions, derive};
 use crate::error::Error;
 
 /// Share of a session that is held out.
 const SHARE: f64 = 0.2;
-/// Error of the fusion over that of the best single method from which on something is wrong.
+/// Ratio of the fusion's error to that of the best single method above which there is a warning.
 const WORSE: f64 = 1.1;
 
 /// Errors on the rows that were held out.
@@ -24,7 +25,7 @@ pub struct HeldOut {
     pub tip_rmse_mm: [Option<f64>; Method::ALL.len()],
 }
 
-/// Replays whole sessions, as headings need the tare, and scores their last fifth; `None` where the rest makes no table.
+/// Replays whole sessions, as headings need the tare, and evaluates their last fifth; `None` where the rest makes no table.
 pub(super) fn evaluate(
     sweep: &Sweep,
     sessions: &[PathBuf],
@@ -48,11 +49,11 @@ pub(super) fn evaluate(
             Ok(())
         })?;
     }
-    Ok(Some(HeldOut { tip_rmse_mm: errors.metrics().map(|figures| figures.tip_rmse_mm) }))
+    Ok(Some(HeldOut { tip_rmse_mm: errors.metrics().map(|metrics| metrics.tip_rmse_mm) }))
 }
 
 impl HeldOut {
-    /// Whether a single method is better than all sensors together.
+    /// The warning where a single method is better than all sensors together.
     pub(super) fn warning(&self) -> Option<Warning> {
         let fusion_mm = self.tip_rmse_mm[Method::Fusion as usize]?;
         let others = Method::ALL.into_iter().filter(|method| *method != Method::Fusion);

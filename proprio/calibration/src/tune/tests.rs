@@ -16,7 +16,7 @@ use rig_twin::Scenario;
 use super::descent::{MAX_ITERATIONS, descend};
 use super::objective::{Evaluation, Objective};
 use super::parameters::Ranges;
-use super::search::{MAX_RUNS, Place, filter_at, search};
+use super::search::{GridPoint, MAX_RUNS, filter_at, search};
 use super::training::{Part, Training};
 use super::{Dual, TuningError, pooled};
 
@@ -84,8 +84,8 @@ fn assert_gradient_is_exact(table: &LoadedTable, sessions: &[PathBuf]) {
         let finite = (at(h) - at(-h)) / (2.0 * h);
         assert!((exact[k] - finite).abs() < 1e-9 + 1e-7 * finite.abs(), "{k}: {} instead of {finite}", exact[k]);
     }
-    let felt = exact.iter().filter(|derivative| derivative.abs() > 1e-5).count();
-    assert!(felt > 40, "only {felt} parameters act, so that this test shows little");
+    let acting = exact.iter().filter(|derivative| derivative.abs() > 1e-5).count();
+    assert!(acting > 40, "only {acting} parameters act, so that this test shows little");
 }
 
 #[test]
@@ -115,7 +115,7 @@ fn assert_errors_are_those_of_replay(table: &LoadedTable) {
 
     let found = objective(table, &[path]).of_table(&table.file);
     let mut errors = pooled(&found, |session| &session.training);
-    errors.append(&pooled(&found, |session| &session.held_back));
+    errors.append(&pooled(&found, |session| &session.validation));
     let (found, expected) = (errors.keys().tip_rmse_mm, fusion.tip_rmse_mm.expect("there is truth"));
     assert!((found - expected).abs() < 1e-9 * expected, "{found} instead of {expected}");
 }
@@ -139,7 +139,7 @@ fn of_three_sessions_the_third_judges_and_of_two_the_last_fifths() {
             let training = Training::read(&path, Part::of_session(k, count), &reference(), &mut NoProgress)
                 .expect("a good session");
             let errors = training.fused().expect("it has the bias filter");
-            [errors.training.tips.count(), errors.held_back.tips.count()]
+            [errors.training.tips.count(), errors.validation.tips.count()]
         });
         sessions.collect()
     };
@@ -168,7 +168,7 @@ fn a_place_is_worth_what_its_table_is() {
     let tables = [table.file.clone(), objective.table(&place, table.file.clone())];
     for of_table in tables.map(|table| objective.of_table(&table)) {
         assert!((of_table.loss - objective.at(&place).loss).abs() < 1e-12);
-        assert!((of_table.held_back_loss - objective.at(&place).held_back_loss).abs() < 1e-12);
+        assert!((of_table.validation_loss - objective.at(&place).validation_loss).abs() < 1e-12);
     }
 }
 
@@ -237,8 +237,8 @@ fn errors_that_are_no_numbers_are_refused() {
     assert_eq!(descend(steep, vec![0.0], |_| true), Err(TuningError::NotFinite));
 }
 
-/// What a place costs that is off from the bottom of a bowl, in decades.
-fn bowl(place: &Place, bottom: [f64; 5], depth: f64) -> Evaluation {
+/// Evaluation of a point by its distance from the bottom of a bowl, in decades.
+fn bowl(place: &GridPoint, bottom: [f64; 5], depth: f64) -> Evaluation {
     let off = place.iter().zip(bottom).map(|(steps, bottom)| f64::from(*steps) / 8.0 - bottom);
     Evaluation { loss: depth * off.map(|off| off * off).sum::<f64>(), ..Evaluation::default() }
 }

@@ -1,6 +1,6 @@
 //! `proprio align`.
 
-use proprio_calibration::align::{AlignmentReport, Sensors, Written, align};
+use proprio_calibration::align::{AlignmentReport, ComparedSensors, Written, align};
 use proprio_session::{LAST_LINE, LoadedTable, OutputFile};
 
 use crate::args::Align;
@@ -25,8 +25,8 @@ pub fn run(args: &Align) -> Result<(), Error> {
 
 fn text(report: &AlignmentReport, Written { rows, with_truth }: Written) -> String {
     let sensors = match report.sensors {
-        Sensors::Imus => "IMUs",
-        Sensors::Bend => "bend sensors",
+        ComparedSensors::Imus => "IMUs",
+        ComparedSensors::Bend => "bend sensors",
     };
     let AlignmentReport { offset_s, offset_error_ms, middle_s, skew_ppm, skew_error_ppm, .. } = report;
     let AlignmentReport { residual_ms, correlation, matched, .. } = report;
