@@ -24,7 +24,7 @@ const DAY_S: f64 = 86_400.0;
 const START_NS: u64 = 1_764_000_000_000_000_000;
 const TABLE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../calibration-tables/planar-6.toml");
 
-/// With it, this program opens what comes to it on the page.
+/// With it, this program opens the recording on the page.
 const OPEN: &str = "--open-on-the-page";
 
 fn main() {
@@ -42,7 +42,7 @@ fn main() {
     for (name, ticks) in [("a quarter of a day", DAY_TICKS / 4), ("a day", DAY_TICKS)] {
         let mut replay = Command::new(env!("CARGO_BIN_EXE_proprio"));
         replay.args(["replay", "/dev/stdin", "--table", TABLE]);
-        let mut open = Command::new(env::current_exe().expect("the system tells"));
+        let mut open = Command::new(env::current_exe().expect("the system reports it"));
         open.arg(OPEN);
         for (done, mut command) in [("replayed", replay), ("opened on the page", open)] {
             let start = Instant::now();
@@ -143,7 +143,7 @@ fn hello() -> Hello {
     }
 }
 
-/// A process's peak resident memory, where the system tells.
+/// A process's peak resident memory, where the system reports it.
 fn peak_memory(process: &str) -> Option<String> {
     let status = fs::read_to_string(format!("/proc/{process}/status")).ok()?;
     Some(status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?.trim().to_owned())

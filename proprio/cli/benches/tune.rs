@@ -22,7 +22,7 @@ fn main() {
     divan::main();
 }
 
-/// The session, simulated when it is first asked for.
+/// The session, simulated at its first use.
 fn session() -> PathBuf {
     let folder = FOLDER.get_or_init(|| {
         let folder = tempfile::tempdir().expect("a temporary folder");

@@ -1,4 +1,4 @@
-//! Tables for people.
+//! Text tables for people.
 
 use std::time::Duration;
 
@@ -12,7 +12,7 @@ use proprio_analysis::session_metrics::{AllMetrics, ByMethod};
 use proprio_calibration::calibrate::{HeldOut, MapKind, SegmentReport, SensorReport};
 use proprio_link::Port;
 
-/// One line a bend sensor.
+/// One line for each bend sensor.
 pub fn sensors(sensors: &[SensorReport]) -> String {
     let mut table = table(&["sensor", "samples", "RMSE deg", "range deg", "range V"]);
     for sensor in sensors {
@@ -60,16 +60,16 @@ pub fn held_out(held_out: &HeldOut) -> String {
     format!("\non the last fifth, by a table of the rest:\n{}\n", text(&mut table))
 }
 
-/// A word for both sensors where they agree.
+/// The words of a segment's sensors, one for both where they agree.
 fn joined<'w>(words: impl Iterator<Item = &'w str>) -> String {
     let mut words: Vec<&str> = words.collect();
     words.dedup();
     words.join(", ")
 }
 
-/// What a tuning has brought, of which each iteration took `iteration_time`.
+/// Result of a tuning, each iteration of which took `iteration_time`.
 pub fn tuning(record: &TuningKeys, iteration_time: Duration) -> String {
-    let mut table = table(&["RMSE", "before", "after", "held back, before", "after"]);
+    let mut table = table(&["RMSE", "before", "after", "validation, before", "after"]);
     let parts = [&record.before, &record.after, &record.held_back_before, &record.held_back_after];
     let mut add = |name: &str, figure: fn(&RmseKeys) -> f64| {
         table.add_row([name.to_owned()].into_iter().chain(parts.map(|of| format!("{:.2}", figure(of)))));
@@ -106,19 +106,19 @@ fn bias_filter(of: &DriftTuningKeys) -> String {
     format!("\n{}\nafter {} runs of the estimator\n", text(&mut table), of.runs)
 }
 
-/// What became of the variances, where the table has any.
+/// Inflation of the variances, where the table has any.
 fn variances(record: &TuningKeys) -> String {
     match record.variances {
         None => String::new(),
         Some(factor) if factor > 1.0 => format!("\nvariances are {factor:.2} times as large\n"),
-        Some(_) => "\nvariances are as they were\n".to_owned(),
+        Some(_) => "\nvariances are unchanged\n".to_owned(),
     }
 }
 
-/// Picks one figure of a method.
+/// Selects one metric of a method.
 type Pick = fn(&Metrics) -> Option<f64>;
 
-/// A table for each figure: a line a session, a column a method, and one of the smoothed estimates where there are any.
+/// A table for each metric: one line per session, one column per method, and one of the smoothed estimates where there are any.
 pub fn replay(all: &AllMetrics) -> String {
     let length = all.length_mm;
     let parts: [(String, Pick); 4] = [
@@ -135,7 +135,7 @@ pub fn replay(all: &AllMetrics) -> String {
         })
 }
 
-/// How honest the covariances are: a line a session; nothing where there are none.
+/// Consistency of the covariances: one line per session; empty without covariances.
 fn consistency(all: &AllMetrics, of_what: &str, pick: fn(&ByMethod) -> Option<ConsistencyMetrics>) -> String {
     if pick(&all.all).is_none() {
         return String::new();
@@ -180,7 +180,7 @@ fn metrics(all: &AllMetrics, figure: Pick) -> String {
     text(&mut table)
 }
 
-/// One line a port.
+/// One line for each port.
 pub fn ports(ports: &[Port]) -> String {
     if ports.is_empty() {
         return "no serial port\n".to_owned();
@@ -193,7 +193,7 @@ pub fn ports(ports: &[Port]) -> String {
     table.trim_fmt() + "\n"
 }
 
-/// Names to the left of what they mean.
+/// Lines of names and values.
 pub fn pairs(lines: &[(&str, String)]) -> String {
     lines.iter().map(|(name, value)| format!("{name:<13} {value}\n")).collect::<Vec<_>>().concat()
 }

@@ -1,4 +1,4 @@
-//! From the arguments to a link and its recording.
+//! A link and its recording from the arguments.
 
 use std::path::Path;
 
@@ -10,7 +10,7 @@ use telemetry::TICK_HZ;
 use crate::args::LinkArgs;
 use crate::error::Error;
 
-/// The table that was given, a link to the board that was, and all that it will say.
+/// The given table, a link to the given board, and a subscription to its events.
 pub fn open(args: &LinkArgs) -> Result<(Option<LoadedTable<'_>>, Link, Subscription), Error> {
     let table = args.table.as_deref().map(LoadedTable::load).transpose()?;
     let checksum = table.as_ref().map(|table| Ok::<_, Error>(table.bake::<Q>(TICK_HZ)?.checksum())).transpose()?;

@@ -23,7 +23,7 @@ pub fn run(args: &Recover) -> Result<(), Error> {
     let Some((first, last)) = times_ns else { return Err(fail(SessionProblem::NothingWhole).into()) };
     file.finish()?;
     let seconds = (last - first) as f64 / 1e9;
-    let cut = if was_cut { "saved of a file that was cut" } else { "the file was whole" };
+    let cut = if was_cut { "recovered from a file that was cut" } else { "the file was complete" };
     terminal::eprint_line(&format_args!(
         "{}: {messages} messages of {seconds:.3} s, {cut} ({bytes} bytes read)",
         args.output.display()

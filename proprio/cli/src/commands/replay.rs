@@ -26,7 +26,7 @@ pub fn run(args: &Replay) -> Result<(), Error> {
     let out = args.out.as_deref().map(|out| OutputFile::create(out, &inputs)).transpose()?;
     let mut out = out.map(|file| EstimateWriter::new(file, &table.file, args.smooth)).transpose()?;
     let metrics = if args.float {
-        // The board's fixed point says nothing of floats.
+        // The board's fixed-point estimates differ from those of floats.
         replay_all::<f64>(args, &table, out.as_mut(), None)?
     } else {
         replay_all::<Q>(args, &table, out.as_mut(), Some(Comparison::add))?
@@ -43,18 +43,18 @@ pub fn run(args: &Replay) -> Result<(), Error> {
     Ok(out.map_or(Ok(()), EstimateWriter::finish)?)
 }
 
-/// Whether the replay is what the board has estimated.
-fn tell(path: &Path, recorded: &Comparison, firmware: Option<&str>) {
+/// Reports the agreement of the board's estimates with the replay.
+fn report_agreement(path: &Path, recorded: &Comparison, firmware: Option<&str>) {
     let line = format!("{}: {recorded}", path.display());
     if recorded.is_exact() {
         terminal::eprint_line(&line);
     } else {
-        // Another release may estimate in another way, to the last bits.
+        // Another release may differ in the last bits.
         terminal::warn(&format_args!("{line}; the board ran firmware {}", firmware.unwrap_or("of an unknown version")));
     }
 }
 
-/// Compares what the board has estimated of a row.
+/// Compares the board's output of a row.
 type Compare<S> = fn(&mut Comparison, &Row, &Outcome<S>);
 
 fn replay_all<S: FusedOps>(
@@ -89,7 +89,7 @@ fn replay_all<S: FusedOps>(
         let recorded = recording.filter(|_| compare.is_some()).map(|recording| {
             comparison.table_matches = recording.table_matches;
             let comparison = comparison.of(recording.recorded_by);
-            tell(path, &comparison, recording.firmware.as_deref());
+            report_agreement(path, &comparison, recording.firmware.as_deref());
             comparison
         });
         all.append(&errors);

@@ -27,9 +27,9 @@ pub fn run(args: &Report) -> Result<(), Error> {
     let csv = args.csv.as_ref().map(create).transpose()?;
 
     let mut progress = Bar::new();
-    let mut gathering = ReportBuilder::new(&table);
+    let mut builder = ReportBuilder::new(&table);
     for path in &args.sessions {
-        if !gathering.add(path, &mut progress)?.ends_with_line {
+        if !builder.add(path, &mut progress)?.ends_with_line {
             terminal::warn(&format_args!("{}: {LAST_LINE}", path.display()));
         }
     }
@@ -40,7 +40,7 @@ pub fn run(args: &Report) -> Result<(), Error> {
             "fixed point saturated {times} times: a reading or the table is out of range; compare with replay --float"
         )),
     }
-    let report = gathering.finish()?;
+    let report = builder.finish()?;
     let mut files = vec![written(page, &report.html())?];
     if let Some(json) = json {
         files.push(written(json, &report.json())?);

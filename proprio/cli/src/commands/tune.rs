@@ -33,7 +33,7 @@ pub fn run(args: &Tune) -> Result<(), Error> {
     Ok(file.finish()?)
 }
 
-/// What is not as it should be, although the table is written.
+/// Warnings about a tuning whose table is written.
 fn warnings(record: &TuningKeys) -> impl Iterator<Item = String> {
     let TuningKeys { iterations, kept, stopped, .. } = *record;
     let early = match stopped {
@@ -42,9 +42,12 @@ fn warnings(record: &TuningKeys) -> impl Iterator<Item = String> {
     };
     let noise = match kept {
         _ if kept == iterations => None,
-        0 => Some("what is held back only gets worse: the filters stay as they were; take longer sessions".to_owned()),
+        0 => Some(
+            "the validation error did not improve: the filters are unchanged; use longer training sessions".to_owned(),
+        ),
         _ => Some(format!(
-            "what is held back gets worse in the end: the table has iteration {kept}, the best for it; take longer sessions"
+            "the validation error rises at the end: the table has iteration {kept}, the best by it; use longer training \
+             sessions"
         )),
     };
     early.into_iter().chain(noise)
