@@ -2,7 +2,7 @@
 //!
 //! The method is that of arXiv 2511.01165: quadratic V–Orient maps turn bend-sensor voltages into bend angles, a
 //! moving-average anchor takes the drift out of the IMUs, two Kalman filters (KF_orient, KF_coord) fuse both, and
-//! piecewise-constant-curvature kinematics (PCC) chain the segments to the arm's shape. `docs/PAPER.md` in the
+//! piecewise-constant-curvature kinematics (PCC) chain the segments to the arm's shape. `docs/explanation/paper.md` in the
 //! repository lists where the paper's text errs and what is done here instead.
 //!
 //! The crate is `no_std`, allocates nothing and knows no hardware, no file and no protocol. It is generic over its

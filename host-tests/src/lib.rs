@@ -4,7 +4,7 @@
 //!
 //! [`faults`] are faults of sensors and recordings, to be put into the sessions of [`twin`].
 //!
-//! [`literal`] is the mathematics of `docs/METHOD.md` once more, written down as it stands there and in floats: what the
+//! [`literal`] is the mathematics of `docs/explanation/method.md` once more, written down as it stands there and in floats: what the
 //! estimator, which is streaming, decoupled and fixed point, is judged against.
 
 pub mod contact;

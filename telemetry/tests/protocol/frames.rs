@@ -28,7 +28,7 @@ fn topics_are_those_of_the_protocol_page() {
 #[test]
 fn the_schema_is_that_of_this_version() {
     // If this fails, a message's form has changed: raise PROTOCOL_VERSION, put the new hash here, and bring
-    // docs/PROTOCOL.md up to date.
+    // docs/reference/protocol.md up to date.
     assert_eq!((PROTOCOL_VERSION, SCHEMA), (2, 0x03C8_8117));
 }
 

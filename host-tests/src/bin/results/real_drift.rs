@@ -28,7 +28,7 @@ impl RealDrift {
     pub fn measure(family: &Family, root: &Path) -> Result<Option<Self>, Problem> {
         let path = root.join("../shared/data/broad-heading-error.csv");
         if !path.exists() {
-            eprintln!("no ../shared/data/broad-heading-error.csv beside the checkout: its section stays empty");
+            eprintln!("no ../shared/data/broad-heading-error.csv next to the checkout: its section stays empty");
             return Ok(None);
         }
         let csv = read(&path)?;

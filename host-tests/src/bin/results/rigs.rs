@@ -43,7 +43,7 @@ impl Rigs {
     pub fn measure(arm: &ArmFile, root: &Path, folder: &Path) -> Result<Option<Self>, Problem> {
         let rigs = root.join("../shared/rigs");
         if !rigs.is_dir() {
-            eprintln!("no ../shared/rigs beside the checkout: its section stays empty");
+            eprintln!("no ../shared/rigs next to the checkout: its section stays empty");
             return Ok(None);
         }
         let mut paths: Vec<PathBuf> = fs::read_dir(&rigs)?.map(|entry| Ok(entry?.path())).collect::<io::Result<_>>()?;
@@ -145,6 +145,6 @@ const RIGS: &str = "\
 
 Two programs that share nothing with `rig-twin`: four elastic rods of 60 hinges with friction, post and stick, whose strips are nonlinear,
 hysteretic, creep and drift with temperature, and two arms by formula. As calibrated on their sweeps. Tip RMSE of fusion in mm (share of
-true tips inside the 95 % ellipse); beside it that of the [smoothed](METHOD.md#smoothing) estimates, the paper's method on the same sweep and the better of bend sensors and raw IMUs. No
+true tips inside the 95 % ellipse), of the [smoothed](method.md#smoothing) estimates, of the paper's method on the same sweep, and of the better of bend sensors and raw IMUs. No
 constant was chosen on them.
 ";

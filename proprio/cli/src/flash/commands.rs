@@ -1,4 +1,4 @@
-//! Which commands flash a board, as in docs/FLASHING.md, and their running.
+//! Which commands flash a board, as in docs/how-to/flashing.md, and their running.
 
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};

@@ -2,7 +2,7 @@
 //!
 //! The channel [`RAW`] has the bytes as they came, each message with the time of its arrival: the truth of what was
 //! received, and what a replay decodes again. The other channels are for people and their programs: ROS 2 messages in CDR.
-//! `docs/FORMATS.md` lists them.
+//! `docs/reference/files.md` lists them.
 //!
 //! | file | what it is for |
 //! |---|---|

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Film the arm's ArUco markers and write what `proprio align` reads (docs/CALIBRATION.md). Needs opencv-python 4.7 or newer.
+"""Film the arm's ArUco markers and write what `proprio align` reads (docs/tutorials/your-own-arm.md). Needs opencv-python 4.7 or newer.
 
     aruco_to_csv.py VIDEO_OR_CAMERA_NUMBER CAMERA.csv
 

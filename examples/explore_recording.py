@@ -6,9 +6,9 @@
 # jupytext know the `# %%` cells) and change the two names below, or run it:
 #
 #     pip install mcap mcap-ros2-support pandas matplotlib
-#     python docs/explore_recording.py session.mcap session.csv
+#     python examples/explore_recording.py session.mcap session.csv
 #
-# Run like that, it saves the figures in the folder where it is run. docs/FORMATS.md has every topic and column.
+# Run like that, it saves the figures in the folder where it is run. docs/reference/files.md has every topic and column.
 
 # %%
 import sys
