@@ -47,7 +47,7 @@ fn prose(text: &str) -> Vec<(usize, &str)> {
     lines
 }
 
-/// A link `[text](target)` and the line that it is in.
+/// A link `[text](target)`, and its line.
 struct Link<'t> {
     line: usize,
     text: &'t str,
@@ -78,7 +78,11 @@ fn anchors(text: &str) -> BTreeSet<String> {
     prose(text).into_iter().filter(|(_, line)| line.starts_with('#')).map(|(_, line)| anchor(line)).collect()
 }
 
-/// Faults of one link: a missing file, a missing anchor, or a name that the linked source file does not contain.
+fn is_identifier(name: &str) -> bool {
+    name.chars().all(|c| c.is_alphanumeric() || c == '_')
+}
+
+/// Fault of a link: a missing file, a missing anchor, or a name that the linked source file does not contain.
 fn fault(document: &Path, link: &Link<'_>) -> Option<String> {
     if link.target.contains("://") || link.target.starts_with("mailto:") {
         return None;
@@ -97,7 +101,7 @@ fn fault(document: &Path, link: &Link<'_>) -> Option<String> {
     }
     let is_source = path.extension().is_some_and(|extension| extension == "rs");
     let name = link.text.strip_prefix('`').and_then(|text| text.strip_suffix('`'));
-    let name = name.and_then(|name| name.rsplit("::").next()).filter(|name| is_source && !name.contains(['.', '/']));
+    let name = name.and_then(|name| name.rsplit("::").next()).filter(|name| is_source && is_identifier(name));
     name.filter(|name| !read(&path).contains(name)).map(|name| format!("the file does not contain {name}"))
 }
 

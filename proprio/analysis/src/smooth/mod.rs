@@ -1,8 +1,9 @@
 //! Smoothing: estimates of a recorded session by all of its readings, those after each row too.
 //!
 //! The model is the [bias filter's](estimator_core::BiasState). A fixed-interval smoother in the modified Bryson–Frazier form
-//! (Bierman 1973) runs its operations backwards, in floats, and corrects the filter's biases at every row; `docs/explanation/method.md`
-//! has the equations. A session that starts anew in between is smoothed piece by piece.
+//! (Bierman 1973) runs its operations backwards, in floats, and corrects the filter's biases at every row;
+//! `docs/explanation/smoothing.md` has the equations. Each part of a session between two starts of the estimator is smoothed
+//! separately.
 //!
 //! The session is read twice. Blocks of 2048 rows are composed into one step back each, so that memory does not hold
 //! the session but one block of rows, and 5 kB for each block of an arm of six segments: 22 MB for a day at 100 Hz.
