@@ -7,6 +7,9 @@ use std::path::{Path, PathBuf};
 /// Folders that hold no documents of the project.
 const SKIPPED: [&str; 4] = ["target", "node_modules", ".git", "fuzz"];
 
+/// Most lines of the README.
+const README_LINES: usize = 90;
+
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the crate is in the workspace").to_owned()
 }
@@ -126,6 +129,12 @@ fn the_book_lists_every_page_once() {
     listed.sort();
     let pages: Vec<PathBuf> = documents(&docs).into_iter().filter(|page| !page.ends_with("SUMMARY.md")).collect();
     assert_eq!(listed, pages, "docs/SUMMARY.md, and the pages in docs");
+}
+
+#[test]
+fn the_readme_is_short() {
+    let lines = read(&root().join("README.md")).lines().count();
+    assert!(lines <= README_LINES, "README.md has {lines} lines");
 }
 
 #[test]

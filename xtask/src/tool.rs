@@ -16,11 +16,16 @@ pub fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().map(Path::to_owned).unwrap_or_default()
 }
 
+/// The folder that cargo builds in.
+pub fn target() -> PathBuf {
+    env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), |path| root().join(path))
+}
+
 impl Tool {
     /// Builds the tool, and makes its folder `name` below `target`.
     pub fn build(name: &str) -> Result<Self, String> {
         cargo(&["build", "--release", "--package", "proprio"], &[])?;
-        let target = env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), |path| root().join(path));
+        let target = target();
         let tool = Self {
             binary: target.join("release").join(format!("proprio{}", env::consts::EXE_SUFFIX)),
             folder: target.join(name),

@@ -17,7 +17,7 @@ impl Help for FlashError {
             }
             Self::Failed { program, .. } => look(program),
             Self::Temporary(_) => "make room, or let TMPDIR name a folder that can be written to",
-            Self::Silent { .. } => "press RESET, then `proprio status`; docs/how-to/flashing.md, Trouble",
+            Self::Silent { .. } => "press RESET, then `proprio status`; docs/how-to/troubleshooting.md",
             Self::OtherTable { .. } => "see that the probe and the port are of one board, and flash again",
             Self::Other(_) => {
                 "give this release's source with --source, and see that the probe and the port are of one board"
@@ -41,10 +41,10 @@ fn install(program: &str) -> &'static str {
 fn look(program: &str) -> &'static str {
     match program {
         "bossac" => {
-            "close what has the port open; docs/how-to/flashing.md, Trouble, explains each of its errors. The flash may be \
+            "close what has the port open; docs/how-to/troubleshooting.md explains each of its errors. The flash may be \
              erased, which flashing again mends"
         }
-        "probe-rs" => "check the probe's cable and the board's supply; docs/how-to/flashing.md, Trouble",
+        "probe-rs" => "check the probe's cable and the board's supply; docs/how-to/troubleshooting.md",
         _ => "its message above has the reason; `rustup target add thumbv7m-none-eabi` if the target is missing",
     }
 }
