@@ -11,7 +11,7 @@
 //! | `payload.rs` | topics and bodies |
 //! | `frame.rs` | COBS, CRC and [`Encoder`] |
 //! | `decoder.rs` | [`Decoder`] |
-//! | `schema.rs` | [`SCHEMA`] |
+//! | `schema.rs` | [`SCHEMA`], the hash of the messages' layout |
 //! | `estimator.rs` | a [`Sample`] for `estimator-core`, and an [`Estimate`], [`Uncertainty`] and contact from it |
 //!
 //! ```
@@ -56,7 +56,7 @@ pub use estimator::touched;
 pub use frame::{EncodeError, Encoder, MAX_FRAME, PROTOCOL_VERSION};
 pub use message::*;
 pub use payload::{Payload, topic};
-pub use schema::SCHEMA;
+pub use schema::{EARLIER_SCHEMAS, SCHEMA, is_same_layout};
 
 /// The page's example is true.
 #[cfg(doctest)]

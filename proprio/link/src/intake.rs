@@ -1,7 +1,7 @@
 //! Bytes to messages, and what they tell of restarts, losses and mismatches.
 
 use proprio_session::{BootTracker, Continuity, is_version_0_1};
-use telemetry::{Counts, DecodeError, Decoder, Hello, Message, SCHEMA};
+use telemetry::{Counts, DecodeError, Decoder, Hello, Message, is_same_layout};
 
 use super::event::Mismatch;
 
@@ -109,7 +109,7 @@ impl Intake {
     }
 
     fn is_trusted(&self) -> bool {
-        self.hello.as_ref().is_none_or(|hello| hello.schema == SCHEMA)
+        self.hello.as_ref().is_none_or(|hello| is_same_layout(hello.schema))
     }
 
     fn greet(&mut self, hello: Hello, tell: &mut impl FnMut(Taken)) {
@@ -118,7 +118,7 @@ impl Intake {
             self.restart(tell);
         }
         let firmware = hello.firmware.as_str().to_owned();
-        if hello.schema != SCHEMA {
+        if !is_same_layout(hello.schema) {
             self.mismatch(Mismatch::Schema { board: Some(hello.schema), firmware: Some(firmware) }, tell);
         } else if firmware != env!("CARGO_PKG_VERSION") {
             self.mismatch(Mismatch::Firmware(firmware), tell);

@@ -50,6 +50,12 @@ fn messages_of_another_form_are_not_handed_on() {
 }
 
 #[test]
+fn messages_whose_hash_covered_the_names_of_the_same_layout_are_handed_on() {
+    let told = told(None, &Hello { schema: 0x03c8_8117, ..hello(1) });
+    assert_eq!((mismatches(&told).len(), told.len()), (0, 3));
+}
+
+#[test]
 fn another_firmware_that_says_the_same_messages_is_read_and_told() {
     let told = told(None, &Hello { firmware: text("0.9.0"), ..hello(1) });
     assert_eq!(mismatches(&told), [&Mismatch::Firmware("0.9.0".to_owned())]);

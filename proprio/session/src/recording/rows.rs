@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 
 use calibration_tables::MAX_SEGMENTS;
-use telemetry::{DecodeError, Decoder, Event, Hello, Message, SCHEMA, Sample};
+use telemetry::{DecodeError, Decoder, Event, Hello, Message, Sample, is_same_layout};
 
 use super::{Item, ReadError};
 use crate::{BootTracker, Continuity, HostNs, Mark, OnBoard, Row, Truth};
@@ -100,7 +100,7 @@ impl<I: Iterator<Item = Result<Item, ReadError>>> RecordedRows<I> {
 
     fn take(&mut self, at: HostNs, message: Message) -> Result<(), ReadError> {
         match message {
-            Message::Hello(hello) if hello.schema != SCHEMA => {
+            Message::Hello(hello) if !is_same_layout(hello.schema) => {
                 return Err(ReadError::OtherForm(hello.firmware.as_str().to_owned()));
             }
             Message::Hello(hello) => {
