@@ -1,6 +1,6 @@
 //! `cargo xtask accept`: takes today's twin and estimator for right.
 //!
-//! Records the committed sessions and the reference table anew by their own command lines, then has the host tests write
+//! Records the committed sessions and the reference table again by their own command lines, then has the host tests write
 //! the estimates that they expect. What changed is for the diff to show.
 
 use std::fs;

@@ -1,10 +1,10 @@
-//! What concerns the board, real or emulated: its target, and the packages that only these commands build.
+//! The board, real or emulated: its target, and the packages that only these commands build.
 
 use std::process::Command;
 
 use crate::tool::{cargo, check};
 
-/// The emulated board's engine says that it wants a newer Rust than it does.
+/// The emulated board's engine declares a newer Rust than it needs.
 pub const ANY_RUST: &str = "--ignore-rust-version";
 
 const TARGET: &str = "thumbv7m-none-eabi";
