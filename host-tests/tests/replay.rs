@@ -1,6 +1,6 @@
 //! Recorded sessions through the estimator, against committed estimates and against the float reference.
 //!
-//! `cargo xtask accept` records the sessions and the expected estimates anew; see `README.md` here.
+//! `cargo xtask accept` records the sessions and the expected estimates again; see `README.md` here.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -14,10 +14,10 @@ use proprio_session::{NamedTable, NoProgress};
 
 const SESSIONS: [&str; 4] = ["scenario-1", "scenario-2", "scenario-3", "board-rate"];
 
-/// Every this many rows one is kept in the expected estimates; the filters remember the ones between.
+/// Of this many rows one is kept in the expected estimates; the filters depend on the ones between.
 const KEPT_ROWS: usize = 10;
 
-/// How far fixed point may be from the reference.
+/// Largest error of fixed point against the reference.
 const Q_ERROR_RAD: f64 = 1e-6;
 const Q_ERROR_M: f64 = 2e-6;
 
@@ -130,7 +130,7 @@ fn a_session_of_the_board_keeps_its_quaternions_to_the_bit() {
     assert_eq!(rows, recorded.len());
 }
 
-/// The kinematics alone, on a real arm with ideal orientations: the floor that constant curvature has there.
+/// The kinematics alone, on a real arm with ideal orientations: the error of constant curvature.
 #[test]
 fn the_real_recording_misses_the_tip_by_the_known_floor() {
     let recording = here("../../shared/data/trunk-planar.csv");

@@ -12,9 +12,10 @@ mod tool;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    let command = std::env::args().nth(1);
-    let done = match command.as_deref() {
-        Some("demo") => demo::run(),
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let command = arguments.first().map(String::as_str);
+    let done = match command {
+        Some("demo") => demo::run(arguments.get(1..).unwrap_or_default()),
         Some("accept") => accept::run(),
         Some("verify") => board::verify(),
         Some("bench") => bench::run(),

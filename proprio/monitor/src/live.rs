@@ -6,7 +6,7 @@ use estimator_core::Sample;
 use proprio_link::status::Rates;
 use proprio_link::{Event, What};
 use proprio_session::{BoardClock, HostNs};
-use telemetry::{BEND_SENSORS, Estimate, Health, Message, SEGMENTS, SensorHealth, SensorState, Uncertainty};
+use telemetry::{BEND_SENSORS, Estimate, Health, Message, SEGMENTS, SensorHealth, SensorState, TICK_US, Uncertainty};
 
 use super::feed::BoardTime;
 use super::row::Row;
@@ -14,8 +14,6 @@ use super::shadow::Shadow;
 
 /// Time that rates are of, ns.
 const RATES_NS: u64 = 2_000_000_000;
-/// Time from one tick to the next, µs.
-const TICK_US: u64 = 10_000;
 /// Time to send a sample's frame of 98 bytes at 250 000 Bd, µs.
 const SAMPLE_FRAME_US: u32 = 3920;
 

@@ -1,4 +1,4 @@
-//! What the page computes: its modules, asked in the browser.
+//! Results of the page's modules, computed in the browser.
 
 use std::path::Path;
 
@@ -12,7 +12,7 @@ fn opened() -> (MonitorRun, Browser) {
     (run, browser)
 }
 
-/// What an expression comes to that uses the modules of the page.
+/// Evaluates statements that use the modules of the page.
 fn with_modules(browser: &mut Browser, work: &str) -> serde_json::Value {
     let names = ["store", "arm", "plot"];
     let imports: String = names.map(|name| format!("const {name} = await import('/{name}.js');")).concat();

@@ -1,4 +1,4 @@
-//! Contact detection: false alarms of free arms, and what is found.
+//! Contact detection: false alarms of free arms, and detected contacts.
 
 use std::fmt::{self, Write};
 

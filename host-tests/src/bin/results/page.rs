@@ -92,7 +92,7 @@ impl Results {
     }
 }
 
-/// Which seeds chose constants and which judge them.
+/// Seeds on which constants were chosen, and seeds on which they are tested.
 fn write_seeds(page: &mut String) -> fmt::Result {
     let [development, test] = [&DEVELOPMENT[..], &TEST[..]].map(|seeds| [seeds[0], seeds[seeds.len() - 1]]);
     writeln!(page, "{SEEDS}")?;
@@ -106,7 +106,7 @@ fn write_seeds(page: &mut String) -> fmt::Result {
     writeln!(page, "| other simulators | | judge: no constant was chosen on them |\n\n{REPRODUCE}")
 }
 
-/// The floor of constant curvature on the real recording, where it is next to the checkout.
+/// Error of constant curvature on the real recording, if that is next to the checkout.
 fn real(root: &Path) -> Result<Option<[f64; 2]>, Problem> {
     let recording = root.join("../shared/data/trunk-planar.csv");
     if !recording.exists() {

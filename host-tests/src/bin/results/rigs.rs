@@ -58,7 +58,7 @@ impl Rigs {
         self.rigs.iter().map(|rig| (rig.name.as_str(), rig.false_alarms, rig.free_s))
     }
 
-    /// The table, or why there is none.
+    /// Writes the table, or why it is missing.
     pub fn write(rigs: Option<&Self>, page: &mut String) -> fmt::Result {
         writeln!(page, "{RIGS}")?;
         let Some(Self { rigs }) = rigs else {
@@ -145,6 +145,6 @@ const RIGS: &str = "\
 
 Two programs that share nothing with `rig-twin`: four elastic rods of 60 hinges with friction, post and stick, whose strips are nonlinear,
 hysteretic, creep and drift with temperature, and two arms by formula. As calibrated on their sweeps. Tip RMSE of fusion in mm (share of
-true tips inside the 95 % ellipse), of the [smoothed](smoothing.md) estimates, of the paper's method on the same sweep, and of the better of bend sensors and raw IMUs. No
+true tips inside the 95 % ellipse); then of the [smoothed](smoothing.md) estimates, of the paper's method on the same sweep, and of the better of bend sensors and raw IMUs. No
 constant was chosen on them.
 ";

@@ -1,14 +1,12 @@
 //! The V–Orient maps of the table with the data of the sessions.
 
 use calibration_tables::{ArmFile, BendKeys};
-use estimator_core::Method;
+use estimator_core::{Method, VOLTS_PER_COUNT};
 use proprio_session::{Row, SENSOR_NAMES};
 
 use super::plot::{Axis, Colour, Figure, Marks, Panel, Series, Size, extent, padded, rounded};
 use super::thin::Thinned;
 
-/// Volts of one ADC count.
-const VOLTS_PER_COUNT: f64 = 3.3 / 4095.0;
 /// Readings of a sensor that are shown at least.
 const READINGS: usize = 256;
 /// Points of a drawn map.

@@ -48,10 +48,10 @@ impl Flashing {
         let source = absolute(source);
         // Cargo takes a relative path from the folder that it runs in.
         let target = env::var("CARGO_TARGET_DIR").unwrap_or_else(|_| "target".to_owned());
-        let elf = format!("{target}/{TARGET}/release/firmware");
+        let elf = format!("{target}/{TARGET}/firmware/firmware");
         let build = Step {
             variable: Some(("PROPRIO_TABLE", text(&absolute(table)))),
-            ..Step::new("cargo", &["build", "--release", "-p", "firmware", "--target", TARGET])
+            ..Step::new("cargo", &["build", "--profile", "firmware", "-p", "firmware", "--target", TARGET])
         };
         let mut steps = vec![build];
         if is_probe_found()? {

@@ -17,7 +17,7 @@ impl Help for LinkError {
             Self::Open { source, .. } => open_remedy(source),
             Self::NoVirtualDue => "build it: cargo build --ignore-rust-version -p virtual-due",
             Self::NoFirmware(_) => {
-                "build it: cargo build --release -p firmware --target thumbv7m-none-eabi, or name one with --firmware"
+                "build it: cargo build --profile firmware -p firmware --target thumbv7m-none-eabi, or name one with --firmware"
             }
             Self::Start { .. } => "build it again, or let PROPRIO_VIRTUAL_DUE name it",
             Self::Thread(_) => "close other programs",

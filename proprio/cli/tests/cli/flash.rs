@@ -6,8 +6,8 @@ use std::path::Path;
 
 use super::common::{Folder, Run, error_of, table};
 
-const BUILD: &str = "cargo build --release -p firmware --target thumbv7m-none-eabi";
-const ELF: &str = "target/thumbv7m-none-eabi/release/firmware";
+const BUILD: &str = "cargo build --profile firmware -p firmware --target thumbv7m-none-eabi";
+const ELF: &str = "target/thumbv7m-none-eabi/firmware/firmware";
 const PROBE: &str = "echo 'The following debug probes were found:'; echo '[0]: J-Link -- 1366:0101:1 (J-Link)'";
 
 /// A folder with a source and programs. The one that runs is written, with the table that it is given, into `called`.

@@ -3,13 +3,10 @@
 use std::collections::VecDeque;
 
 use calibration_tables::MAX_SEGMENTS;
-use telemetry::{DecodeError, Decoder, Event, Hello, Message, Sample, is_same_layout};
+use telemetry::{DecodeError, Decoder, Event, Hello, Message, Sample, TICK_US, is_same_layout};
 
 use super::{Item, ReadError};
 use crate::{BootTracker, Continuity, HostNs, Mark, OnBoard, Row, Truth};
-
-/// Time from one tick to the next, µs.
-const TICK_US: u64 = 10_000;
 
 /// The rows of a recording.
 pub(crate) struct RecordedRows<I> {
