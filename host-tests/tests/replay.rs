@@ -114,7 +114,7 @@ fn fixed_point_stays_with_the_float_reference_in_every_session() {
 
 #[test]
 fn a_session_of_the_board_keeps_its_quaternions_to_the_bit() {
-    let run = proprio_simulation::Simulation::new(rig_twin::Scenario::One, 24, 10.0, 100.0).expect("a valid run");
+    let run = proprio_simulation::Simulation::new(rig_twin::Scenario::FreeSwing, 24, 10.0, 100.0).expect("a valid run");
     let recorded: Vec<_> =
         run.map(|sample| sample.quaternions.map(|read| read.map(estimator_core::ImuReading::from_bno055))).collect();
     let path = reference_table();

@@ -12,7 +12,7 @@ use proprio_simulation::{ImuColumns, SessionWriter, Simulation};
 use rig_twin::{Motion, Scenario, Setup};
 
 const ARMS: [u64; 6] = [1, 2, 3, 4, 5, 6];
-const SCENARIOS: [Scenario; 3] = [Scenario::One, Scenario::Two, Scenario::Three];
+const SCENARIOS: [Scenario; 3] = [Scenario::FreeSwing, Scenario::Push, Scenario::Obstacle];
 
 fn setup(arm_seed: u64, scenario: Scenario, seed: u64) -> Setup {
     Setup { arm_seed, scenario, motion: Motion::Swings, seed: 100 * arm_seed + seed }
@@ -60,7 +60,7 @@ fn on_arms_of_the_twin_smoothed_tips_are_nearer_to_the_truth_and_their_ellipses_
 fn the_last_estimate_of_a_session_is_that_of_the_estimator_with_its_covariance() {
     let table = Path::new(env!("CARGO_MANIFEST_DIR")).join("../calibration-tables/planar-6.toml");
     let table = ArmFile::load(&table).expect("the reference table");
-    let session = TwinSession::new(&setup(0, Scenario::Two, 2), 900.0, 10.0).expect("a rate and a duration");
+    let session = TwinSession::new(&setup(0, Scenario::Push, 2), 900.0, 10.0).expect("a rate and a duration");
     for length in [300, 2048, 2049, 4000, 6500, 9000] {
         let mut last = None;
         let rows = || session.rows().take(length);

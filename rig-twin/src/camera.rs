@@ -5,10 +5,10 @@ use crate::constants::{
     CAMERA_HEADING_NOISE_RAD, CAMERA_HIDDEN_SHARE, CAMERA_PLACE_NOISE_M, CAMERA_STAMP_NOISE_S, GRID_S, SEGMENTS,
 };
 use crate::noise::{Noise, Seeds, Source};
-use crate::shape::EndPose;
+use crate::pose::EndPose;
 use core::f64::consts::TAU;
 
-/// What the camera saw, in its own frame: x to the right and y up in the picture, headings clockwise from y, within ±π.
+/// One picture in the camera's frame: x to the right and y up, headings clockwise from y, within ±π.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame {
     /// Time by the camera's clock, s.

@@ -24,7 +24,7 @@ pub struct Reset {
 /// use virtual_due::{CYCLES_PER_SECOND, Machine, Rig};
 ///
 /// let elf = std::fs::read("firmware.elf")?;
-/// let mut machine = Machine::new(&elf, Rig::new(Scenario::One, 1))?;
+/// let mut machine = Machine::new(&elf, Rig::new(Scenario::FreeSwing, 1))?;
 /// machine.run_for(2 * CYCLES_PER_SECOND);
 /// println!("{} instructions, pc {:#x}", machine.instructions(), machine.pc());
 /// # Ok::<(), Box<dyn std::error::Error>>(())

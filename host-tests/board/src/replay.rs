@@ -6,7 +6,7 @@ use calibration_tables::ArmFile;
 use estimator_core::{Estimator, Method, Q};
 use telemetry::{Estimate, Event, SEGMENTS, Sample, TICK_HZ, Uncertainty, touched};
 
-/// The reference arm's table, which the firmware has baked in.
+/// The reference arm's table, which the firmware has compiled in.
 ///
 /// # Panics
 /// If the committed file is not a valid table.
@@ -32,8 +32,8 @@ pub struct Replayed {
 /// # Panics
 /// If the reference table is not valid.
 pub fn replay<'s>(samples: impl Iterator<Item = &'s Sample>) -> Vec<Replayed> {
-    let baked = table().bake::<Q>(TICK_HZ).expect("the reference table bakes");
-    let table = baked.config();
+    let compiled = table().compile::<Q>(TICK_HZ).expect("the reference file is a valid table");
+    let table = compiled.config();
     let start = || Estimator::<Q, SEGMENTS, 100>::new(&table).expect("the reference arm has six segments");
     let (mut estimator, mut tare, mut touched_before) = (start(), 0, [false; SEGMENTS]);
     let mut replayed = Vec::new();

@@ -40,7 +40,7 @@ impl Recording {
         let Some(hello) = hello else {
             return Ok(Self { firmware: None, table_matches: None, recorded_by: RecordedBy::default() });
         };
-        let checksum = table.bake::<Q>(TICK_HZ)?.checksum();
+        let checksum = table.compile::<Q>(TICK_HZ)?.checksum();
         let firmware = Some(format!("{} ({})", hello.firmware, hello.revision));
         Ok(Self {
             firmware,
@@ -64,9 +64,9 @@ pub fn replay<S: FusedOps>(
     mut visit: impl FnMut(&Row, &Outcome<S>) -> Result<(), Error>,
 ) -> Result<Extent, Error> {
     let mut rows = SessionRows::open(session, table, "replaying", progress)?;
-    let baked = table.bake::<S>(rows.rate_hz(table))?;
-    let baked = baked.config();
-    let mut estimator: Box<HostEstimator<S>> = Box::new(Estimator::new(&baked).expect("the file was checked"));
+    let compiled = table.compile::<S>(rows.rate_hz(table))?;
+    let compiled = compiled.config();
+    let mut estimator: Box<HostEstimator<S>> = Box::new(Estimator::new(&compiled).expect("the file was checked"));
     while let Some(row) = rows.next_row()? {
         visit(&row, &Outcome::of_row(&mut estimator, &row))?;
     }

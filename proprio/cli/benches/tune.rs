@@ -28,7 +28,7 @@ fn session() -> PathBuf {
         let folder = tempfile::tempdir().expect("a temporary folder");
         let file = OutputFile::create(&folder.path().join("session.csv"), &[]).expect("a session file");
         let mut writer = SessionWriter::new(file, ImuColumns::Deg).expect("room on the disk");
-        for sample in Simulation::new(Scenario::One, 7, SECONDS, RATE_HZ).expect("a valid run") {
+        for sample in Simulation::new(Scenario::FreeSwing, 7, SECONDS, RATE_HZ).expect("a valid run") {
             writer.write(&sample).expect("room on the disk");
         }
         writer.into_inner().finish().expect("room on the disk");

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use calibration_tables::{DriftTuningKeys, RmseKeys, Stopped, TuningKeys};
+use calibration_tables::{DriftTuningToml, RmseToml, StopReason, TuningToml};
 use comfy_table::presets::NOTHING;
 use comfy_table::{CellAlignment, Table};
 use estimator_core::Method;
@@ -68,30 +68,30 @@ fn joined<'w>(words: impl Iterator<Item = &'w str>) -> String {
 }
 
 /// What a tuning has brought, of which each iteration took `iteration_time`.
-pub fn tuning(record: &TuningKeys, iteration_time: Duration) -> String {
+pub fn tuning(record: &TuningToml, iteration_time: Duration) -> String {
     let mut table = table(&["RMSE", "before", "after", "held back, before", "after"]);
-    let parts = [&record.before, &record.after, &record.held_back_before, &record.held_back_after];
-    let mut add = |name: &str, figure: fn(&RmseKeys) -> f64| {
+    let parts = [&record.before, &record.after, &record.validation_before, &record.validation_after];
+    let mut add = |name: &str, figure: fn(&RmseToml) -> f64| {
         table.add_row([name.to_owned()].into_iter().chain(parts.map(|of| format!("{:.2}", figure(of)))));
     };
     add("tip, mm", |of| of.tip_rmse_mm);
     add("all ends, mm", |of| of.position_rmse_mm);
     add("headings, deg", |of| of.heading_rmse_deg);
-    let stopped = match record.stopped {
-        Stopped::Converged => "converged",
-        Stopped::Interrupted => "interrupted",
+    let stopped = match record.stop_reason {
+        StopReason::Converged => "converged",
+        StopReason::Interrupted => "interrupted",
     };
     let each_s = iteration_time.as_secs_f64();
-    let (iterations, kept) = (record.iterations, record.kept);
+    let (iterations, best) = (record.iterations, record.best_iteration);
     let filters = format!(
-        "{}\n{stopped} after {iterations} iterations of {each_s:.3} s; the table has iteration {kept}\n",
+        "{}\n{stopped} after {iterations} iterations of {each_s:.3} s; the table has iteration {best}\n",
         text(&mut table)
     );
     filters + &record.drift.as_ref().map_or_else(String::new, bias_filter) + &variances(record)
 }
 
 /// The bias filter's parameters, before and after.
-fn bias_filter(of: &DriftTuningKeys) -> String {
+fn bias_filter(of: &DriftTuningToml) -> String {
     let mut table = table(&["bias filter", "before", "after"]);
     let keys = [
         ("rate_deg_per_s", of.rate_deg_per_s),
@@ -107,8 +107,8 @@ fn bias_filter(of: &DriftTuningKeys) -> String {
 }
 
 /// What became of the variances, where the table has any.
-fn variances(record: &TuningKeys) -> String {
-    match record.variances {
+fn variances(record: &TuningToml) -> String {
+    match record.covariance_inflation {
         None => String::new(),
         Some(factor) if factor > 1.0 => format!("\nvariances are {factor:.2} times as large\n"),
         Some(_) => "\nvariances are as they were\n".to_owned(),

@@ -26,7 +26,7 @@ pub(super) struct Worker {
 }
 
 /// Its holder has dropped the link.
-struct Stopped;
+struct StopReason;
 
 impl Worker {
     pub fn new(source: Box<dyn Source>, table: Option<u32>, asked: Receiver<Ask>, shared: Arc<Shared>) -> Self {
@@ -46,13 +46,13 @@ impl Worker {
             self.tell(What::Lost(reason));
             match self.open_again() {
                 Ok(opened) => (name, transport) = opened,
-                Err(Stopped) => return,
+                Err(StopReason) => return,
             }
         }
     }
 
     /// Works on an open line until it is lost, and says why.
-    fn work(&mut self, name: &str, transport: &mut dyn Transport) -> Result<String, Stopped> {
+    fn work(&mut self, name: &str, transport: &mut dyn Transport) -> Result<String, StopReason> {
         self.intake.open();
         self.shared.state().port = Some(name.to_owned());
         self.tell(What::Opened(name.to_owned()));
@@ -72,7 +72,7 @@ impl Worker {
         }
     }
 
-    fn open_again(&mut self) -> Result<(String, Box<dyn Transport>), Stopped> {
+    fn open_again(&mut self) -> Result<(String, Box<dyn Transport>), StopReason> {
         loop {
             std::thread::sleep(LOOK);
             self.take_asks()?;
@@ -85,11 +85,11 @@ impl Worker {
         }
     }
 
-    fn take_asks(&mut self) -> Result<(), Stopped> {
+    fn take_asks(&mut self) -> Result<(), StopReason> {
         loop {
             match self.asked.try_recv() {
                 Ok(Ask::Request(command, answer)) => self.requests.push(command, answer),
-                Ok(Ask::Stop) | Err(TryRecvError::Disconnected) => return Err(Stopped),
+                Ok(Ask::Stop) | Err(TryRecvError::Disconnected) => return Err(StopReason),
                 Err(TryRecvError::Empty) => return Ok(()),
             }
         }

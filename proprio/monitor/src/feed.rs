@@ -74,8 +74,8 @@ pub(super) struct Geometry {
     offset_at_end: bool,
 }
 
-impl From<&calibration_tables::SegmentKeys> for Geometry {
-    fn from(segment: &calibration_tables::SegmentKeys) -> Self {
+impl From<&calibration_tables::SegmentToml> for Geometry {
+    fn from(segment: &calibration_tables::SegmentToml) -> Self {
         let offset_at_end = segment.offset_at == Side::End;
         Self { length_mm: segment.length_mm, offset_mm: segment.offset_mm, offset_at_end }
     }

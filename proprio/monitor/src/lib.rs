@@ -37,7 +37,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::JoinHandle;
 
-use calibration_tables::Baked;
+use calibration_tables::CompiledTable;
 use estimator_core::Q;
 use proprio_link::{Link, Subscription};
 use proprio_session::NamedTable;
@@ -91,7 +91,7 @@ impl Monitor {
         let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port)).map_err(failed)?;
         listener.set_nonblocking(true).map_err(failed)?;
         let address = listener.local_addr().map_err(failed)?;
-        let baked = options.table.as_ref().map(|table| table.bake::<Q>(TICK_HZ)).transpose()?;
+        let compiled = options.table.as_ref().map(|table| table.compile::<Q>(TICK_HZ)).transpose()?;
         let (link, events) = live.unzip();
         let shared = Arc::new(shared(link, options));
         let stop = Arc::new(AtomicBool::new(false));
@@ -99,7 +99,7 @@ impl Monitor {
         let mut monitor = Self { address, shared, stop, stop_server: Some(stop_server), threads: Vec::new() };
         if let Some(events) = events {
             let (shared, stop) = (Arc::clone(&monitor.shared), Arc::clone(&monitor.stop));
-            monitor.spawn("hub", move || hub(&shared, events, baked.as_ref(), &stop)).map_err(failed)?;
+            monitor.spawn("hub", move || hub(&shared, events, compiled.as_ref(), &stop)).map_err(failed)?;
         }
         let server = Server { shared: Arc::clone(&monitor.shared), port: address.port() };
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(failed)?;
@@ -171,8 +171,8 @@ fn shared(link: Option<Link>, options: Options) -> Shared {
     Shared::new(link, arm, options.token, sessions, options.help)
 }
 
-fn hub(shared: &Arc<Shared>, events: Subscription, baked: Option<&Baked<Q>>, stop: &AtomicBool) {
-    let table = baked.map(Baked::config);
+fn hub(shared: &Arc<Shared>, events: Subscription, compiled: Option<&CompiledTable<Q>>, stop: &AtomicBool) {
+    let table = compiled.map(CompiledTable::config);
     let table = table.as_ref().filter(|table| table.segments.len() == SEGMENTS);
     if let Some(link) = &shared.link {
         Hub::new(Arc::clone(shared), events, table).run(link, stop);

@@ -118,9 +118,9 @@ impl Sessions {
         let file = &table.file;
         let segments = file.segments.len();
         let mut reader = SessionReader::open(path, &table.needs()?)?;
-        let baked = table.bake::<Q>(reader.rate_hz(file.rate_hz))?;
-        let baked = baked.config();
-        let mut shadow = Shadow::new(&baked);
+        let compiled = table.compile::<Q>(reader.rate_hz(file.rate_hz))?;
+        let compiled = compiled.config();
+        let mut shadow = Shadow::new(&compiled);
         let mut history = History::new(row::names(segments).len());
         let (mut samples, mut every) = (0, 1);
         while let Some(read) = reader.next_row()? {

@@ -15,7 +15,7 @@ pub(super) struct Shadow<'t> {
 }
 
 impl<'t> Shadow<'t> {
-    /// Of a table that was baked from a file, whose checks are at least as strict as the estimator's.
+    /// Of a table that was compiled from a file, whose checks are at least as strict as the estimator's.
     pub fn new(table: &'t ArmConfig<'t, Q>) -> Self {
         let estimator = Box::new(Estimator::new(table).expect("the file was checked"));
         Self { estimator, table, predicted_rad: [None; MAX_SEGMENTS] }
@@ -45,11 +45,11 @@ impl<'t> Shadow<'t> {
                 z.zip(self.predicted_rad[i]).map(|(z, predicted)| (z - h.to_f64() * predicted).to_degrees())
             };
             // The filters take θ_c without its whole turns.
-            let z_imu = corrected.map(|theta| theta.rest.to_f64());
+            let z_imu = corrected.map(|theta| theta.remainder.to_f64());
             row.set(Group::InnovationImu, i, innovation(z_imu, noise.orient.h_imu));
-            let z_bend = of.bend.map(|link| link.theta.rest.to_f64());
+            let z_bend = of.bend.map(|link| link.theta.remainder.to_f64());
             row.set(Group::InnovationBend, i, innovation(z_bend, noise.orient.h_bend));
-            self.predicted_rad[i] = of.fusion.map(|fused| fused.theta.rest.to_f64());
+            self.predicted_rad[i] = of.fusion.map(|fused| fused.theta.remainder.to_f64());
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use calibration_tables::{ArmFile, Baked, FileError};
+use calibration_tables::{ArmFile, CompiledTable, FileError};
 use estimator_core::FusedOps;
 
 use crate::Error;
@@ -47,8 +47,8 @@ impl<'p> NamedTable<'p> {
     ///
     /// # Errors
     /// [`Error::Table`] on an arm description.
-    pub fn bake<S: FusedOps>(&self, rate_hz: f64) -> Result<Baked<S>, Error> {
-        self.file.bake(rate_hz).map_err(|source| self.error(source))
+    pub fn compile<S: FusedOps>(&self, rate_hz: f64) -> Result<CompiledTable<S>, Error> {
+        self.file.compile(rate_hz).map_err(|source| self.error(source))
     }
 
     /// Whether the bias filter corrects the drift.

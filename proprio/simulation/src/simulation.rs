@@ -2,7 +2,7 @@
 
 use proprio_session::check_seconds;
 use rig_twin::{
-    BEND_SENSORS, Camera, EndPose, Frame, HeadingDrift, Program, REGULATORS, Rig, SEGMENTS, Scenario, Setup,
+    BEND_SENSORS, Camera, EndPose, Frame, HeadingDrift, MotionProgram, REGULATORS, Rig, SEGMENTS, Scenario, Setup,
 };
 
 use crate::error::SimulationError;
@@ -38,7 +38,7 @@ impl Recorded {
 /// A run of the twin, one [`Recorded`] after the other.
 pub struct Simulation {
     rig: Rig,
-    program: Program,
+    program: MotionProgram,
     rate_hz: f64,
     samples: u64,
     next: u64,
@@ -68,7 +68,7 @@ impl Simulation {
         }
         check_seconds(seconds)?;
         let samples = (seconds * rate_hz).round().max(1.0) as u64;
-        let (rig, program) = (Rig::of(setup), Program::of(setup));
+        let (rig, program) = (Rig::of(setup), MotionProgram::of(setup));
         Ok(Self { rig, program, rate_hz, samples, next: 0, pause: None, camera: None, frames: Vec::new() })
     }
 

@@ -20,7 +20,7 @@ fn run(
     let mut windows = std::vec::Vec::new();
     for k in seconds.start * 10..seconds.end * 10 {
         let at = k as f64 / 10.0;
-        detector.take(0, heading(at).map(degrees), bend(at).map(degrees), 0.1 / TIME_UNIT_S);
+        detector.update(0, heading(at).map(degrees), bend(at).map(degrees), 0.1 / TIME_UNIT_S);
         if let Some(window) = detector.window(k * SECOND / 10) {
             windows.push((at, window));
         }

@@ -132,7 +132,7 @@ mod figures {
 
     fn run(output: &SyncSender<Vec<u8>>, input: &Receiver<Vec<u8>>) {
         let mut machine =
-            Machine::new(firmware(), Rig::new(Scenario::One, 1)).expect("cargo built an ELF for the board");
+            Machine::new(firmware(), Rig::new(Scenario::FreeSwing, 1)).expect("cargo built an ELF for the board");
         let history = HISTORY_S * CYCLES_PER_SECOND;
         let mut began = None;
         loop {

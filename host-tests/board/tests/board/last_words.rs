@@ -28,7 +28,7 @@ const RECURSION: [u8; 4] = [0xFF, 0xB4, 0xFD, 0xE7];
 
 /// A board whose arm is under pressure.
 fn under_pressure() -> Board {
-    let mut board = Board::new(Rig::new(Scenario::One, 1));
+    let mut board = Board::new(Rig::new(Scenario::FreeSwing, 1));
     board.run_ms(1500);
     assert_eq!(board.request(Command::Arm), Outcome::Ack);
     assert_eq!(board.request(PRESSURES), Outcome::Ack);

@@ -6,7 +6,7 @@ use telemetry::{Command, Message, Outcome, Rates, Refusal, Request, ResetCause, 
 use virtual_due::Rig;
 
 fn ready() -> Board {
-    let mut board = Board::new(Rig::new(Scenario::One, 1));
+    let mut board = Board::new(Rig::new(Scenario::FreeSwing, 1));
     board.run_ms(1500);
     board
 }

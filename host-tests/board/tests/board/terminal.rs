@@ -32,7 +32,8 @@ impl Terminal {
         let (mut line, theirs) = TTYPort::pair().expect("the system has pseudo-terminals");
         let port = theirs.name().expect("it has a name");
         line.set_timeout(Duration::from_millis(1)).expect("it is set");
-        let machine = Machine::new(firmware(), Rig::new(Scenario::One, 1)).expect("cargo built an ELF for the board");
+        let machine =
+            Machine::new(firmware(), Rig::new(Scenario::FreeSwing, 1)).expect("cargo built an ELF for the board");
         Self { machine, line, port, disturb: Box::new(|bytes| bytes), to_host: VecDeque::new() }
     }
 

@@ -63,12 +63,12 @@ impl Day {
 
 /// Figures hour by hour.
 fn measure(tables: &Tables, seed: u64) -> Result<Vec<Hour>, Problem> {
-    let baked = [tables.own.bake::<Q>(RATE_HZ)?, tables.paper.bake::<Q>(RATE_HZ)?];
-    let configs = baked.each_ref().map(|baked| baked.config());
+    let compiled = [tables.own.compile::<Q>(RATE_HZ)?, tables.paper.compile::<Q>(RATE_HZ)?];
+    let configs = compiled.each_ref().map(|compiled| compiled.config());
     let [mut own, mut paper] = configs.each_ref().map(Replayer::new);
     let length_mm = tables.own.length_mm();
     let mut hours = vec![[(); 2].map(|()| Score::new(length_mm)); HOURS];
-    let simulation = Simulation::of(&setup(seed, Scenario::One, Motion::Swings), HOUR_S * HOURS as f64, RATE_HZ)?;
+    let simulation = Simulation::of(&setup(seed, Scenario::FreeSwing, Motion::Swings), HOUR_S * HOURS as f64, RATE_HZ)?;
     for (k, recorded) in simulation.enumerate() {
         let row = row(&recorded, k == 0);
         let [of_own, of_paper] = &mut hours[k / (HOUR_S * RATE_HZ) as usize];

@@ -16,7 +16,8 @@ use crate::evaluation::{Evaluation, Figures, fusion_mm, mean_and_worst};
 pub const REFERENCE: u64 = 0;
 pub const DEVELOPMENT: [u64; 6] = [1, 2, 3, 4, 5, 6];
 pub const TEST: [u64; 12] = [101, 102, 103, 104, 105, 106, 107, 108, 109, 110, 111, 112];
-pub const SCENARIOS: [(&str, Scenario); 3] = [("I", Scenario::One), ("II", Scenario::Two), ("III", Scenario::Three)];
+pub const SCENARIOS: [(&str, Scenario); 3] =
+    [("I", Scenario::FreeSwing), ("II", Scenario::Push), ("III", Scenario::Obstacle)];
 
 /// An arm, and its figures in each scenario.
 pub struct ArmFigures {

@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use calibration_tables::AnchorKeys;
+use calibration_tables::AnchorToml;
 
 /// Mean of the newest values, over the time of the anchor's window.
 #[derive(Debug, Clone)]
@@ -23,7 +23,7 @@ struct Step {
 }
 
 impl MovingAverage {
-    pub fn new(anchor: &AnchorKeys) -> Self {
+    pub fn new(anchor: &AnchorToml) -> Self {
         let window = u64::from(anchor.window);
         Self { rate_hz: anchor.rate_hz, window, steps: VecDeque::new(), sum: 0.0, count: 0 }
     }
@@ -49,13 +49,13 @@ impl MovingAverage {
 
 #[cfg(test)]
 mod tests {
-    use calibration_tables::AnchorKeys;
+    use calibration_tables::AnchorToml;
 
     use super::MovingAverage;
 
     #[test]
     fn the_window_is_as_long_at_any_sample_rate() {
-        let anchor = AnchorKeys { window: 20, threshold_deg: 0.5, rate_hz: 10.0 };
+        let anchor = AnchorToml { window: 20, threshold_deg: 0.5, rate_hz: 10.0 };
         for step_us in [100_000, 10_000] {
             let mut average = MovingAverage::new(&anchor);
             let mut last = None;
@@ -69,7 +69,7 @@ mod tests {
 
     #[test]
     fn a_window_without_values_has_no_mean() {
-        let mut average = MovingAverage::new(&AnchorKeys { window: 20, threshold_deg: 0.5, rate_hz: 10.0 });
+        let mut average = MovingAverage::new(&AnchorToml { window: 20, threshold_deg: 0.5, rate_hz: 10.0 });
         assert_eq!(average.add(0, Some(3.0)), Some(3.0));
         assert_eq!(average.add(1_900_000, None), Some(3.0));
         assert_eq!(average.add(2_000_000, None), None);

@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use calibration_tables::{AnchorKeys, ArmFile, MAX_SEGMENTS};
+use calibration_tables::{AnchorToml, ArmFile, MAX_SEGMENTS};
 use estimator_core::{FusedOps, Method};
 use proprio_session::Row;
 
@@ -40,7 +40,7 @@ struct Segment {
 
 impl Drift {
     pub fn new(table: &ArmFile) -> Self {
-        let AnchorKeys { window, rate_hz, .. } = table.anchor;
+        let AnchorToml { window, rate_hz, .. } = table.anchor;
         let average = MovingAverage::new(&table.anchor);
         let segment = |_: &_| Segment { averages: CURVES.map(|_| average.clone()), timeline: Timeline::new(BINS) };
         let segments = table.segments.iter().map(segment).collect();

@@ -130,7 +130,7 @@ impl<'t> Gathering<'t> {
             figures: ByMethod::from(&session.score),
             recorded: None,
         };
-        let crc32 = self.table.bake::<Q>(file.rate_hz)?.checksum();
+        let crc32 = self.table.compile::<Q>(file.rate_hz)?.checksum();
         Ok(Report {
             format: 1,
             proprio: env!("CARGO_PKG_VERSION"),

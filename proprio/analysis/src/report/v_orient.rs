@@ -1,6 +1,6 @@
 //! The V–Orient maps of the table with the data of the sessions.
 
-use calibration_tables::{ArmFile, BendKeys};
+use calibration_tables::{ArmFile, BendToml};
 use estimator_core::{Method, VOLTS_PER_COUNT};
 use proprio_session::{Row, SENSOR_NAMES};
 
@@ -18,7 +18,7 @@ pub struct Readings(Vec<Sensor>);
 struct Sensor {
     segment: usize,
     place: usize,
-    map: BendKeys,
+    map: BendToml,
     /// Volts and true angle, deg.
     points: Thinned<(f64, f64)>,
     square_sum_deg2: f64,
@@ -64,12 +64,12 @@ impl Readings {
 }
 
 impl Sensor {
-    fn new(segment: usize, place: usize, map: BendKeys) -> Self {
+    fn new(segment: usize, place: usize, map: BendToml) -> Self {
         Self { segment, place, map, points: Thinned::new(READINGS), square_sum_deg2: 0.0, count: 0 }
     }
 
     fn mapped_deg(&self, volts: f64) -> f64 {
-        let BendKeys { c0, c1, c2, .. } = self.map;
+        let BendToml { c0, c1, c2, .. } = self.map;
         ((c2 * volts + c1) * volts + c0).to_degrees()
     }
 

@@ -1,6 +1,6 @@
 //! `bend_error`: size and persistence of the errors that the maps leave of the sweep.
 
-use calibration_tables::BendErrorKeys;
+use calibration_tables::BendErrorToml;
 
 use super::maps::FittedMap;
 use super::sweep::{LEAST_ROWS, Sweep};
@@ -30,7 +30,7 @@ struct Series {
 }
 
 /// Errors of the sensors of `segment`; `None` where they were hardly ever read together.
-pub(super) fn of(sweep: &Sweep, segment: usize, sensors: &[&FittedMap]) -> Option<BendErrorKeys> {
+pub(super) fn of(sweep: &Sweep, segment: usize, sensors: &[&FittedMap]) -> Option<BendErrorToml> {
     let errors = sensors.iter().map(|sensor| Series::new(&centred(&sensor.errors, sweep), sweep));
     let errors: Vec<Series> = errors.collect();
     let first = errors.first()?;
@@ -46,7 +46,7 @@ pub(super) fn of(sweep: &Sweep, segment: usize, sensors: &[&FittedMap]) -> Optio
     let slow_mean = mean.slow_deviation().unwrap_or(0.0);
     let correlation_s = mean.correlation_s();
     let speed = Series::new(&sweep.theta[segment], sweep).speed();
-    Some(BendErrorKeys {
+    Some(BendErrorToml {
         mean_deg: rounded(deviation_deg(&mean)),
         sensor_deg: errors.iter().map(|series| rounded(deviation_deg(series))).collect(),
         noise_deg: rounded(errors.iter().map(Series::noise).fold(0.0, f64::max).to_degrees()),

@@ -3,7 +3,7 @@
 //! The response of a segment beside the one that it is coupled to is fitted to the true angles; the scatter is that of the
 //! IMUs and bend sensors, as the detector sees them. The same model in fixed point is `estimator_core`'s `contact`.
 
-use calibration_tables::{ArmFile, ChangeKeys, CoupledKeys, RATIO_RANGE};
+use calibration_tables::{ArmFile, ChangeToml, CoupledToml, RATIO_RANGE};
 
 use super::maps::FittedMap;
 use super::quantile;
@@ -73,9 +73,9 @@ pub(super) fn set(sweep: &Sweep, sensors: &[Vec<&FittedMap>], has_limits: bool, 
         let bend = sensors.get(i).and_then(|sensors| values.bend_limit(sweep, i, sensors));
         segment.contact = bend.filter(|_| has_limits);
         segment.coupled_to = values.coupled(i).map(|coupled| {
-            let CoupledKeys { segment, ratio, ratio_left, .. } = coupled;
+            let CoupledToml { segment, ratio, ratio_left, .. } = coupled;
             let one_ratio = ratio_left.map_or(ratio, |left| f64::midpoint(ratio, left));
-            if has_limits { coupled } else { CoupledKeys::with_ratio(segment, one_ratio) }
+            if has_limits { coupled } else { CoupledToml::with_ratio(segment, one_ratio) }
         });
     }
 }
@@ -99,7 +99,7 @@ impl Values {
     }
 
     /// Limit of the IMUs against the bend sensors of segment `i`.
-    fn bend_limit(&self, sweep: &Sweep, i: usize, sensors: &[&FittedMap]) -> Option<ChangeKeys> {
+    fn bend_limit(&self, sweep: &Sweep, i: usize, sensors: &[&FittedMap]) -> Option<ChangeToml> {
         let (first, last) = (sensors.first()?, sensors.last()?);
         let errors = first.errors.iter().zip(&last.errors).map(|(a, b)| Some(f64::midpoint((*a)?, (*b)?)));
         let per = sweep.runs.len() / self.runs.len().max(1);
@@ -113,7 +113,7 @@ impl Values {
     }
 
     /// The earlier segment that segment `j` is coupled to, with the response and the limit.
-    fn coupled(&self, j: usize) -> Option<CoupledKeys> {
+    fn coupled(&self, j: usize) -> Option<CoupledToml> {
         let candidates = (0..j).map(|i| (i, correlation(&self.theta[i], &self.theta[j])));
         let (i, correlation) = candidates.max_by(|(_, a), (_, b)| a.total_cmp(b))?;
         if correlation < CANDIDATE {
@@ -123,7 +123,7 @@ impl Values {
         let limit = self.limit(&self.residuals(&model, i, j, &self.imu));
         let is_within = model.ratios.iter().all(|ratio| RATIO_RANGE.contains(ratio));
         let limit = limit.filter(|limit| is_within && limit.change_deg <= LIMITS_DEG[1])?;
-        Some(CoupledKeys {
+        Some(CoupledToml {
             segment: i + 1,
             ratio: model.ratios[0],
             ratio_left: Some(model.ratios[1]),
@@ -181,7 +181,7 @@ impl Values {
         residuals.collect()
     }
 
-    fn limit(&self, residuals: &[Residual]) -> Option<ChangeKeys> {
+    fn limit(&self, residuals: &[Residual]) -> Option<ChangeToml> {
         let scatter = rms_change(residuals, &self.runs, WINDOW)?;
         let mut held = 0.0_f64;
         let motions = changes(residuals, &self.runs, MOTION_WINDOW).map(|[_, motion]| {
@@ -192,7 +192,7 @@ impl Values {
         motions.sort_unstable_by(f64::total_cmp);
         let largest = changes(residuals, &self.runs, WINDOW).map(|[change, _]| change.abs()).fold(0.0, f64::max);
         let change_rad = (FACTOR * scatter).max(LARGEST_FACTOR * largest);
-        Some(ChangeKeys {
+        Some(ChangeToml {
             change_deg: rounded(change_rad.to_degrees().max(LIMITS_DEG[0])),
             motion_deg: rounded(quantile(&motions, USUAL).to_degrees()),
         })

@@ -1,6 +1,6 @@
 //! Error of constant curvature: the true ends of the segments against those that the true bend angles give.
 
-use calibration_tables::{SegmentKeys, Side};
+use calibration_tables::{SegmentToml, Side};
 use estimator_core::{Angle, OffsetAt, Pcc, SegmentConfig, forward_kinematics};
 use nalgebra::Vector2;
 use proprio_session::Row;
@@ -15,7 +15,7 @@ pub(crate) fn constant_curvature_error(row: &Row, segments: &[SegmentConfig<f64>
 }
 
 /// A segment without its sensors.
-pub(super) fn geometry(segment: &SegmentKeys) -> SegmentConfig<f64> {
+pub(super) fn geometry(segment: &SegmentToml) -> SegmentConfig<f64> {
     let offset_at = match segment.offset_at {
         Side::Start => OffsetAt::Start,
         Side::End => OffsetAt::End,

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use calibration_tables::{ArmFile, BendKeys, DriftKeys, DriftKind};
+use calibration_tables::{ArmFile, BendToml, DriftKind, DriftToml};
 use proprio_session::{NamedTable, Progress};
 
 use super::error::{CalibrationError, Warning};
@@ -34,7 +34,7 @@ pub(super) fn table(
     let refuse = |source| Error::Calibration { path: sessions.first().cloned().unwrap_or_default(), source };
     let mut table = ArmFile { tuning: None, ..arm.file.clone() };
     // The parameters of version 0.1's observer are those of another filter.
-    table.drift = table.drift.filter(|drift| drift.kind != DriftKind::Observer).or_else(|| Some(DriftKeys::kalman()));
+    table.drift = table.drift.filter(|drift| drift.kind != DriftKind::Observer).or_else(|| Some(DriftToml::kalman()));
     let is_paper = table.bias_filter().is_none() && options.maps != MapMode::Curve;
     let of_maps = if is_paper {
         CalibrationOptions { maps: MapMode::Quadratic, hysteresis: HysteresisMode::Never }
@@ -66,7 +66,7 @@ pub(super) fn table(
 fn set_maps(sensors: &[Sensor], table: &mut ArmFile) {
     for (i, segment) in table.segments.iter_mut().enumerate() {
         let of_segment = sensors.iter().filter(|sensor| sensor.segment == i);
-        segment.bend = Some(of_segment.map(|sensor| sensor.map.clone()).collect::<Vec<BendKeys>>());
+        segment.bend = Some(of_segment.map(|sensor| sensor.map.clone()).collect::<Vec<BendToml>>());
         segment.hysteresis.clear();
         (segment.orient, segment.coord) = (None, None);
         (segment.bend_error, segment.imu_scale) = (None, None);
@@ -102,7 +102,7 @@ fn set_contact(sweep: &Sweep, sensors: &[Sensor], table: &mut ArmFile) {
 impl Derived {
     /// The segments' expected errors.
     pub fn segment_reports(&self, sweep: &Sweep) -> Vec<SegmentReport> {
-        let report = |(i, segment): (usize, &calibration_tables::SegmentKeys)| {
+        let report = |(i, segment): (usize, &calibration_tables::SegmentToml)| {
             let sensors: Vec<&Sensor> = self.sensors.iter().filter(|sensor| sensor.segment == i).collect();
             let mean = |row: usize| {
                 let errors = || sensors.iter().filter_map(|sensor| sensor.fitted.held_back[row]);

@@ -1,6 +1,6 @@
 //! Least-squares quadratic of bend angle over voltage.
 
-use calibration_tables::BendKeys;
+use calibration_tables::BendToml;
 use estimator_core::VOLTS_PER_COUNT;
 use nalgebra::{Matrix3, Vector3};
 
@@ -9,7 +9,7 @@ use super::sweep::range;
 /// A fitted map and what it leaves.
 #[derive(Debug, Clone)]
 pub(super) struct Fit {
-    pub map: BendKeys,
+    pub map: BendToml,
     pub samples: usize,
     /// Root mean square residual, rad.
     pub rmse: f64,
@@ -39,7 +39,7 @@ pub(super) fn quadratic(pairs: &[(u16, f64)]) -> Option<Fit> {
     let residual = pairs.iter().map(|(counts, theta)| (theta - basis(*counts).dot(&b)).powi(2)).sum::<f64>() / n;
     let variance = pairs.iter().map(|(_, theta)| (theta - mean).powi(2)).sum::<f64>() / n;
     let (slope, curve) = (b.y / half, b.z / (half * half));
-    let map = BendKeys {
+    let map = BendToml {
         c0: b.x - slope * middle + curve * middle * middle,
         c1: slope - 2.0 * curve * middle,
         c2: curve,

@@ -3,7 +3,7 @@
 //! The weights of plays of fixed widths, and a scale of the maps beside them, come by least squares from the first four
 //! fifths of the sweep. They are kept where they lower the error on the last fifth enough for it to be more than luck.
 
-use calibration_tables::{BendKeys, PlayKeys, SegmentKeys};
+use calibration_tables::{BendToml, PlayToml, SegmentToml};
 use nalgebra::{Matrix4, Vector4};
 
 use super::fit::volts;
@@ -43,7 +43,7 @@ pub enum HysteresisMode {
 }
 
 /// Sets `hysteresis` of the segments that are to have it, and scales their maps; clears it from the others.
-pub(super) fn set(sweep: &Sweep, segments: &mut [SegmentKeys], which: HysteresisMode) {
+pub(super) fn set(sweep: &Sweep, segments: &mut [SegmentToml], which: HysteresisMode) {
     for (i, segment) in segments.iter_mut().enumerate() {
         segment.hysteresis.clear();
         let rows = Rows::new(sweep, i, segment.bend.as_deref().unwrap_or_default());
@@ -59,13 +59,13 @@ pub(super) fn set(sweep: &Sweep, segments: &mut [SegmentKeys], which: Hysteresis
 }
 
 /// θ + Σ w (θ − play(θ)) + s θ as plays on an angle that is 1 + s times as large.
-fn apply(rows: &Rows, weights: Weights, segment: &mut SegmentKeys) {
+fn apply(rows: &Rows, weights: Weights, segment: &mut SegmentToml) {
     let scale = 1.0 + weights.w;
     for map in segment.bend.iter_mut().flatten() {
         (map.c0, map.c1, map.c2) = (map.c0 * scale, map.c1 * scale, map.c2 * scale);
     }
     let plays = rows.half_widths.iter().zip(weights.iter());
-    let play = |(half_width, weight): (&f64, &f64)| PlayKeys {
+    let play = |(half_width, weight): (&f64, &f64)| PlayToml {
         radius_deg: (half_width * scale).to_degrees(),
         weight: weight / scale,
     };
@@ -73,7 +73,7 @@ fn apply(rows: &Rows, weights: Weights, segment: &mut SegmentKeys) {
 }
 
 impl Rows {
-    fn new(sweep: &Sweep, segment: usize, maps: &[BendKeys]) -> Self {
+    fn new(sweep: &Sweep, segment: usize, maps: &[BendToml]) -> Self {
         let columns: Vec<&SensorColumn> = sweep.sensors.iter().filter(|column| column.segment == segment).collect();
         let [lo, hi] = range(sweep.theta[segment].iter().flatten().copied());
         let half_widths = HALF_WIDTHS.map(|share| share * (hi - lo) / 2.0);

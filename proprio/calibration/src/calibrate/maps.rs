@@ -3,7 +3,7 @@
 //! The one-standard-error rule (Breiman, Friedman, Olshen and Stone 1984) decides: the simplest map whose error on the tenths that were held back
 //! is within one standard error of the smallest.
 
-use calibration_tables::{BendKeys, CurveKeys, MemoryKeys};
+use calibration_tables::{BendToml, CurveToml, MemoryToml};
 use estimator_core::{BendMap, CurveMap, QuadraticMap};
 
 use super::fit::{quadratic, volts};
@@ -38,8 +38,8 @@ pub enum MapKind {
 /// A sensor's map and the errors that it leaves, θ − truth, rad; a value a row of the sweep.
 pub(super) struct FittedMap {
     pub kind: MapKind,
-    pub curve: Option<CurveKeys>,
-    pub memory: Option<MemoryKeys>,
+    pub curve: Option<CurveToml>,
+    pub memory: Option<MemoryToml>,
     pub errors: Vec<Option<f64>>,
     /// Each tenth of the sweep by a map fitted without it.
     pub held_back: Vec<Option<f64>>,
@@ -47,7 +47,7 @@ pub(super) struct FittedMap {
 
 /// A map without memory, and those that were fitted without one tenth each.
 struct Form {
-    curve: Option<CurveKeys>,
+    curve: Option<CurveToml>,
     map: BendMap<f64>,
     held_back: Vec<BendMap<f64>>,
 }
@@ -79,7 +79,7 @@ impl FittedMap {
 pub(super) fn fit(
     sweep: &Sweep,
     column: &SensorColumn,
-    plain: &BendKeys,
+    plain: &BendToml,
     CalibrationOptions { maps, hysteresis }: CalibrationOptions,
 ) -> FittedMap {
     let fitter = Fitter::new(sweep, column);
@@ -138,7 +138,7 @@ impl<'s> Fitter<'s> {
 
     fn curve(&self, observations: &[Observation]) -> Option<Form> {
         let fitted = spline::fit(observations, self.sweep.rate_hz)?;
-        let map = |curve: &CurveKeys| {
+        let map = |curve: &CurveToml| {
             let angles: Vec<f64> = curve.theta_deg.iter().copied().map(f64::to_radians).collect();
             BendMap::Curve(CurveMap::from_volts(&angles, curve.volts))
         };
@@ -149,8 +149,8 @@ impl<'s> Fitter<'s> {
         })
     }
 
-    fn quadratic(&self, plain: &BendKeys) -> Form {
-        let map = |of: &BendKeys| BendMap::Quadratic(QuadraticMap::from_volts(of.c2, of.c1, of.c0, of.range_volts()));
+    fn quadratic(&self, plain: &BendToml) -> Form {
+        let map = |of: &BendToml| BendMap::Quadratic(QuadraticMap::from_volts(of.c2, of.c1, of.c0, of.range_volts()));
         let held_back = |fold: usize| {
             let others = self.observations.iter().filter(|observation| observation.fold != fold);
             let pairs: Vec<_> = others.filter_map(|of| Some((self.counts[of.row]?, of.theta))).collect();

@@ -11,7 +11,7 @@
 
 use std::path::PathBuf;
 
-use calibration_tables::{MAX_WINDOW, NoiseKeys};
+use calibration_tables::{MAX_WINDOW, NoiseToml};
 use estimator_core::{
     AnchorConfig, Angle, ArmConfig, Decimated, Decimator, MovingAverageAnchor, Pcc, SegmentConfig, SegmentEstimate,
     Turns,
@@ -47,9 +47,9 @@ impl Errors {
     }
 
     /// Parameters with these errors' R_bend; `None` where the two measurements were never there together.
-    fn noise(&self, ratio: f64) -> Option<NoiseKeys> {
+    fn noise(&self, ratio: f64) -> Option<NoiseToml> {
         let r_bend = self.bend / self.count;
-        (r_bend > 0.0).then(|| NoiseKeys::from_variances(ratio * r_bend, r_bend))
+        (r_bend > 0.0).then(|| NoiseToml::from_variances(ratio * r_bend, r_bend))
     }
 }
 
@@ -77,9 +77,9 @@ pub(super) fn set_filters(
     table: &mut NamedTable,
     progress: &mut dyn Progress,
 ) -> Result<(), Error> {
-    let baked = table.bake::<f64>(sweep.rate_hz)?;
-    let baked = baked.config();
-    let mut residuals = Residuals::new(&baked);
+    let compiled = table.compile::<f64>(sweep.rate_hz)?;
+    let compiled = compiled.config();
+    let mut residuals = Residuals::new(&compiled);
     for (number, session) in sessions.iter().enumerate() {
         let mut rows_left = sweep.sessions.iter().filter(|of| **of == number).count();
         residuals.start();
@@ -127,7 +127,7 @@ impl<'t> Residuals<'t> {
         if row.starts {
             self.start();
         }
-        let slot = self.decimator.tick(&self.anchor);
+        let slot = self.decimator.advance(&self.anchor);
         let mut sums = Some([0.0, 0.0]);
         for (i, (accumulator, estimate)) in self.accumulators.iter_mut().zip(estimates).enumerate() {
             let errors = accumulator.add_row(row.true_theta(i), estimate, slot);

@@ -1,6 +1,6 @@
 //! The bend sensors: each fitted to its segment, and checked.
 
-use calibration_tables::BendKeys;
+use calibration_tables::BendToml;
 
 use super::error::{CalibrationError, Warning};
 use super::fit::{Fit, quadratic, volts};
@@ -29,7 +29,7 @@ const GOOD_ENOUGH: f64 = 0.1;
 /// One sensor's map.
 pub(super) struct Sensor {
     pub segment: usize,
-    pub map: BendKeys,
+    pub map: BendToml,
     pub fitted: FittedMap,
     pub report: SensorReport,
     place: usize,
@@ -75,7 +75,7 @@ fn fit_one(
         range_deg: range(pairs.iter().map(|(_, theta)| *theta)).map(f64::to_degrees),
     };
     let fitted = maps::fit(sweep, column, &fit.map, options);
-    let map = BendKeys { curve: fitted.curve.clone(), memory: fitted.memory.clone(), ..fit.map };
+    let map = BendToml { curve: fitted.curve.clone(), memory: fitted.memory.clone(), ..fit.map };
     Ok(Sensor { segment: column.segment, map, fitted, report, place: column.place })
 }
 
@@ -149,7 +149,7 @@ fn check_monotonic(name: &str, fit: &mut Fit, warnings: &mut Vec<Warning>) -> Re
     Ok(())
 }
 
-fn rises(map: &BendKeys) -> bool {
+fn rises(map: &BendToml) -> bool {
     let [lo, hi] = map.volts.unwrap_or_default();
     map.angle(hi) > map.angle(lo)
 }

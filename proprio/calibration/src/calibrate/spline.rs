@@ -3,7 +3,7 @@
 //! B-splines on evenly spaced knots, a penalty on the third differences of their coefficients. The penalty is the one with
 //! the smallest held-back error: each tenth of the sweep is predicted from the others.
 
-use calibration_tables::CurveKeys;
+use calibration_tables::CurveToml;
 use nalgebra::{SMatrix, SVector};
 
 use super::folds::{FOLDS, Observation};
@@ -29,8 +29,8 @@ type Coefficients = SVector<f64, BASIS>;
 
 /// A curve fitted to all observations, and those that were fitted without one tenth each.
 pub(super) struct FittedCurve {
-    pub curve: CurveKeys,
-    pub held_back: [CurveKeys; FOLDS],
+    pub curve: CurveToml,
+    pub held_back: [CurveToml; FOLDS],
 }
 
 /// Sums of the normal equations over some observations.
@@ -156,7 +156,7 @@ impl Sums {
 const ZEROS: Coefficients = Coefficients::from_array_storage(nalgebra::ArrayStorage([[0.0; BASIS]; 1]));
 
 /// The spline at evenly spaced voltages, made monotone; in steps of 10⁻⁴ degrees.
-fn curve(coefficients: &Coefficients, volts: [f64; 2]) -> CurveKeys {
+fn curve(coefficients: &Coefficients, volts: [f64; 2]) -> CurveToml {
     let [lo, hi] = volts;
     let theta = |k: usize| {
         let (first, splines) = basis(lo + (hi - lo) * k as f64 / (POINTS - 1) as f64, volts);
@@ -164,7 +164,7 @@ fn curve(coefficients: &Coefficients, volts: [f64; 2]) -> CurveKeys {
     };
     let points: Vec<f64> = (0..POINTS).map(theta).collect();
     let theta_deg = monotone(&points).into_iter().map(|theta| rounded(theta.to_degrees(), 1e4)).collect();
-    CurveKeys { volts, theta_deg }
+    CurveToml { volts, theta_deg }
 }
 
 /// The nearest values, in the sum of squares, that only rise or only fall (pool adjacent violators); which of the two, the

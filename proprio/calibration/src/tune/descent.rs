@@ -1,7 +1,7 @@
 //! Gradient descent, p ← p − α ∂RMSE/∂p. L-BFGS makes α of the gradients before, one for each direction, and a search
 //! along it shortens the step until the RMSE falls.
 
-use calibration_tables::Stopped;
+use calibration_tables::StopReason;
 use lbfgs::Lbfgs;
 
 use super::error::TuningError;
@@ -35,7 +35,7 @@ pub(super) fn descend(
     at: impl Fn(&[f64]) -> Evaluation,
     start: Vec<f64>,
     mut visit: impl FnMut(&Iterate) -> bool,
-) -> Result<Stopped, TuningError> {
+) -> Result<StopReason, TuningError> {
     let mut memory = Lbfgs::new(start.len(), MEMORY);
     let found = at(&start);
     let mut here = Iterate { number: 0, place: start, found };
@@ -46,17 +46,17 @@ pub(super) fn descend(
             return Err(TuningError::NotFinite);
         }
         if !visit(&here) {
-            return Ok(Stopped::Interrupted);
+            return Ok(StopReason::Interrupted);
         }
         if losses.len() >= PATIENCE && losses[losses.len() - PATIENCE] - loss < CONVERGED {
-            return Ok(Stopped::Converged);
+            return Ok(StopReason::Converged);
         }
         if here.number == MAX_ITERATIONS {
             return Err(TuningError::NotConverged { iterations: MAX_ITERATIONS });
         }
         losses.push(loss);
         memory.update_hessian(&here.found.gradient, &here.place);
-        let Some(next) = step(&at, &here, &mut memory) else { return Ok(Stopped::Converged) };
+        let Some(next) = step(&at, &here, &mut memory) else { return Ok(StopReason::Converged) };
         here = next;
     }
 }

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use calibration_tables::RmseKeys;
+use calibration_tables::RmseToml;
 use estimator_core::SegmentShape;
 use nalgebra::Vector2;
 
@@ -112,8 +112,8 @@ impl Errors {
     }
 
     /// As a table records them.
-    pub fn keys(&self) -> RmseKeys {
-        RmseKeys {
+    pub fn keys(&self) -> RmseToml {
+        RmseToml {
             position_rmse_mm: self.positions.rms() * 1e3,
             tip_rmse_mm: self.tips.rms() * 1e3,
             heading_rmse_deg: self.headings.rms().to_degrees(),

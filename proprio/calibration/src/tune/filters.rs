@@ -37,7 +37,7 @@ impl Filters {
     /// Takes one sample; gives the fused link.
     pub fn step(&mut self, measured: &Measured) -> Option<Link<f64>> {
         let links = [measured.imu_c, measured.bend].map(|theta| theta.map(|theta| self.pcc.link(Angle::from(theta))));
-        let theta = self.orient.step(links.map(|link| link.map(|link| SVector::from([link.theta.rest]))));
+        let theta = self.orient.step(links.map(|link| link.map(|link| SVector::from([link.theta.remainder]))));
         let end = self.coord.step(links.map(|link| link.map(|link| link.end)));
         theta.zip(end).map(|(theta, end)| Link { theta: Angle::from(theta.x), end })
     }

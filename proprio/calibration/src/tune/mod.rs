@@ -23,7 +23,7 @@ mod training;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use calibration_tables::{ArmFile, DriftKeys, DriftTuningKeys, Stopped, TuningKeys};
+use calibration_tables::{ArmFile, DriftToml, DriftTuningToml, StopReason, TuningToml};
 use proprio_analysis::consistency::Honesty;
 use proprio_analysis::replay::replay;
 use proprio_session::{NamedTable, Progress};
@@ -51,7 +51,7 @@ pub struct Tuning {
     /// The table, with its record of the tuning.
     pub table: ArmFile,
     /// That record.
-    pub record: TuningKeys,
+    pub record: TuningToml,
     /// What an iteration of the descent took; zero with the bias filter, which has no descent.
     pub iteration_time: Duration,
 }
@@ -70,7 +70,7 @@ impl<'t> Tuner<'t> {
         let part = |k| Part::of_session(k, count);
         let mut read = |(k, path): (usize, &PathBuf)| Training::read(path, part(k), table, progress);
         let sessions = sessions.iter().enumerate().map(&mut read).collect::<Result<Vec<_>, _>>()?;
-        let objective = Objective::new(sessions, table.bake::<f64>(table.file.rate_hz)?.config().segments);
+        let objective = Objective::new(sessions, table.compile::<f64>(table.file.rate_hz)?.config().segments);
         let before = objective.of_table(&table.file);
         for (session, errors) in objective.sessions().iter().zip(&before.sessions) {
             session.check_count(errors).and_then(|()| session.check_truth()).map_err(|source| session.error(source))?;
@@ -99,18 +99,18 @@ impl<'t> Tuner<'t> {
         let iteration_time = descended.div_f64(iterations.max(1) as f64);
         let variances = self.widen(&mut table, progress)?;
         let after = self.objective.of_table(&table);
-        let record = TuningKeys {
+        let record = TuningToml {
             sessions: self.objective.sessions().iter().map(|session| session.path.display().to_string()).collect(),
             iterations,
-            kept,
-            stopped,
-            variances,
+            best_iteration: kept,
+            stop_reason: stopped,
+            covariance_inflation: variances,
             drift,
             observer: serde::de::IgnoredAny,
             before: pooled(&self.before, |session| &session.training).keys(),
             after: pooled(&after, |session| &session.training).keys(),
-            held_back_before: pooled(&self.before, |session| &session.held_back).keys(),
-            held_back_after: pooled(&after, |session| &session.held_back).keys(),
+            validation_before: pooled(&self.before, |session| &session.held_back).keys(),
+            validation_after: pooled(&after, |session| &session.held_back).keys(),
         };
         Ok(Tuning { table: ArmFile { tuning: Some(record.clone()), ..table }, record, iteration_time })
     }
@@ -118,12 +118,12 @@ impl<'t> Tuner<'t> {
     /// The table with the best bias filter that is no worse on what is held back, which the sessions are measured with.
     fn tune_bias_filter(
         &mut self,
-        start: &DriftKeys,
+        start: &DriftToml,
         progress: &mut dyn Progress,
         is_interrupted: impl Fn() -> bool,
     ) -> Tuned {
         let mut table = self.table.file.clone();
-        let (mut runs, mut stopped) = (0, Stopped::Converged);
+        let (mut runs, mut stopped) = (0, StopReason::Converged);
         let finds = search(self.before.clone(), |place| {
             table.drift = Some(filter_at(start, place));
             self.objective.measure(&table);
@@ -131,14 +131,14 @@ impl<'t> Tuner<'t> {
             runs += 1;
             progress.complete(&format!("tuning the bias filter: {}", summary(&found)), (runs, MAX_RUNS as u64));
             if is_interrupted() {
-                stopped = Stopped::Interrupted;
+                stopped = StopReason::Interrupted;
                 return None;
             }
             Some(found)
         });
         let kept = finds.iter().rev().find(|find| find.found.held_back_loss <= self.before.held_back_loss);
         let tuned = kept.map_or_else(|| start.clone(), |kept| filter_at(start, &kept.place));
-        let record = DriftTuningKeys {
+        let record = DriftTuningToml {
             runs,
             rate_deg_per_s: [start.rate_deg_per_s, tuned.rate_deg_per_s],
             rate_random_walk_deg_per_s_sqrt_s: [
@@ -212,12 +212,12 @@ impl<'t> Tuner<'t> {
 struct Tuned {
     table: ArmFile,
     /// Of the search.
-    drift: Option<DriftTuningKeys>,
+    drift: Option<DriftTuningToml>,
     /// Of the descent.
     iterations: u64,
     /// The iteration that the table's filters are of.
     kept: u64,
-    stopped: Stopped,
+    stopped: StopReason,
 }
 
 /// The errors on the training part, for people.

@@ -76,8 +76,8 @@ impl Objective {
             return self.pool(fused);
         }
         self.evaluate(|rate_hz| {
-            let baked = table.bake::<Dual>(rate_hz).expect("it is a table");
-            let segments = baked.config().segments.iter();
+            let compiled = table.compile::<Dual>(rate_hz).expect("it is a table");
+            let segments = compiled.config().segments.iter();
             segments.map(|segment| [[segment.orient; PARAMETERS], [segment.coord; PARAMETERS]]).collect()
         })
     }

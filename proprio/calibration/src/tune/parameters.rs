@@ -1,6 +1,6 @@
 //! The parameters of one filter, and the coordinates in which descent is free.
 
-use calibration_tables::{H_RANGE, NoiseKeys};
+use calibration_tables::{H_RANGE, NoiseToml};
 use estimator_core::{COVARIANCE_LIMIT, KalmanParams, Scalar};
 
 use super::Dual;
@@ -40,7 +40,7 @@ impl Ranges {
     }
 
     /// Where a table's parameters lie; those out of range at its end.
-    pub fn place(&self, keys: &NoiseKeys) -> Place {
+    pub fn place(&self, keys: &NoiseToml) -> Place {
         let values = [keys.r_imu / keys.r_bend, keys.q / (keys.r_imu + keys.r_bend), keys.h_imu, keys.h_bend];
         each(|k| {
             let [lo, hi] = self.0[k];
@@ -50,11 +50,11 @@ impl Ranges {
     }
 
     /// The parameters at a place as they stand in a table, beside the R_bend that it has.
-    pub fn keys(&self, place: &Place, r_bend: f64) -> NoiseKeys {
+    pub fn keys(&self, place: &Place, r_bend: f64) -> NoiseToml {
         let [(ratio, _), (q, _), (h_imu, _), (h_bend, _)] = each(|k| self.value(k, place[k]));
         let r_bend = r_bend.clamp(R_BEND[0], R_BEND[1]);
         let r_imu = ratio * r_bend;
-        NoiseKeys { q: q * (r_imu + r_bend), r_imu, r_bend, h_imu, h_bend }
+        NoiseToml { q: q * (r_imu + r_bend), r_imu, r_bend, h_imu, h_bend }
     }
 
     /// The filter's parameters at a place and sample rate, as many times as there are coordinates: each time with the
@@ -66,7 +66,7 @@ impl Ranges {
                 let (value, slope) = self.value(k, place[k]);
                 Dual::new(value, if k == direction { slope } else { 0.0 })
             });
-            // As a table is baked: ratios to the larger R, and Q a sample.
+            // As a table is compiled: ratios to the larger R, and Q a sample.
             let larger = if ratio > one { ratio } else { one };
             let q = q * (ratio + one) / (larger * Dual::from_f64(rate_hz));
             let limit = Dual::from_f64(COVARIANCE_LIMIT);

@@ -6,7 +6,7 @@
 use std::f64::consts::LN_10;
 use std::ops::RangeInclusive;
 
-use calibration_tables::DriftKeys;
+use calibration_tables::DriftToml;
 
 use super::objective::Evaluation;
 
@@ -80,10 +80,10 @@ fn neighbours(place: Place, step: i32) -> impl Iterator<Item = Place> {
 }
 
 /// The bias filter at a place as seen from `start`.
-pub(super) fn filter_at(start: &DriftKeys, place: &Place) -> DriftKeys {
+pub(super) fn filter_at(start: &DriftToml, place: &Place) -> DriftToml {
     let [rate, rate_walk, angle_walk, offset, time] =
         place.map(|steps| libm::pow(10.0, f64::from(steps) / f64::from(DECADE)));
-    DriftKeys {
+    DriftToml {
         rate_deg_per_s: within(start.rate_deg_per_s * rate, &(1e-4..=0.2)),
         rate_random_walk_deg_per_s_sqrt_s: within(start.rate_random_walk_deg_per_s_sqrt_s * rate_walk, &(1e-5..=0.01)),
         angle_random_walk_deg_per_sqrt_s: within(start.angle_random_walk_deg_per_sqrt_s * angle_walk, &(0.0..=1.0)),

@@ -93,8 +93,8 @@ impl Training {
     pub fn read(session: &Path, part: Part, table: &NamedTable, progress: &mut dyn Progress) -> Result<Self, Error> {
         let mut reader = SessionReader::open(session, &Needs { truth: true, ..table.needs()? })?;
         let rate_hz = reader.rate_hz(table.file.rate_hz);
-        let baked = table.bake::<f64>(rate_hz)?;
-        let segments = baked.config().segments;
+        let compiled = table.compile::<f64>(rate_hz)?;
+        let segments = compiled.config().segments;
 
         let work = format!("reading {}", session.display());
         let (mut samples, mut measured, mut starts) = (Vec::new(), Vec::new(), Vec::new());
@@ -127,9 +127,9 @@ impl Training {
     /// Runs the estimator on all samples. With the bias filter, which bypasses the Kalman filters, it computes the errors of
     /// the fused shape; with the anchor, the inputs of the Kalman filters, which do not depend on their parameters.
     pub fn measure(&mut self, table: &ArmFile) {
-        let baked = table.bake::<f64>(self.rate_hz).expect("it is a table");
-        let baked = baked.config();
-        let mut estimator: Box<HostEstimator<f64>> = Box::new(Estimator::new(&baked).expect("the file was checked"));
+        let compiled = table.compile::<f64>(self.rate_hz).expect("it is a table");
+        let compiled = compiled.config();
+        let mut estimator: Box<HostEstimator<f64>> = Box::new(Estimator::new(&compiled).expect("the file was checked"));
         let seen = self.seen();
         self.fused = table.bias_filter().map(|_| SessionErrors::default());
         let rows = self.measured.chunks_exact_mut(self.segments).zip(&self.samples).zip(&self.starts);
@@ -146,7 +146,7 @@ impl Training {
             let estimate = estimator.update_full(sample);
             for (measured, segment) in measured.iter_mut().zip(&estimate.segments) {
                 // Without whole turns, as the filters take them.
-                let thetas = [segment.imu_c, segment.bend].map(|link| link.map(|link| link.theta.rest));
+                let thetas = [segment.imu_c, segment.bend].map(|link| link.map(|link| link.theta.remainder));
                 [measured.imu_c, measured.bend] = thetas;
             }
         }

@@ -18,7 +18,7 @@ pub fn session(seconds: u32, rate_hz: u32) -> PathBuf {
     if !path.exists() {
         let file = OutputFile::create(&path, &[]).expect("a session file");
         let mut writer = SessionWriter::new(file, ImuColumns::Deg).expect("room on the disk");
-        let run = Simulation::new(Scenario::One, 1, f64::from(seconds), f64::from(rate_hz)).expect("a valid run");
+        let run = Simulation::new(Scenario::FreeSwing, 1, f64::from(seconds), f64::from(rate_hz)).expect("a valid run");
         for sample in run {
             writer.write(&sample).expect("room on the disk");
         }

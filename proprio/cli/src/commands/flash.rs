@@ -15,7 +15,7 @@ use crate::terminal;
 const IMAGE: &str = "firmware.bin";
 
 pub fn run(args: &Flash) -> Result<(), Error> {
-    let checksum = NamedTable::load(&args.table)?.bake::<Q>(TICK_HZ)?.checksum();
+    let checksum = NamedTable::load(&args.table)?.compile::<Q>(TICK_HZ)?.checksum();
     let port = args.port.clone().map_or_else(programming_port, Ok).map_err(FlashError::Port)?;
     if args.dry_run {
         let image = std::env::temp_dir().join(IMAGE);

@@ -13,7 +13,7 @@ use crate::error::Error;
 /// The table that was given, a link to the board that was, and all that it will say.
 pub fn open(args: &LinkArgs) -> Result<(Option<NamedTable<'_>>, Link, Subscription), Error> {
     let table = args.table.as_deref().map(NamedTable::load).transpose()?;
-    let checksum = table.as_ref().map(|table| Ok::<_, Error>(table.bake::<Q>(TICK_HZ)?.checksum())).transpose()?;
+    let checksum = table.as_ref().map(|table| Ok::<_, Error>(table.compile::<Q>(TICK_HZ)?.checksum())).transpose()?;
     let source: Box<dyn Source> = if args.emulated {
         Box::new(VirtualDue { firmware: args.firmware.clone(), scenario: args.scenario, seed: args.seed })
     } else {

@@ -68,9 +68,9 @@ impl From<MotionName> for Motion {
 impl From<ScenarioName> for Scenario {
     fn from(name: ScenarioName) -> Self {
         match name {
-            ScenarioName::One => Self::One,
-            ScenarioName::Two => Self::Two,
-            ScenarioName::Three => Self::Three,
+            ScenarioName::One => Self::FreeSwing,
+            ScenarioName::Two => Self::Push,
+            ScenarioName::Three => Self::Obstacle,
             ScenarioName::Sweep => Self::Sweep,
         }
     }

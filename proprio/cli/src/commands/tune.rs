@@ -3,7 +3,7 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use calibration_tables::{Stopped, TuningKeys};
+use calibration_tables::{StopReason, TuningToml};
 use proprio_calibration::tune::{Tuner, Tuning};
 use proprio_session::{LAST_LINE, NamedTable, OutputFile};
 
@@ -34,17 +34,19 @@ pub fn run(args: &Tune) -> Result<(), Error> {
 }
 
 /// What is not as it should be, although the table is written.
-fn warnings(record: &TuningKeys) -> impl Iterator<Item = String> {
-    let TuningKeys { iterations, kept, stopped, .. } = *record;
-    let early = match stopped {
-        Stopped::Converged => None,
-        Stopped::Interrupted => Some(format!("interrupted after {iterations} iterations, before the RMSE converged")),
+fn warnings(record: &TuningToml) -> impl Iterator<Item = String> {
+    let TuningToml { iterations, best_iteration, stop_reason, .. } = *record;
+    let early = match stop_reason {
+        StopReason::Converged => None,
+        StopReason::Interrupted => {
+            Some(format!("interrupted after {iterations} iterations, before the RMSE converged"))
+        }
     };
-    let noise = match kept {
-        _ if kept == iterations => None,
+    let noise = match best_iteration {
+        _ if best_iteration == iterations => None,
         0 => Some("what is held back only gets worse: the filters stay as they were; take longer sessions".to_owned()),
         _ => Some(format!(
-            "what is held back gets worse in the end: the table has iteration {kept}, the best for it; take longer sessions"
+            "what is held back gets worse in the end: the table has iteration {best_iteration}, the best for it; take longer sessions"
         )),
     };
     early.into_iter().chain(noise)

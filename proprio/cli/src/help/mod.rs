@@ -5,6 +5,7 @@ mod flash;
 mod link;
 mod program;
 mod session;
+mod table;
 
 /// An error with a remedy.
 pub trait Help {

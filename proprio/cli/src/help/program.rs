@@ -27,7 +27,7 @@ impl Help for proprio_session::Error {
     fn help(&self) -> String {
         let help = match self {
             Self::Session(error) => return error.problem.help(),
-            Self::Table { source, .. } => source.remedy(),
+            Self::Table { source, .. } => return source.help(),
             Self::Output { .. } => "choose a folder that exists, can be written to and has room",
             Self::Overwrite(_) | Self::Exists(_) => "give the output another name",
             Self::OutputKind(_) => "give the output one of these endings",

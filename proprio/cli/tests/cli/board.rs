@@ -29,11 +29,12 @@ impl SyntheticBoard {
     /// The boot number of a board that then runs for some seconds.
     pub fn new(boot: u32, seconds: f64) -> Self {
         let file = ArmFile::load(table().as_ref()).expect("the reference table");
-        let baked = Box::leak(Box::new(file.bake::<Q>(TICK_HZ).expect("it bakes")));
-        let checksum = baked.checksum();
-        let mut arm = Arm::new(Box::leak(Box::new(baked.config())));
+        let compiled = Box::leak(Box::new(file.compile::<Q>(TICK_HZ).expect("it is a table")));
+        let checksum = compiled.checksum();
+        let mut arm = Arm::new(Box::leak(Box::new(compiled.config())));
         arm.start();
-        let simulation = Simulation::new(Scenario::One, 77 + u64::from(boot), seconds, TICK_HZ).expect("a valid run");
+        let simulation =
+            Simulation::new(Scenario::FreeSwing, 77 + u64::from(boot), seconds, TICK_HZ).expect("a valid run");
         Self { arm, encoder: Encoder::new(), simulation, boot, tick: 0, table: checksum }
     }
 

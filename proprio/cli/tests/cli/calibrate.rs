@@ -193,7 +193,7 @@ fn what_changes_between_two_sweeps_widens_the_offset() {
     assert_eq!(offset_deg(&sweep()).to_bits(), 0.5_f64.to_bits());
     assert!((0.7..10.0).contains(&offset_deg(&other)), "{}", offset_deg(&other));
     let of_one = Calibration::of(&sweep()).table().drift.expect("calibrate writes it");
-    assert_eq!(of_one, calibration_tables::DriftKeys::kalman());
+    assert_eq!(of_one, calibration_tables::DriftToml::kalman());
 }
 
 #[test]

@@ -126,7 +126,7 @@ fn the_head_names_table_checksum_sessions_samples_and_version() {
     let page = page_of(&two_sessions(), &["one.csv", "two.csv"], table());
     let header = between(&page, "<header>", "</header>")[0];
     let file = calibration_tables::ArmFile::load(table().as_ref()).expect("the reference table");
-    let checksum = file.bake::<estimator_core::Q>(10.0).expect("a table").checksum();
+    let checksum = file.compile::<estimator_core::Q>(10.0).expect("a table").checksum();
     for expected in [
         table(),
         &format!("{checksum:08x}"),

@@ -1,6 +1,6 @@
 //! A board that restarted inside a recording: headings have a new zero from there on, and nothing is worse for it.
 
-use calibration_tables::{ArmFile, SegmentKeys};
+use calibration_tables::{ArmFile, SegmentToml};
 
 use super::common::{Calibration, Csv, Folder, anchored, arm, figure, json, simulate, sweep};
 use super::recordings::Recording;
@@ -73,7 +73,7 @@ fn sweeps_one_after_the_other_with_a_restart_between_have_the_errors_of_both() {
     }));
     let both = calibrated_with_anchor(&restarted(both, &[6000]));
     for (i, found) in both.segments.iter().enumerate() {
-        let variances = |segment: &SegmentKeys| {
+        let variances = |segment: &SegmentToml| {
             let (orient, coord) = (segment.orient.as_ref().expect("stated"), segment.coord.as_ref().expect("stated"));
             [orient.r_imu, orient.r_bend, coord.r_imu, coord.r_bend]
         };

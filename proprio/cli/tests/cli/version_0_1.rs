@@ -60,14 +60,14 @@ fn an_observer_recording_replayed_with_an_anchor_table_differs() {
 }
 
 #[test]
-fn tables_load_and_bake() {
+fn tables_load_and_compile() {
     let load = |name: &str| ArmFile::load(&here("tables").join(name)).unwrap_or_else(|error| panic!("{name}: {error}"));
     let (observer, anchor) = (load("version-0.1.toml"), load("version-0.1-anchor.toml"));
     assert!(observer.bias_filter().is_some() && anchor.bias_filter().is_none());
     assert!(anchor.segments.iter().all(|segment| segment.hysteresis.len() == 3));
     for (file, runs_bias_filter) in [(observer, true), (anchor, false)] {
-        let baked = file.bake::<Q>(100.0).expect("it is a table");
-        let config = baked.config();
+        let compiled = file.compile::<Q>(100.0).expect("it is a table");
+        let config = compiled.config();
         assert_eq!(config.bias_filter.is_some(), runs_bias_filter);
         assert_eq!(config.segments.iter().map(|segment| segment.coupled_to.is_some()).filter(|is| *is).count(), 3);
         assert!(config.contact.is_some() && config.uncertainty.is_some());

@@ -248,7 +248,7 @@ fn drift_and_innovations_of_a_live_board_are_those_of_its_recording() {
     line.board().restart(1);
     let columns = page.socket(Some(&page.origin())).expect("its own page").next("arm")["columns"].clone();
     page.post("/record", r#"{"on":true}"#);
-    let simulation = Simulation::new(Scenario::Two, 7, 10.0, 100.0).expect("a valid run");
+    let simulation = Simulation::new(Scenario::Push, 7, 10.0, 100.0).expect("a valid run");
     for (tick, read) in (0..).zip(simulation) {
         let time_us = u64::from(tick) * 10_000;
         let said = Sample { tick, time_us, tare: 0, bend: read.counts, imu: read.quaternions };

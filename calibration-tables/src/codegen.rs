@@ -1,14 +1,14 @@
-//! A table as Rust source, for a firmware that holds it as a constant, and the checksum by which board and host verify that
-//! they have the same table.
+//! Rust source of a table, for a firmware that holds it as a constant, and the checksum by which board and host compare
+//! their tables.
 
 use estimator_core::Q;
 
-use crate::bake::Baked;
+use crate::compile::CompiledTable;
 
 /// CRC-32 as in zip and Ethernet.
 const CRC_32: crc::Crc<u32> = crc::Crc::<u32>::new(&crc::CRC_32_ISO_HDLC);
 
-/// Names that the source uses.
+/// Imports of the generated source.
 const IMPORTS: &str = "#[allow(unused_imports)] // A table uses some of them.
 use estimator_core::BendMap::{Curve, Quadratic};
 #[allow(unused_imports)]
@@ -20,18 +20,19 @@ use estimator_core::{
 };
 ";
 
-impl Baked<Q> {
+impl CompiledTable<Q> {
     /// Rust source of `SEGMENTS` and `TABLE`, bit for bit these parameters.
     ///
-    /// The configuration's `Debug` form is an expression of Rust but for the two number types, whose constructors are put in.
-    /// A firmware's build script writes it to a file, which the firmware includes:
+    /// The configuration's `Debug` form is a Rust expression once the constructors of the two number types are
+    /// inserted. A firmware's build script writes it to a file, which the firmware includes (see the [crate's
+    /// docs](crate)):
     ///
     /// ```
     /// use calibration_tables::ArmFile;
     /// use estimator_core::Q;
     ///
     /// let file = ArmFile::parse(include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/planar-6.toml")))?;
-    /// let source = file.bake::<Q>(100.0)?.to_rust();
+    /// let source = file.compile::<Q>(100.0)?.to_rust();
     /// assert!(source.contains("pub static TABLE: ArmConfig<'static, Q>"));
     /// # Ok::<(), calibration_tables::FileError>(())
     /// ```
@@ -54,9 +55,10 @@ impl Baked<Q> {
         )
     }
 
-    /// CRC-32 of the parameters: the same for two tables that make the same estimates.
+    /// CRC-32 of the parameters, equal for tables with the same parameters.
     ///
-    /// It is that of [`to_rust`](Self::to_rust)'s text, which has every bit of them in one fixed form.
+    /// It is computed over the text of [`to_rust`](Self::to_rust), which contains every bit of the parameters in a
+    /// fixed form.
     #[must_use]
     pub fn checksum(&self) -> u32 {
         CRC_32.checksum(self.to_rust().as_bytes())

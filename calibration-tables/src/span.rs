@@ -1,4 +1,4 @@
-//! Where in a file's text something stands, for messages.
+//! Line and column of bytes and keys in a file's text, for error messages.
 
 use toml_edit::{Document, Item};
 
@@ -9,7 +9,7 @@ pub(crate) fn line_and_column(text: &str, byte: usize) -> (usize, usize) {
     (before.matches('\n').count() + 1, before[line_start..].chars().count() + 1)
 }
 
-/// Line of a key such as `segment[2].bend[1].c0`, counted from 1 as in the key; that of the innermost part that is there.
+/// Line of a key such as `segment[2].bend[1].c0`, counted from 1 as in the key; that of the innermost part in the file.
 pub(crate) fn line_of(text: &str, key: &str) -> Option<usize> {
     let document = Document::parse(text).ok()?;
     let mut item: &Item = document.as_item();

@@ -8,9 +8,9 @@ use estimator_core::{
 
 use super::common::{DESCRIPTION, TABLE, edited, parse};
 
-/// The first segment, baked in floats.
+/// The first segment, compiled in floats.
 fn first(text: &str, rate_hz: f64) -> SegmentConfig<f64> {
-    parse(text).bake::<f64>(rate_hz).expect("it is a table").config().segments[0]
+    parse(text).compile::<f64>(rate_hz).expect("it is a table").config().segments[0]
 }
 
 fn near(found: f64, expected: f64) {
@@ -19,23 +19,22 @@ fn near(found: f64, expected: f64) {
 }
 
 #[test]
-fn an_arm_description_refuses_to_bake_and_names_the_segment() {
-    let error = parse(DESCRIPTION).bake::<Q>(10.0).expect_err("it is no table");
+fn an_arm_description_is_not_compiled_and_names_the_segment() {
+    let error = parse(DESCRIPTION).compile::<Q>(10.0).expect_err("it is no table");
     assert!(matches!(error, FileError::NotCalibrated(1)), "{error}");
-    assert!(error.remedy().contains("proprio calibrate"), "{}", error.remedy());
 }
 
 #[test]
 fn a_table_of_which_one_segment_is_missing_names_that_segment() {
-    let error = parse(&edited("bend = []\n", "")).bake::<Q>(10.0).expect_err("it is no table");
+    let error = parse(&edited("bend = []\n", "")).compile::<Q>(10.0).expect_err("it is no table");
     assert!(matches!(error, FileError::NotCalibrated(2)), "{error}");
 }
 
 #[test]
-fn an_arm_without_bend_sensors_bakes() {
+fn an_arm_without_bend_sensors_is_a_table() {
     let file = parse(&format!("{DESCRIPTION}bend = []\n"));
-    let baked = file.bake::<Q>(10.0).expect("it is a table");
-    let table = baked.config();
+    let compiled = file.compile::<Q>(10.0).expect("it is a table");
+    let table = compiled.config();
     assert_eq!(table.segments[0].bend, [None; SENSORS_PER_SEGMENT]);
     assert!(Estimator::<Q, 1, 100>::new(&table).is_ok());
 }
@@ -46,13 +45,14 @@ fn geometry_is_in_metres() {
     near(segment.length, 0.080);
     near(segment.offset, 0.017);
     assert_eq!(segment.offset_at, OffsetAt::End);
-    assert_eq!(parse(TABLE).bake::<f64>(10.0).expect("a table").config().segments[1].offset_at, OffsetAt::Start);
+    assert_eq!(parse(TABLE).compile::<f64>(10.0).expect("a table").config().segments[1].offset_at, OffsetAt::Start);
 }
 
 #[test]
-fn reference_headings_are_baked() {
-    let baked = parse(TABLE).bake::<f64>(10.0).expect("a table");
-    let found: Vec<f64> = baked.config().segments.iter().map(|segment| segment.reference.rad().to_degrees()).collect();
+fn reference_headings_are_compiled() {
+    let compiled = parse(TABLE).compile::<f64>(10.0).expect("a table");
+    let found: Vec<f64> =
+        compiled.config().segments.iter().map(|segment| segment.reference.rad().to_degrees()).collect();
     // Turns are whole units of 2⁻³² turns.
     assert!((found[0] - 5.0).abs() < 1e-7 && (found[1] + 5.0).abs() < 1e-7, "{found:?}");
 }
@@ -65,7 +65,7 @@ fn the_reference_pose_is_straight_where_none_is_given() {
 
 /// θ = c2 V² + c1 V + c0, V = counts · 3.3 / 4095, within the sensor's voltages.
 #[test]
-fn the_baked_map_is_that_of_the_file() {
+fn the_compiled_map_is_that_of_the_file() {
     let sensor = first(TABLE, 10.0).bend[0].expect("the segment has a sensor");
     for counts in [500_u16, 1000, 2000, 3000, 3200] {
         let volts = f64::from(counts) * 3.3 / 4095.0;
@@ -75,7 +75,7 @@ fn the_baked_map_is_that_of_the_file() {
 }
 
 #[test]
-fn a_sensor_of_which_only_the_map_is_known_bakes_with_defaults() {
+fn a_sensor_of_which_only_the_map_is_known_compiles_with_defaults() {
     let text = format!("{DESCRIPTION}bend = [{{ c0 = -1.5, c1 = 0.8, c2 = 0.1 }}]\n");
     let segment = first(&text, 10.0);
     let sensor = segment.bend[0].expect("the segment has a sensor");
@@ -94,7 +94,7 @@ fn a_sensor_of_which_only_the_map_is_known_bakes_with_defaults() {
 
 #[test]
 fn the_tare_takes_the_samples_of_its_seconds() {
-    let samples = |text: &str, rate_hz| parse(text).bake::<Q>(rate_hz).expect("a table").config().tare_samples;
+    let samples = |text: &str, rate_hz| parse(text).compile::<Q>(rate_hz).expect("a table").config().tare_samples;
     assert_eq!((samples(TABLE, 10.0), samples(TABLE, 100.0)), (10, 100));
     let long = edited("seconds = 1.0", "seconds = 2.5");
     assert_eq!((samples(&long, 10.0), samples(&long, 100.0)), (25, 250));
@@ -105,7 +105,7 @@ fn the_tare_takes_the_samples_of_its_seconds() {
 #[test]
 fn the_anchor_is_averaged_down_to_its_own_rate() {
     let rates = |rate_hz| {
-        let anchor = parse(TABLE).bake::<Q>(rate_hz).expect("a table").config().anchor;
+        let anchor = parse(TABLE).compile::<Q>(rate_hz).expect("a table").config().anchor;
         (anchor.rate_millihertz, anchor.sample_rate_millihertz)
     };
     assert_eq!((rates(10.0), rates(100.0)), ((10_000, 10_000), (10_000, 100_000)));
@@ -114,7 +114,7 @@ fn the_anchor_is_averaged_down_to_its_own_rate() {
 #[test]
 fn window_and_threshold_are_those_of_the_file_at_any_rate() {
     for rate_hz in [10.0, 100.0] {
-        let anchor = parse(TABLE).bake::<Q>(rate_hz).expect("a table").config().anchor;
+        let anchor = parse(TABLE).compile::<Q>(rate_hz).expect("a table").config().anchor;
         assert_eq!(anchor.window, 100);
         // Units of 2⁻³² turns.
         assert!((anchor.threshold.rad().to_degrees() - 0.5).abs() < 1e-7);
@@ -142,7 +142,7 @@ fn measurement_noise_does_not_depend_on_the_rate() {
     near(hundred.orient.r_bend, ten.orient.r_bend);
 }
 
-/// On the ratios alone the gains depend.
+/// The gains depend on the ratios alone.
 #[test]
 fn covariances_keep_their_ratios() {
     let noise = first(&slow(), 10.0).orient;
@@ -151,10 +151,10 @@ fn covariances_keep_their_ratios() {
 }
 
 #[test]
-fn fixed_point_and_floats_bake_alike() {
+fn fixed_point_and_floats_compile_to_the_same_values() {
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("planar-6.toml");
     let file = ArmFile::load(&path).expect("the reference table is committed");
-    let (fixed, float) = (file.bake::<Q>(100.0).expect("a table"), file.bake::<f64>(100.0).expect("a table"));
+    let (fixed, float) = (file.compile::<Q>(100.0).expect("a table"), file.compile::<f64>(100.0).expect("a table"));
     for (fixed, float) in fixed.config().segments.iter().zip(float.config().segments) {
         // One unit of fixed point is 2⁻²⁶ at the most.
         let same = |fixed: Q, float: f64| assert!((fixed.to_f64() - float).abs() < 2e-8, "{float}");
@@ -181,8 +181,8 @@ fn fixed_point_and_floats_bake_alike() {
 fn the_reference_table_runs() {
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("planar-6.toml");
     let file = ArmFile::load(&path).expect("the reference table is committed");
-    let baked = file.bake::<Q>(100.0).expect("a table");
-    let table = baked.config();
+    let compiled = file.compile::<Q>(100.0).expect("a table");
+    let table = compiled.config();
     let mut estimator = Estimator::<Q, 6, 100>::new(&table).expect("it has six segments");
     let sample = |k: u64| Sample {
         bend: [[Some(2300); SENSORS_PER_SEGMENT]; 6],
@@ -199,27 +199,27 @@ fn the_reference_table_runs() {
 fn the_checksum_is_that_of_the_parameters_and_not_of_the_file() {
     let table = parse(TABLE);
     let spaced = parse(&TABLE.replace(" = ", "  =  "));
-    assert_eq!(table.bake::<Q>(100.0).unwrap().checksum(), spaced.bake::<Q>(100.0).unwrap().checksum());
+    assert_eq!(table.compile::<Q>(100.0).unwrap().checksum(), spaced.compile::<Q>(100.0).unwrap().checksum());
 }
 
 #[test]
 fn the_checksum_tells_the_smallest_change_of_a_parameter() {
-    let whole = parse(TABLE).bake::<Q>(100.0).unwrap().checksum();
-    let other_rate = parse(TABLE).bake::<Q>(50.0).unwrap().checksum();
+    let whole = parse(TABLE).compile::<Q>(100.0).unwrap().checksum();
+    let other_rate = parse(TABLE).compile::<Q>(50.0).unwrap().checksum();
     // Half a micrometre: 33 steps of fixed point.
-    let longer = parse(&edited("length_mm = 80.0", "length_mm = 80.0005")).bake::<Q>(100.0).unwrap().checksum();
+    let longer = parse(&edited("length_mm = 80.0", "length_mm = 80.0005")).compile::<Q>(100.0).unwrap().checksum();
     assert!(whole != other_rate && whole != longer && other_rate != longer);
 }
 
 /// The bias filter of the table with `[drift]` of these lines.
 fn bias_filter(drift: &str, rate_hz: f64) -> Option<BiasFilterConfig> {
     let text = edited("[[segment]]", &format!("[drift]\n{drift}\n[[segment]]"));
-    parse(&text).bake::<Q>(rate_hz).expect("a table").config().bias_filter
+    parse(&text).compile::<Q>(rate_hz).expect("a table").config().bias_filter
 }
 
 #[test]
 fn drift_is_left_to_the_anchor_where_nothing_else_is_said() {
-    assert_eq!(parse(TABLE).bake::<Q>(10.0).expect("a table").config().bias_filter, None);
+    assert_eq!(parse(TABLE).compile::<Q>(10.0).expect("a table").config().bias_filter, None);
     assert_eq!(bias_filter("kind = \"anchor\"", 10.0), None);
 }
 
