@@ -2,7 +2,7 @@
 //!
 //! The board sends [`Message`]s, the host sends [`Request`]s. Either way an [`Encoder`] makes a frame of one, and a
 //! [`Decoder`] finds frames in whatever bytes arrive, checks them and counts what is missing. The crate is `no_std`,
-//! allocates nothing and does no input or output itself. `docs/PROTOCOL.md` in the repository has every byte.
+//! allocates nothing and does no input or output itself. `docs/reference/protocol.md` in the repository has every byte.
 //!
 //! | file | what it is for |
 //! |---|---|
@@ -60,5 +60,5 @@ pub use schema::{EARLIER_SCHEMAS, SCHEMA, is_same_layout};
 
 /// The page's example is true.
 #[cfg(doctest)]
-#[doc = include_str!("../../docs/PROTOCOL.md")]
+#[doc = include_str!("../../docs/reference/protocol.md")]
 struct ProtocolPage;

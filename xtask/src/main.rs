@@ -3,7 +3,9 @@
 mod accept;
 mod bench;
 mod board;
+mod commands;
 mod demo;
+mod pictures;
 mod results;
 mod tool;
 
@@ -18,7 +20,9 @@ fn main() -> ExitCode {
         Some("verify") => board::verify(),
         Some("bench") => bench::run(),
         Some("results") => results::run(),
-        _ => Err("usage: cargo xtask demo | verify | bench | results | accept".to_owned()),
+        Some("commands") => commands::run(),
+        Some("pictures") => pictures::run(),
+        _ => Err("usage: cargo xtask demo | verify | bench | results | commands | pictures | accept".to_owned()),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

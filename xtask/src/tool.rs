@@ -17,6 +17,11 @@ pub fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().map(Path::to_owned).unwrap_or_default()
 }
 
+/// The folder that cargo builds in.
+pub fn target() -> PathBuf {
+    env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), |path| root().join(path))
+}
+
 impl Tool {
     /// Builds the tool, and makes its folder `name` below `target`.
     pub fn build(name: &str) -> Result<Self, String> {
@@ -26,7 +31,7 @@ impl Tool {
 
     /// The tool as it was built, with its folder `name` below `target`.
     pub fn built(name: &str) -> Result<Self, String> {
-        let target = env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), |path| root().join(path));
+        let target = target();
         let tool = Self { programs: target.join("debug"), folder: target.join(name) };
         fs::create_dir_all(&tool.folder).map_err(|error| format!("{}: {error}", tool.folder.display()))?;
         Ok(tool)

@@ -11,6 +11,8 @@
 
 mod args;
 mod commands;
+#[cfg(test)]
+mod commands_page;
 mod error;
 pub mod flash;
 mod help;

@@ -200,7 +200,7 @@ const SUMMARY: &str = "\
 
 Tip RMSE in mm. Mean and worst session of fusion, mean and lowest share of true tips inside the 95 % ellipse, mean NEES of the tip
 (for each coordinate: 1 is consistent, above 1 overconfident), mean share of time in which the estimator reports a condition although
-nothing is wrong; the same of the estimates that [the smoother](METHOD.md#smoothing) makes of the whole recording; the paper's method (quadratic maps, moving-average anchor, KF_orient and KF_coord) on the same sweep, and the better
+nothing is wrong; the same of the estimates that [the smoother](smoothing.md) makes of the whole recording; the paper's method (quadratic maps, moving-average anchor, KF_orient and KF_coord) on the same sweep, and the better
 of bend sensors and raw IMUs in each session. 15 min a session.
 ";
 

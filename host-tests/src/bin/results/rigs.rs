@@ -145,6 +145,6 @@ const RIGS: &str = "\
 
 Two programs that share nothing with `rig-twin`: four elastic rods of 60 hinges with friction, post and stick, whose strips are nonlinear,
 hysteretic, creep and drift with temperature, and two arms by formula. As calibrated on their sweeps. Tip RMSE of fusion in mm (share of
-true tips inside the 95 % ellipse); then that of the [smoothed](METHOD.md#smoothing) estimates, the paper's method on the same sweep and the better of bend sensors and raw IMUs. No
+true tips inside the 95 % ellipse); then of the [smoothed](smoothing.md) estimates, of the paper's method on the same sweep, and of the better of bend sensors and raw IMUs. No
 constant was chosen on them.
 ";

@@ -1,7 +1,7 @@
 //! Smoothing: estimates of a recorded session from all of its readings, also those after each row.
 //!
 //! The model is the [bias filter's](estimator_core::BiasState). A fixed-interval smoother in the modified Bryson–Frazier form
-//! (Bierman 1973) runs its operations backwards, in floats, and corrects the filter's biases at every row; `docs/METHOD.md`
+//! (Bierman 1973) runs its operations backwards, in floats, and corrects the filter's biases at every row; `docs/explanation/smoothing.md`
 //! has the equations. A session with several starts of the estimator is smoothed piece by piece.
 //!
 //! The session is read twice. Blocks of 2048 rows are composed into one step back each, so that memory does not hold

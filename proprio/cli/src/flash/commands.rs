@@ -1,4 +1,4 @@
-//! Commands that flash a board, as in docs/FLASHING.md.
+//! Commands that flash a board, as in docs/how-to/flashing.md.
 
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};

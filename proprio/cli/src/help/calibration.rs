@@ -70,7 +70,7 @@ impl Help for AlignmentError {
                 "check that both are of the same run, that they overlap by a minute, and the order of the markers"
             }
             Self::Mirrored { .. } => {
-                "headings are clockwise positive, seen from above; see docs/CALIBRATION.md for the camera's axes"
+                "headings are clockwise positive, seen from above; see docs/tutorials/your-own-arm.md for the camera's axes"
             }
             Self::Ambiguous { .. } => {
                 "the motion repeats itself: move the arm unevenly, or record both from start to end"

@@ -17,7 +17,7 @@ impl Help for FlashError {
             }
             Self::Failed { program, .. } => check(program),
             Self::Temporary(_) => "free disk space, or set TMPDIR to a folder that can be written to",
-            Self::Silent { .. } => "press RESET, then `proprio status`; docs/FLASHING.md, Trouble",
+            Self::Silent { .. } => "press RESET, then `proprio status`; docs/how-to/troubleshooting.md",
             Self::OtherTable { .. } => "check that the probe and the port are of one board, and flash again",
             Self::Other(_) => {
                 "give this release's source with --source, and check that the probe and the port are of one board"
@@ -41,10 +41,10 @@ fn install(program: &str) -> &'static str {
 fn check(program: &str) -> &'static str {
     match program {
         "bossac" => {
-            "close what has the port open; docs/FLASHING.md, Trouble, explains each of its errors. The flash may be \
+            "close what has the port open; docs/how-to/troubleshooting.md explains each of its errors. The flash may be \
              erased; flash again"
         }
-        "probe-rs" => "check the probe's cable and the board's supply; docs/FLASHING.md, Trouble",
+        "probe-rs" => "check the probe's cable and the board's supply; docs/how-to/troubleshooting.md",
         _ => "its message above has the reason; `rustup target add thumbv7m-none-eabi` if the target is missing",
     }
 }

@@ -23,7 +23,7 @@ impl Help for LinkError {
             Self::Thread(_) => "close other programs",
             Self::Ended(_) => "see the messages of the board or its program",
             Self::Silent { .. } => {
-                "check that the firmware is on the board (docs/FLASHING.md) and that this is its programming port"
+                "check that the firmware is on the board (docs/how-to/flashing.md) and that this is its programming port"
             }
             Self::Request(RequestError::Refused(_)) => "remove the reason that the board gives, and try again",
             Self::Request(_) => "try again; `proprio status` shows the state of the board",

@@ -13,7 +13,7 @@ impl Help for SessionProblem {
             Self::NoHeader | Self::NoSamples | Self::NothingWhole => "record the session again, or take another",
             Self::NotText => "save it as CSV in UTF-8",
             Self::MissingColumn(_) => {
-                "take the arm or table of this session, or add the column; names are as in docs/FORMATS.md, between commas"
+                "take the arm or table of this session, or add the column; names are as in docs/reference/files.md, between commas"
             }
             Self::DuplicateColumn(_) => "remove or rename one of them",
             Self::OtherArm { .. } | Self::RecordedSegments(_) => {
@@ -43,7 +43,7 @@ impl Help for SessionProblem {
                 "recover its complete part with `proprio recover`, or take another"
             }
             Self::TooManySegments(_) => "keep it as CSV",
-            Self::NoTruth => "give a session with the camera's truth (docs/FORMATS.md)",
+            Self::NoTruth => "give a session with the camera's truth (docs/reference/files.md)",
             Self::Heading(_) => "write headings from 0 up to a full turn: 360 in _deg, 2π in _rad",
             Self::Backwards { .. } => "sort the rows by time; two sessions in one file must be split",
             Self::PartialQuaternion | Self::NotUnit(_) => {

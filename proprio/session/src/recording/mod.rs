@@ -1,7 +1,7 @@
 //! Recordings: all data that a board has sent, as an [MCAP](https://mcap.dev) file.
 //!
 //! The channel [`RAW`](topics::RAW) holds the received bytes, each message with the time of its arrival; a replay decodes
-//! them again. The other channels are for people and their programs: ROS 2 messages in CDR. `docs/FORMATS.md` lists them.
+//! them again. The other channels are for people and their programs: ROS 2 messages in CDR. `docs/reference/files.md` lists them.
 //!
 //! | file | purpose |
 //! |---|---|
