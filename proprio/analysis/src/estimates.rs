@@ -1,4 +1,4 @@
-//! The estimate CSV: θ and world points of all methods, and of the smoothed shape, a row a sample.
+//! The estimate CSV: θ and world points of all methods, and of the smoothed shape, one row per sample.
 
 use std::io::{self, Write};
 
@@ -8,7 +8,7 @@ use proprio_session::{Error, OutputFile};
 
 use crate::Outcome;
 
-/// Estimates that are being written.
+/// Writer of estimates.
 pub struct EstimateWriter {
     file: OutputFile,
 }
@@ -23,7 +23,7 @@ impl EstimateWriter {
         Ok(Self { file })
     }
 
-    /// Writes one row; the cells of what is not known stay empty.
+    /// Writes one row; cells of unknown values stay empty.
     ///
     /// # Errors
     /// [`Error::Output`].

@@ -1,4 +1,4 @@
-//! What can be typed.
+//! Arguments of the program.
 
 mod link;
 
@@ -10,7 +10,7 @@ use clap_complete::Shell;
 
 pub use link::{Convert, Drive, Flash, LinkArgs, Monitor, Ports, Record, Recover, Status};
 
-/// Colours of help and errors; off where stderr is no terminal or NO_COLOR is set.
+/// Colours of help and errors; off where stderr is not a terminal or NO_COLOR is set.
 pub const STYLES: Styles = Styles::styled();
 
 /// The shape of a soft robot arm from its bend sensors and IMUs.
@@ -26,33 +26,33 @@ pub struct Cli {
 
 #[derive(Debug, Subcommand)]
 pub enum Command {
-    /// Give a session the truth that a camera saw by its own clock
+    /// Add the truth of a camera with its own clock to a session
     Align(Align),
-    /// Make a table of a session with camera truth
+    /// Make a table from sessions with camera truth
     Calibrate(Calibrate),
     /// Tune a table's bias filter, or its Kalman filters, on sessions with truth; Ctrl-C keeps the best so far
     Tune(Tune),
     /// Run sessions through the estimator and compare with truth
     Replay(Replay),
-    /// Make a page of figures of sessions, and the numbers behind them
+    /// Make a page of figures of sessions, and their numbers
     Report(Report),
     /// Record a session of the simulated arm
     Simulate(Simulate),
-    /// Build the firmware with a table, write it onto a board, and hear that it runs
+    /// Build the firmware with a table, flash it and verify that it runs
     Flash(Flash),
-    /// List the serial ports, and which of them a Due is on
+    /// List the serial ports and the Dues on them
     Ports(Ports),
-    /// Say how a board is: versions, sensors, rates, losses
+    /// Show the status of a board: versions, sensors, rates, losses
     Status(Status),
-    /// Record what a board says
+    /// Record a board's data to an MCAP file
     Record(Record),
     /// Drive the arm's pressures, and vent them at the end
     Drive(Drive),
     /// Show a live arm, or a session, on a page in the browser
     Monitor(Monitor),
-    /// Turn a session into CSV, a recording or raw bytes
+    /// Convert a session to CSV, a recording or raw bytes
     Convert(Convert),
-    /// Save what is whole of a recording that was cut
+    /// Recover the complete part of a recording that was cut
     Recover(Recover),
     /// Print a completion script for a shell
     Completions(Completions),
@@ -62,7 +62,7 @@ pub enum Command {
 pub struct Align {
     /// Session without truth, as it was recorded
     pub session: PathBuf,
-    /// What the camera saw: poses of the markers, a row a frame
+    /// Camera's file: poses of the markers, one row per frame
     #[arg(long, value_name = "CAMERA.csv")]
     pub camera: PathBuf,
     /// Arm description, or table
@@ -104,7 +104,7 @@ pub enum MapName {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum HysteresisName {
-    /// Where it lowers the error on held-back data
+    /// For sensors and segments whose held-back error it lowers
     Auto,
     /// Everywhere
     Always,
@@ -136,7 +136,7 @@ pub struct Replay {
     /// Write the estimates of the session: bend angles and world points of all methods
     #[arg(long, value_name = "EST.csv")]
     pub out: Option<PathBuf>,
-    /// Smooth: estimate every sample by the readings after it, too; takes a table with the bias filter
+    /// Smooth: use the readings after each sample, too; needs a table with the bias filter
     #[arg(long)]
     pub smooth: bool,
     /// Print the figures as JSON
@@ -158,20 +158,20 @@ pub struct Report {
     /// Page to write
     #[arg(short, long, value_name = "REPORT.html")]
     pub output: PathBuf,
-    /// Write the numbers behind the figures as JSON
+    /// Write the numbers of the figures as JSON
     #[arg(long, value_name = "FILE.json")]
     pub json: Option<PathBuf>,
-    /// Write the numbers behind the figures as CSV, a row a number
+    /// Write the numbers of the figures as CSV, one row per number
     #[arg(long, value_name = "FILE.csv")]
     pub csv: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]
 pub struct Simulate {
-    /// What touches the arm, and how large its swings are
+    /// Scenario: contacts of the arm, and size of its swings
     #[arg(long, value_enum)]
     pub scenario: ScenarioName,
-    /// How the arm moves
+    /// Motion of the arm
     #[arg(long, value_enum, default_value_t = MotionName::Swings)]
     pub motion: MotionName,
     /// Duration, s

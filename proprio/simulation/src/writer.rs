@@ -1,4 +1,4 @@
-//! Writes samples and their truth as a session, and what a camera saw as a file of its own.
+//! Writes samples and their truth as a session, and the frames of a camera as a file of its own.
 
 use std::io::{self, Write};
 
@@ -8,7 +8,7 @@ use rig_twin::{EndPose, Frame, SEGMENTS};
 
 use crate::simulation::Recorded;
 
-/// In which columns a session holds its IMU readings.
+/// Columns of the IMU readings.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ImuColumns {
     /// The heading, imuK_deg.
@@ -17,7 +17,7 @@ pub enum ImuColumns {
     Quaternion,
 }
 
-/// A session that is being written.
+/// Writer of a session.
 pub struct SessionWriter<W> {
     sink: W,
     imu: ImuColumns,
@@ -100,7 +100,7 @@ impl<W: Write> SessionWriter<W> {
     }
 }
 
-/// A camera's file that is being written.
+/// Writer of a camera's file.
 pub struct CameraWriter<W> {
     sink: W,
 }

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use calibration_tables::{ArmFile, DriftKind, DriftToml};
 use proprio_calibration::calibrate::{Calibration, CalibrationOptions, HysteresisMode, MapMode, calibrate};
-use proprio_session::{NamedTable, NoProgress, OutputFile};
+use proprio_session::{LoadedTable, NoProgress, OutputFile};
 use proprio_simulation::{ImuColumns, SessionWriter, Simulation};
 use rig_twin::{Motion, Scenario, Setup};
 
@@ -39,7 +39,7 @@ impl Tables {
         let table = |file: &ArmFile, options| -> Result<Calibration, Problem> {
             Ok(calibrate(
                 &[sweep.to_owned()],
-                &NamedTable { file: file.clone(), path: Path::new("planar-6.toml") },
+                &LoadedTable { file: file.clone(), path: Path::new("planar-6.toml") },
                 options,
                 &mut NoProgress,
             )?)

@@ -7,7 +7,7 @@ use calibration_tables::ArmFile;
 use host_tests::contact::{Found, Run};
 use host_tests::parallel::in_parallel;
 use host_tests::twin::TwinSession;
-use proprio_analysis::metrics::Figures as MethodFigures;
+use proprio_analysis::metrics::Metrics as MethodMetrics;
 use rig_twin::{Motion, Scenario};
 
 use crate::arm::{Problem, RATE_HZ, SESSION_S, Tables, setup};
@@ -25,7 +25,7 @@ pub struct ArmFigures {
     pub tables: Tables,
     pub scenarios: [Figures; 3],
     /// All methods by the paper's table.
-    pub paper: [[MethodFigures; 4]; 3],
+    pub paper: [[MethodMetrics; 4]; 3],
     /// Fusion with quadratic maps and no memory, mm.
     pub quadratic_mm: [f64; 3],
     pub contact: Contact,
@@ -56,7 +56,7 @@ impl ArmFigures {
             let session = TwinSession::new(&setup(seed, scenario, Motion::Swings), SESSION_S, RATE_HZ)?;
             let evaluation = Evaluation::of_twin(&tables, &session)?;
             scenarios.push(evaluation.figures());
-            paper.push(evaluation.paper.figures());
+            paper.push(evaluation.paper.metrics());
             quadratic_mm.push(fusion_mm(&tables.quadratic, &session)?);
             runs.push(Run::of(session, evaluation.contact));
         }

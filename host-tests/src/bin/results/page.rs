@@ -4,9 +4,9 @@ use std::fmt::{self, Write};
 use std::path::Path;
 
 use estimator_core::Method;
-use proprio_analysis::metrics::Score;
+use proprio_analysis::metrics::ErrorMetrics;
 use proprio_analysis::replay::replay;
-use proprio_session::{NamedTable, NoProgress};
+use proprio_session::{LoadedTable, NoProgress};
 
 use crate::arm::{Problem, planar};
 use crate::contact;
@@ -114,13 +114,13 @@ fn real(root: &Path) -> Result<Option<[f64; 2]>, Problem> {
         return Ok(None);
     }
     let path = root.join("host-tests/tables/trunk-planar.toml");
-    let table = NamedTable::load(&path)?;
-    let mut score = Score::new(table.file.length_mm());
+    let table = LoadedTable::load(&path)?;
+    let mut score = ErrorMetrics::new(table.file.length_mm());
     replay::<estimator_core::Q>(&recording, &table, &mut NoProgress, |row, outcome| {
         score.add(row, outcome);
         Ok(())
     })?;
-    let imu_o = score.figures()[Method::ImuO as usize];
+    let imu_o = score.metrics()[Method::ImuO as usize];
     Ok(imu_o.tip_rmse_mm.zip(imu_o.tip_rmse_percent).map(<[f64; 2]>::from))
 }
 

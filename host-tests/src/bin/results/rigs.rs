@@ -9,7 +9,7 @@ use calibration_tables::ArmFile;
 use flate2::read::GzDecoder;
 use host_tests::contact::alarms;
 use host_tests::parallel::in_parallel;
-use proprio_session::{NamedTable, Row, SessionReader};
+use proprio_session::{LoadedTable, Row, SessionReader};
 
 use crate::arm::{Problem, RATE_HZ, Tables};
 use crate::evaluation::{Evaluation, Figures};
@@ -131,7 +131,7 @@ fn unpacked(rig: &Path, session: &str, folder: &Path) -> Result<PathBuf, Problem
 
 /// Reads all rows, and their rate.
 fn rows(session: &Path, tables: &Tables) -> Result<(f64, Vec<Row>), Problem> {
-    let needs = NamedTable { file: tables.own.clone(), path: session }.needs()?;
+    let needs = LoadedTable { file: tables.own.clone(), path: session }.required_columns()?;
     let mut reader = SessionReader::open(session, &needs)?;
     let mut rows = Vec::new();
     while let Some(row) = reader.next_row()? {

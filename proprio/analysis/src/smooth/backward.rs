@@ -57,7 +57,7 @@ impl<'t, S: FusedOps> SmoothingPass<'t, S> {
         }
     }
 
-    /// Takes a row; shows rows with their smoothed outcomes to `visit`, in their order, when their block is complete.
+    /// Takes a row; passes rows with their smoothed outcomes to `visit`, in their order, when their block is complete.
     ///
     /// # Errors
     /// Those of `visit`.

@@ -1,4 +1,4 @@
-//! Corrections of one row: what the readings after it change in the filter's biases and offsets.
+//! Corrections of one row: the change of the filter's biases and offsets by the later readings.
 
 use nalgebra::DMatrix;
 
@@ -37,7 +37,7 @@ impl RowCovariance {
         Self { with_states, biases }
     }
 
-    /// x_s − x = −P λ and P_s = P − P Λ P, as far as the row's headings depend on them.
+    /// x_s − x = −P λ and P_s = P − P Λ P, for the states that the row's headings depend on.
     pub fn smooth(&self, adjoint: &Adjoint) -> Correction {
         let n = self.biases.nrows();
         let change = -(&self.with_states * &adjoint.vector);

@@ -1,4 +1,4 @@
-//! The number that carries a derivative through the estimator.
+//! Dual numbers, which carry a derivative through the estimator.
 
 use std::cmp::Ordering;
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};

@@ -10,7 +10,7 @@ impl Help for CalibrationError {
     fn help(&self) -> String {
         match self {
             Self::NoSensors => {
-                "write bend = [] in each segment of the arm description: it is a table then, for imu_o".to_owned()
+                "write bend = [] in each segment of the arm description, which makes it a table for imu_o".to_owned()
             }
             Self::SensorBAlone { .. } => "a segment's only sensor is called a: rename the column".to_owned(),
             Self::TruthMisfit { .. } => {

@@ -143,7 +143,7 @@ fn what_a_dry_run_prints_is_what_runs_and_then_the_board_is_listened_to() {
     assert_eq!(*bossac, format!("{source}  bossac -a -p no-such-port -U0 -e -w -v -b -R {image}"));
     assert!(!Path::new(image).exists(), "the image is gone");
     assert_eq!(bench.left_over(), 0);
-    assert!(error(&run).contains("flashed, but not heard: /dev/no-such-port: cannot be opened"), "{}", run.stderr);
+    assert!(error(&run).contains("flashed, but not verified: /dev/no-such-port: cannot be opened"), "{}", run.stderr);
 }
 
 #[test]

@@ -12,7 +12,7 @@ const SESSION: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../host-tests/ses
 fn a_session_without_a_table_is_refused() {
     let folder = Folder::with("session.csv", "time_s\n");
     let error = folder.refused(&["monitor", "session.csv"]);
-    assert_eq!(error, "a session is shown by what the estimator makes of it, and that takes a table");
+    assert_eq!(error, "a session is shown with the estimates of a replay, which needs a table");
 }
 
 #[test]

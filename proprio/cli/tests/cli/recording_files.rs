@@ -310,7 +310,7 @@ fn a_recording_of_a_board_of_another_protocol_is_refused_and_says_so() {
     let frame = [[6, 1].as_slice(), &0xa505_df1b_u32.to_le_bytes(), &[0]].concat();
     let folder = Folder::with("old.mcap", record([frame]));
     let error = folder.refused(&["replay", "old.mcap", "--table", table()]);
-    assert!(error.contains("its board spoke protocol version 1, and this proprio reads version 2"), "{error}");
+    assert!(error.contains("its board used protocol version 1, and this proprio reads version 2"), "{error}");
 }
 
 #[test]

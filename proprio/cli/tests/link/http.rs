@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use proprio_link::Link;
 use proprio_monitor::{Monitor, Options, Token};
-use proprio_session::NamedTable;
+use proprio_session::LoadedTable;
 use serde_json::Value;
 use tempfile::TempDir;
 use tungstenite::client::IntoClientRequest;
@@ -57,7 +57,7 @@ impl Page {
         Self::with_table(line, token, None)
     }
 
-    pub fn with_table(line: &Line, token: Option<Token>, table: Option<NamedTable>) -> Self {
+    pub fn with_table(line: &Line, token: Option<Token>, table: Option<LoadedTable>) -> Self {
         let live = Link::start(Box::new(line.clone()), None).expect("memory opens");
         let folder = tempfile::tempdir().expect("there is room for a temporary folder");
         let options = Options {

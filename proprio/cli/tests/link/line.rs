@@ -5,7 +5,7 @@ use std::io;
 use std::sync::{Arc, Mutex, MutexGuard};
 use std::time::{Duration, Instant};
 
-use proprio_link::{Event, LinkError, Source, Subscription, Transport, What};
+use proprio_link::{Event, EventKind, LinkError, Source, Subscription, Transport};
 use telemetry::{
     Command, Decoder, Encoder, Hello, MAX_FRAME, Message, PROTOCOL_VERSION, Request, ResetCause, SCHEMA, Sample, Text,
 };
@@ -105,7 +105,7 @@ impl Source for Line {
         Ok((format!("line {}", self.opened), Box::new(self.clone())))
     }
 
-    fn comes_back(&self) -> bool {
+    fn can_reconnect(&self) -> bool {
         true
     }
 }
@@ -166,10 +166,10 @@ pub fn sample(tick: u32) -> Sample {
 }
 
 /// The first event that `pick` wants.
-pub fn wait_for<T>(events: &Subscription, mut pick: impl FnMut(&What) -> Option<T>) -> T {
+pub fn wait_for<T>(events: &Subscription, mut pick: impl FnMut(&EventKind) -> Option<T>) -> T {
     let end = Instant::now() + PATIENCE;
     while Instant::now() < end {
-        if let Some(found) = events.next(Duration::from_millis(50)).and_then(|Event { what, .. }| pick(&what)) {
+        if let Some(found) = events.next(Duration::from_millis(50)).and_then(|Event { kind, .. }| pick(&kind)) {
             return found;
         }
     }

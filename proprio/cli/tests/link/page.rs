@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use proprio_link::{Event, Link, What};
+use proprio_link::{Event, EventKind, Link};
 use proprio_monitor::Plain;
-use proprio_session::{HostClock, NamedTable};
+use proprio_session::{HostClock, LoadedTable};
 use proprio_simulation::Simulation;
 use rig_twin::Scenario;
 use telemetry::{
@@ -228,15 +228,15 @@ fn a_line_for_a_terminal_has_the_shape_the_rates_and_what_is_wrong() {
     line.board().restart(1);
     line.board().say(&Message::Health(health(0, SensorState::Off)));
     say(&line, 0..1);
-    wait_for(&events, |what| {
-        plain.take(&Event { at: clock.now(), what: what.clone() });
-        matches!(what, What::Message(Message::Estimate(_))).then_some(())
+    wait_for(&events, |kind| {
+        plain.take(&Event { at: clock.now(), gaps: 0, kind: kind.clone() });
+        matches!(kind, EventKind::Message(Message::Estimate(_))).then_some(())
     });
-    let said = plain.line(clock.now(), &link.state());
-    assert!(said.starts_with("θ +0.0 +5.7 +11.5 +17.2 +22.9 +28.6°  tip 50.0 100.0 mm  "), "{said}");
-    assert!(said.ends_with(" samples/s  0 lost  0 damaged  load 12.3 %  IMU 3 Off"), "{said}");
+    let shown = plain.line(clock.now(), &link.state());
+    assert!(shown.starts_with("θ +0.0 +5.7 +11.5 +17.2 +22.9 +28.6°  tip 50.0 100.0 mm  "), "{shown}");
+    assert!(shown.ends_with(" samples/s  0 lost  0 damaged  load 12.3 %  IMU 3 Off"), "{shown}");
     line.board().unplugged = true;
-    wait_for(&events, |what| matches!(what, What::Lost(_)).then_some(()));
+    wait_for(&events, |what| matches!(what, EventKind::Lost(_)).then_some(()));
     assert!(plain.line(clock.now(), &link.state()).starts_with("the line is gone"));
 }
 
@@ -244,7 +244,7 @@ fn a_line_for_a_terminal_has_the_shape_the_rates_and_what_is_wrong() {
 fn drift_and_innovations_of_a_live_board_are_those_of_its_recording() {
     let line = Line::new();
     let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../calibration-tables/planar-6.toml"));
-    let page = Page::with_table(&line, None, Some(NamedTable::load(path).expect("the reference table")));
+    let page = Page::with_table(&line, None, Some(LoadedTable::load(path).expect("the reference table")));
     line.board().restart(1);
     let columns = page.socket(Some(&page.origin())).expect("its own page").next("arm")["columns"].clone();
     page.post("/record", r#"{"on":true}"#);

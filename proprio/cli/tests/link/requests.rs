@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use proprio_link::{Link, LinkError, RequestError, What};
+use proprio_link::{EventKind, Link, LinkError, RequestError};
 use telemetry::{Command, Message, Refusal};
 
 use super::line::{Line, hello, sample, wait_for};
@@ -22,7 +22,7 @@ fn a_link_begins_with_a_ping_and_repeats_it_until_it_is_acknowledged() {
     let pings = board.asked.iter().filter(|request| request.command == Command::Ping);
     assert_eq!(pings.map(|request| request.id).collect::<Vec<_>>(), [1; 4]);
     drop(board);
-    assert!(link.state().greeted);
+    assert!(link.state().is_connected);
 }
 
 #[test]
@@ -73,11 +73,11 @@ fn a_request_does_not_outlive_a_restart() {
         let interrupted = arming.join().expect("no panic");
         assert!(matches!(interrupted, Err(LinkError::Request(RequestError::Interrupted))), "{interrupted:?}");
     });
-    wait_for(&events, |what| matches!(what, What::Restarted).then_some(()));
+    wait_for(&events, |what| matches!(what, EventKind::Restarted).then_some(()));
     let arms = || line.board().asked.iter().filter(|request| request.command == Command::Arm).count();
     let before = arms();
     line.board().answers_lost = 0;
-    link.request(Command::Tare).expect("the new run is greeted and answers");
+    link.request(Command::Tare).expect("the new run is is_connected and answers");
     assert_eq!(arms(), before);
 }
 
@@ -104,9 +104,10 @@ fn one_who_is_slow_loses_the_oldest_events_and_holds_up_nobody() {
     for tick in 0..10_000 {
         line.board().say(&Message::Sample(sample(tick)));
         if tick % 100 == 99 {
-            let is_last = |what: &What| matches!(what, What::Message(Message::Sample(last)) if last.tick == tick);
+            let is_last =
+                |what: &EventKind| matches!(what, EventKind::Message(Message::Sample(last)) if last.tick == tick);
             wait_for(&fast, |what| {
-                heard += u32::from(matches!(what, What::Message(Message::Sample(_))));
+                heard += u32::from(matches!(what, EventKind::Message(Message::Sample(_))));
                 is_last(what).then_some(())
             });
         }
@@ -115,7 +116,7 @@ fn one_who_is_slow_loses_the_oldest_events_and_holds_up_nobody() {
     assert!(slow.dropped() > 0);
     // What is left are the newest.
     let first = wait_for(&slow, |what| match what {
-        What::Message(Message::Sample(sample)) => Some(sample.tick),
+        EventKind::Message(Message::Sample(sample)) => Some(sample.tick),
         _ => None,
     });
     assert!(first > 1000, "{first}");

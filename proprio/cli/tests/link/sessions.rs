@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use proprio_monitor::{Monitor, Options};
 use proprio_session::recording::Recorder;
-use proprio_session::{HostNs, NamedTable};
+use proprio_session::{HostNs, LoadedTable};
 use telemetry::{Encoder, MAX_FRAME, Message};
 
 use super::http::Page;
@@ -27,7 +27,7 @@ fn page(given: Option<PathBuf>) -> Page {
     let table = table();
     let options = Options {
         port: 0,
-        table: Some(NamedTable::load(&table).expect("the reference table")),
+        table: Some(LoadedTable::load(&table).expect("the reference table")),
         folder: folder.path().to_owned(),
         token: None,
         session: given,

@@ -3,15 +3,15 @@
 use estimator_core::Method;
 
 use super::plot::{Axis, ESTIMATES, Figure, Marks, Panel, SMOOTHED, Series, Size, extent, rounded};
-use crate::error_histogram::Distances;
-use crate::metrics::Score;
+use crate::error_histogram::ErrorHistogram;
+use crate::metrics::ErrorMetrics;
 
 /// Names below the boxes.
 const NAMES: [&str; ESTIMATES.len()] = ["bend", "imu_o", "imu_c", "fusion", SMOOTHED];
 
-/// From the scores of the sessions with their names, and of all together.
-pub fn figure<'s>(sessions: impl Iterator<Item = (&'s str, &'s Score)>, all: &Score) -> Figure {
-    let of_sessions = sessions.map(|(name, score)| panel(Some(name.to_owned()), score));
+/// The figure of the sessions' names and errors, and of all sessions together.
+pub fn figure<'s>(sessions: impl Iterator<Item = (&'s str, &'s ErrorMetrics)>, all: &ErrorMetrics) -> Figure {
+    let of_sessions = sessions.map(|(name, errors)| panel(Some(name.to_owned()), errors));
     let together = panel(None, all);
     let mut panels: Vec<Panel> = of_sessions.chain([together]).filter(|panel| !panel.series.is_empty()).collect();
     let [_, [_, largest]] = extent(panels.iter().flat_map(|panel| &panel.series));
@@ -33,14 +33,14 @@ pub fn figure<'s>(sessions: impl Iterator<Item = (&'s str, &'s Score)>, all: &Sc
 }
 
 /// Tip errors of all methods, and of the smoothed shape where there are any.
-fn tips(score: &Score) -> impl Iterator<Item = &Distances> {
-    let smoothed = Some(score.smoothed_tips()).filter(|tips| tips.count() > 0);
-    Method::ALL.into_iter().map(|method| score.tips(method)).chain(smoothed)
+fn tips(errors: &ErrorMetrics) -> impl Iterator<Item = &ErrorHistogram> {
+    let smoothed = Some(errors.smoothed_tips()).filter(|tips| tips.count() > 0);
+    Method::ALL.into_iter().map(|method| errors.tips(method)).chain(smoothed)
 }
 
-fn panel(session: Option<String>, score: &Score) -> Panel {
-    let series = tips(score).zip(ESTIMATES).enumerate().filter_map(|(place, (tips, (name, colour)))| {
-        let (spread, rmse_m) = tips.spread().zip(tips.rms_m())?;
+fn panel(session: Option<String>, errors: &ErrorMetrics) -> Panel {
+    let series = tips(errors).zip(ESTIMATES).enumerate().filter_map(|(place, (tips, (name, colour)))| {
+        let (spread, rmse_m) = tips.box_stats().zip(tips.rms_m())?;
         let mm = |m: f64| rounded(m * 1e3);
         let [quartile1_mm, median_mm, quartile3_mm] = spread.quartiles_m.map(mm);
         let (low_mm, high_mm, largest_mm) = (mm(spread.low_m), mm(spread.high_m), mm(spread.largest_m));
@@ -49,7 +49,7 @@ fn panel(session: Option<String>, score: &Score) -> Panel {
             Marks::Box { place, samples, low_mm, quartile1_mm, median_mm, quartile3_mm, high_mm, largest_mm, rmse_mm };
         Some(Series { name: name.to_owned(), colour, marks })
     });
-    let count = tips(score).count();
+    let count = tips(errors).count();
     let x = Axis { title: "method", range: [-0.6, count as f64 - 0.4], names: &NAMES[..count] };
     Panel {
         name: String::new(),

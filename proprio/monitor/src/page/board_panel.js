@@ -3,8 +3,8 @@
 import { minus } from './plot.js';
 import { text } from './sensors.js';
 
-/** What is told, and how; `undefined` where it is not known. */
-const FACTS = [
+/** Id, name and text of each value; the text is `undefined` where the value is not known. */
+const VALUES = [
   ['line', 'Line', (s) => (s.port ? `${s.port}${s.answers ? '' : ', no answer to requests'}` : 'gone')],
   ['who', 'Board', (s) => s.board && `arm ${s.board.arm}, firmware ${s.board.firmware}, boot ${s.board.boot} by ${s.board.reset}`],
   ['panic', 'Last panic', (s) => s.board && (s.board.last_panic ?? 'none')],
@@ -14,7 +14,7 @@ const FACTS = [
   ['load', 'CPU load', (s) => s.health && `${s.health.load_percent.toFixed(1)} %, estimate at most ${s.health.longest_tick_ms.toFixed(1)} ms after the tick`],
   ['trouble', 'Since boot', (s) => s.health && `${s.health.overruns} overruns, ${s.health.dropped_frames} frames dropped, ${s.health.bus_recoveries} bus recoveries, ${s.health.saturations} saturations`],
   ['clock', 'Board\'s clock', (s) => s.clock && `began ${new Date(s.clock.zero_ms).toISOString().slice(11, 23)} UTC, ${drift(s.clock.drift)}`],
-  ['latency', 'Sample to screen', (s) => s.latency && `${s.latency.p50_ms.toFixed(0)} ms median, ${s.latency.p95_ms.toFixed(0)} ms 95 %, ${s.latency.largest_ms.toFixed(0)} ms largest${s.least_delay_ms ? `; ${s.least_delay_ms.toFixed(1)} ms of it reckoned` : ''}`],
+  ['latency', 'Sample to screen', (s) => s.latency && `${s.latency.p50_ms.toFixed(0)} ms median, ${s.latency.p95_ms.toFixed(0)} ms 95 %, ${s.latency.largest_ms.toFixed(0)} ms largest${s.least_delay_ms ? `; ${s.least_delay_ms.toFixed(1)} ms of it computed` : ''}`],
   ['slow', 'Too slow', (s) => (s.dropped_events ? `${s.dropped_events} events dropped by this machine` : 'nothing dropped')],
   ['recording', 'Recording', (s) => (s.recording ? recording(s.recording) : 'none')],
 ];
@@ -29,15 +29,15 @@ function recording({ file, samples, marks, dropped_events, failed }) {
   return `${file}, ${samples} samples, ${marks} marks${dropped}`;
 }
 
-export class Facts {
+export class BoardPanel {
   constructor(list, notes) {
     this.notes = notes;
-    this.values = FACTS.map(([id, name]) => add(list, id, name));
+    this.values = VALUES.map(([id, name]) => add(list, id, name));
     this.page = add(list, 'page', 'Page');
   }
 
   show(status) {
-    FACTS.forEach(([, , tell], i) => text(this.values[i], (status && tell(status)) || '–'));
+    VALUES.forEach(([, , toText], i) => text(this.values[i], (status && toText(status)) || '–'));
     const notes = status?.notes ?? [];
     if (notes.join() === this.noted) return;
     this.noted = notes.join();

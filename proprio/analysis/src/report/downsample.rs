@@ -1,6 +1,6 @@
-//! Long recordings in bounded memory: bins with their least and largest values, and every so-many-th item.
+//! Downsampling of long recordings to bounded memory: bins with their minimum and maximum, and decimation.
 
-/// `C` channels over time, in bins of equally many rows: all rows, then between `kept` and twice as many bins.
+/// `C` channels over time, in bins of equal numbers of rows: all rows at first, then between `kept` and twice as many bins.
 #[derive(Debug, Clone)]
 pub struct Timeline<const C: usize> {
     kept: usize,
@@ -106,16 +106,16 @@ impl<const C: usize> Timeline<C> {
     }
 }
 
-/// Items evenly spaced: all, then every second, every fourth and so on, so that between `kept` and twice as many are there.
+/// Decimated items: all at first, then every second, every fourth and so on, so that between `kept` and twice as many remain.
 #[derive(Debug, Clone)]
-pub struct Thinned<T> {
+pub struct Decimated<T> {
     kept: usize,
     items: Vec<T>,
     every: u64,
     seen: u64,
 }
 
-impl<T> Thinned<T> {
+impl<T> Decimated<T> {
     pub fn new(kept: usize) -> Self {
         Self { kept, items: Vec::new(), every: 1, seen: 0 }
     }
@@ -142,7 +142,7 @@ impl<T> Thinned<T> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Bin, Thinned, Timeline};
+    use super::{Bin, Decimated, Timeline};
 
     const KEPT: usize = 256;
 
@@ -169,10 +169,10 @@ mod tests {
     }
 
     #[test]
-    fn thinned_items_are_evenly_spaced_from_the_first_to_near_the_last() {
-        let mut thinned = Thinned::new(KEPT);
-        (0..5000_u64).for_each(|item| thinned.add(|| item));
-        let items = thinned.items();
+    fn decimated_items_are_evenly_spaced_from_the_first_to_near_the_last() {
+        let mut decimated = Decimated::new(KEPT);
+        (0..5000_u64).for_each(|item| decimated.add(|| item));
+        let items = decimated.items();
         assert!((KEPT..=2 * KEPT).contains(&items.len()));
         assert!(items.iter().enumerate().all(|(i, item)| *item == 16 * i as u64), "{items:?}");
         assert_eq!(items.last(), Some(&4992));

@@ -1,18 +1,18 @@
-//! The columns that a session must have, by the use that is made of it.
+//! The columns that a use of a session requires.
 
 use calibration_tables::{ArmFile, FileError};
 
 /// The columns that a session must have.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Needs {
+pub struct RequiredColumns {
     /// Bend sensors of each segment: 0, 1 (`a`) or 2 (`a` and `b`); `None`: as many as the session has.
     pub bend: Vec<Option<usize>>,
-    /// Whether there must be truth.
+    /// Require truth.
     pub truth: bool,
 }
 
-impl Needs {
-    /// What `table` needs of a session.
+impl RequiredColumns {
+    /// The columns that a replay with `table` requires.
     ///
     /// # Errors
     /// [`FileError::NotCalibrated`] on an arm description.
@@ -21,7 +21,7 @@ impl Needs {
         Ok(Self { bend, truth: false })
     }
 
-    /// What a calibration of `arm` needs of a session: the bend sensors are those that the session has.
+    /// The columns that a calibration of `arm` requires; its bend sensors are those of the session.
     #[must_use]
     pub fn of_calibration(arm: &ArmFile) -> Self {
         let sensors = |bend: &Vec<_>| bend.is_empty().then_some(0);

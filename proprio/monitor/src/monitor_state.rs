@@ -1,4 +1,4 @@
-//! What the threads of the monitor share.
+//! State that the threads of the monitor share.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -8,22 +8,22 @@ use proprio_session::HostClock;
 use tokio::sync::broadcast;
 
 use super::access::Token;
-use super::feed::{Arm, Feed};
+use super::feed::{ArmDescription, Feed};
 use super::history::History;
 use super::latency::Latency;
-use super::recording::{Progress, Recording};
+use super::recording::{Recording, RecordingProgress};
 use super::sessions::Sessions;
 use crate::error::Error;
 
-/// Messages that wait for a browser: a second of them. One that is slower loses the oldest.
-const ROOM: usize = 64;
+/// Capacity of a browser's queue, messages: one second. A slower browser loses the oldest.
+const CAPACITY: usize = 64;
 
-/// What the threads of the monitor share.
+/// State that the threads of the monitor share.
 #[derive(Debug)]
-pub(super) struct Shared {
+pub(super) struct MonitorState {
     pub link: Option<Link>,
     pub clock: HostClock,
-    pub arm: Arm,
+    pub arm: ArmDescription,
     pub token: Option<Token>,
     pub sessions: Sessions,
     pub help: fn(&Error) -> String,
@@ -34,17 +34,17 @@ pub(super) struct Shared {
     recording: Mutex<Option<Recording>>,
 }
 
-impl Shared {
+impl MonitorState {
     pub fn new(
         link: Option<Link>,
-        arm: Arm,
+        arm: ArmDescription,
         token: Option<Token>,
         sessions: Sessions,
         help: fn(&Error) -> String,
     ) -> Self {
         let history = Mutex::new(History::new(arm.columns.len()));
         let (status, latency, recording) = Default::default();
-        let (feed, _) = broadcast::channel(ROOM);
+        let (feed, _) = broadcast::channel(CAPACITY);
         Self { link, clock: HostClock::new(), arm, token, sessions, help, feed, history, status, latency, recording }
     }
 
@@ -56,8 +56,8 @@ impl Shared {
         lock(&self.latency)
     }
 
-    /// Sends a message to every page. That there may be none is no matter.
-    pub fn tell(&self, message: &Feed) {
+    /// Sends a message to every page, if there is any.
+    pub fn publish(&self, message: &Feed) {
         let json = Utf8Bytes::from(message.json());
         if matches!(message, Feed::Status(_)) {
             *lock(&self.status) = json.clone();
@@ -70,11 +70,11 @@ impl Shared {
         lock(&self.status).clone()
     }
 
-    pub fn recording(&self) -> Option<Progress> {
+    pub fn recording(&self) -> Option<RecordingProgress> {
         lock(&self.recording).as_ref().map(Recording::progress)
     }
 
-    /// Begins a recording, where none is under way; one that has failed is not.
+    /// Begins a recording, unless one is running that has not failed.
     pub fn begin_recording(&self) -> Result<(), Error> {
         let Some(link) = &self.link else { return Ok(()) };
         let mut recording = lock(&self.recording);
@@ -85,13 +85,13 @@ impl Shared {
         Ok(())
     }
 
-    /// Completes the recording that is under way, if there is one.
-    pub fn finish_recording(&self) -> Result<Option<Progress>, Error> {
+    /// Completes the running recording, if there is one.
+    pub fn finish_recording(&self) -> Result<Option<RecordingProgress>, Error> {
         let recording = lock(&self.recording).take();
         Ok(recording.map(Recording::finish).transpose()?)
     }
 
-    /// Marks this moment in the recording that is under way; false: there is none.
+    /// Sets a mark in the running recording; returns false without a recording.
     pub fn mark(&self, text: String) -> bool {
         let recording = lock(&self.recording);
         let recording = recording.as_ref();
