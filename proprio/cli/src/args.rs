@@ -108,9 +108,9 @@ pub enum MapName {
 pub enum HysteresisName {
     /// For sensors and segments whose held-back error it lowers
     Auto,
-    /// Everywhere
+    /// For all
     Always,
-    /// Nowhere
+    /// For none
     Never,
 }
 
