@@ -4,7 +4,7 @@ use std::os::unix::fs::symlink;
 use std::path::Path;
 use std::time::Duration;
 
-use proprio_link::{Baud, Link, PortSource, Subscription, EventKind};
+use proprio_link::{Baud, EventKind, Link, PortSource, Subscription};
 
 use crate::terminal::Terminal;
 use crate::tools::folder;
@@ -29,7 +29,8 @@ fn a_reset_of_the_board_is_told_from_lost_frames() {
     let state = link.state();
     assert_eq!((state.restarts, state.counts.lost, state.reopened), (1, 0, 0));
     assert_eq!(state.hello.map(|hello| hello.boot), Some(2));
-    let told = std::iter::from_fn(|| events.next(Duration::ZERO)).filter(|event| matches!(event.kind, EventKind::Restarted));
+    let told =
+        std::iter::from_fn(|| events.next(Duration::ZERO)).filter(|event| matches!(event.kind, EventKind::Restarted));
     assert_eq!(told.count(), 1);
 }
 
@@ -46,8 +47,8 @@ fn a_cable_that_comes_back_is_opened_again_and_nothing_counts_as_lost() {
 
     std::fs::remove_file(&name).expect("it is there");
     drop(terminal);
-    let lost =
-        std::iter::from_fn(|| events.next(Duration::from_secs(20))).find(|event| matches!(event.kind, EventKind::Lost(_)));
+    let lost = std::iter::from_fn(|| events.next(Duration::from_secs(20)))
+        .find(|event| matches!(event.kind, EventKind::Lost(_)));
     assert!(lost.is_some(), "it is told that the line is gone");
     assert_eq!(link.state().port, None);
 

@@ -6,7 +6,7 @@ use std::process::Command;
 use std::rc::Rc;
 use std::time::Duration;
 
-use proprio_link::{Baud, Link, LinkState, PortSource, Subscription, EventKind};
+use proprio_link::{Baud, EventKind, Link, LinkState, PortSource, Subscription};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 use telemetry::{Decoder, Message};
