@@ -1,7 +1,7 @@
 //! Assembly of rows from the messages of a board, recorded or live.
 
 use calibration_tables::MAX_SEGMENTS;
-use telemetry::{Event, Hello, Message, SCHEMA, Sample};
+use telemetry::{Event, Hello, Message, SCHEMA, Sample, TICK_HZ};
 
 use crate::boot_tracker::{BootTracker, Continuity};
 use crate::clock::HostNs;
@@ -9,7 +9,7 @@ use crate::recording::ReadError;
 use crate::row::{BoardOutput, Row, Truth};
 
 /// Time from one tick to the next, µs.
-const TICK_US: u64 = 10_000;
+const TICK_US: u64 = (1e6 / TICK_HZ) as u64;
 
 /// Assembles the rows of a board: its readings, its estimates of them, and the starts of its estimator.
 ///

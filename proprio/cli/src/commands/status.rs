@@ -10,7 +10,7 @@ use crate::error::Error;
 use crate::terminal;
 use crate::{args, text_tables};
 
-pub fn run(args: &args::Status) -> Result<(), Error> {
+pub fn run(args: &args::StatusArgs) -> Result<(), Error> {
     let (table, link, events) = link::open(&args.link)?;
     let status = Status::of(&link, &events, table.is_some())?;
     terminal::print(&if args.json { terminal::json(&status) } else { screen(&status) })

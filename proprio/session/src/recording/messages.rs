@@ -90,7 +90,7 @@ pub fn contact(stamp: HostNs, touched: [bool; SEGMENTS]) -> Vec<u8> {
     cdr.into_bytes()
 }
 
-/// From the estimator's bits to rad or m.
+/// Converts the estimator's bits to rad or m.
 fn value(bits: i32) -> f64 {
     Q::from_bits(bits).to_f64()
 }
