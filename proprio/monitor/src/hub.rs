@@ -84,7 +84,7 @@ impl<'t> Hub<'t> {
         if !batch.rows.is_empty() {
             let told = self.live.uncertainty.as_ref();
             batch.uncertainty = told.and_then(Uncertainty::of);
-            batch.contact = told.map(|told| told.segments.map(|segment| segment.is_touched));
+            batch.contact = told.map(|told| told.segments.map(|segment| segment.in_contact));
             self.shared.tell(&Feed::Rows(batch));
         }
     }

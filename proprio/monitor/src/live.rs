@@ -127,7 +127,7 @@ impl<'t> Live<'t> {
                 let passed_us = (at.0.saturating_sub(last.at.0) / 1000).max(TICK_US);
                 self.base_us = (last.time_us + passed_us).saturating_sub(sample.time_us);
                 self.is_shadowed = sample.tick == 0;
-            } else if sample.tare == last.tare {
+            } else if sample.tare_epoch == last.tare {
                 starts = false;
             } else {
                 self.is_shadowed = true;
@@ -136,7 +136,7 @@ impl<'t> Live<'t> {
             self.is_shadowed = sample.tick == 0;
         }
         let time_us = self.base_us + sample.time_us;
-        self.last = Some(Last { at, tare: sample.tare, time_us });
+        self.last = Some(Last { at, tare: sample.tare_epoch, time_us });
 
         let mut row = Row::new(time_us as f64 / 1e6, SEGMENTS);
         if let Some(shadow) = &mut self.shadow {
@@ -165,7 +165,7 @@ impl<'t> Live<'t> {
     /// The shortest time from a sample to its arrival, which no comparison of clocks in one direction can tell: what the board
     /// says of its own work, and the time of the frame on the line.
     pub fn least_delay_us(&self) -> Option<u32> {
-        self.health.map(|health| health.longest_tick_us.saturating_add(SAMPLE_FRAME_US))
+        self.health.map(|health| health.max_estimate_latency_us.saturating_add(SAMPLE_FRAME_US))
     }
 
     /// How the board's clock stands to the host's.
@@ -177,7 +177,7 @@ impl<'t> Live<'t> {
     /// Contact has begun or ended. The next uncertainty says the same, up to a quarter of a second later.
     fn contact(&mut self, touched: [bool; SEGMENTS]) {
         let segments = self.uncertainty.iter_mut().flat_map(|uncertainty| &mut uncertainty.segments);
-        segments.zip(touched).for_each(|(segment, touched)| segment.is_touched = touched);
+        segments.zip(touched).for_each(|(segment, touched)| segment.in_contact = touched);
     }
 
     /// The state of a sensor has changed: bend sensors first, then IMUs. Health says the same, up to a fifth of a second later.
