@@ -4,8 +4,8 @@ use board_core::bno055::{ADDRESS, Answer, Bno055};
 use embedded_hal::i2c::{ErrorKind, NoAcknowledgeSource};
 use embedded_hal_mock::eh1::i2c::{Mock, Transaction};
 
-mod arm;
-use arm::now;
+mod imu_rig;
+use imu_rig::now;
 
 const NACK: ErrorKind = ErrorKind::NoAcknowledge(NoAcknowledgeSource::Address);
 const UPRIGHT: [i16; 4] = [16384, 0, 0, 0];
@@ -129,7 +129,7 @@ fn a_refusal_at_any_step_of_the_start_is_reported_and_the_step_done_again() {
 fn another_chip_at_the_address_is_garbage() {
     let mut imu = Bno055::new(ADDRESS);
     for tick in 0..3 {
-        assert_eq!(step(&mut imu, tick, &[write(0x07, 0), read(0x00, &[0xE5])]), Ok(Answer::Garbage));
+        assert_eq!(step(&mut imu, tick, &[write(0x07, 0), read(0x00, &[0xE5])]), Ok(Answer::Invalid));
     }
 }
 
@@ -172,7 +172,7 @@ fn zeros_in_configmode_are_seen_at_once_and_the_chip_started_anew() {
 fn a_bad_norm_while_fusion_runs_is_garbage_for_that_tick() {
     let mut imu = running();
     for bad in [[0; 4], [16384, 16384, 0, 0], [i16::MIN; 4], [-1; 4], [16200, 0, 0, 0]] {
-        assert_eq!(step(&mut imu, 9, &[quaternion(bad), state(5, 8)]), Ok(Answer::Garbage));
+        assert_eq!(step(&mut imu, 9, &[quaternion(bad), state(5, 8)]), Ok(Answer::Invalid));
     }
     assert_eq!(step(&mut imu, 10, &[quaternion(UPRIGHT)]), Ok(Answer::Quaternion(UPRIGHT)));
 }

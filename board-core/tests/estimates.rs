@@ -1,6 +1,6 @@
 //! When the estimator starts, that it starts anew, and what is told beside the estimates.
 
-use board_core::{Arm, TARE_TICKS};
+use board_core::{BoardEstimator, TARE_TICKS};
 use estimator_core::{
     ArmConfig, BendMap, BendSensorConfig, ContactConfig, Q, QuadraticMap, SegmentConfig, Turns, UncertaintyConfig,
     VARIANCE_SCALE,
@@ -18,7 +18,7 @@ fn sample(tick: u32) -> Sample {
     Sample {
         tick,
         time_us: u64::from(tick) * 10_000,
-        tare: 0,
+        tare_epoch: 0,
         bend: [None; BEND_SENSORS],
         imu: [Some([16_384, 0, 0, 0]); SEGMENTS],
     }
@@ -26,40 +26,40 @@ fn sample(tick: u32) -> Sample {
 
 #[test]
 fn the_first_tare_waits_for_all_imus() {
-    let arm = Arm::new(table());
-    assert!(!arm.is_due(10, false));
-    assert!(arm.is_due(10, true));
+    let arm = BoardEstimator::new(table());
+    assert!(!arm.needs_first_tare(10, false));
+    assert!(arm.needs_first_tare(10, true));
 }
 
 #[test]
 fn the_first_tare_does_not_wait_for_ever() {
-    let arm = Arm::new(table());
-    assert!(!arm.is_due(TARE_TICKS - 1, false));
-    assert!(arm.is_due(TARE_TICKS, false));
+    let arm = BoardEstimator::new(table());
+    assert!(!arm.needs_first_tare(TARE_TICKS - 1, false));
+    assert!(arm.needs_first_tare(TARE_TICKS, false));
 }
 
 #[test]
 fn there_is_one_first_tare() {
-    let mut arm = Arm::new(table());
+    let mut arm = BoardEstimator::new(table());
     arm.tare();
-    assert!(!arm.is_due(TARE_TICKS, true));
+    assert!(!arm.needs_first_tare(TARE_TICKS, true));
 }
 
 #[test]
 fn samples_can_tell_how_often_it_was_tared() {
-    let mut arm = Arm::new(table());
+    let mut arm = BoardEstimator::new(table());
     arm.start();
-    assert_eq!(arm.tares(), 0);
+    assert_eq!(arm.tare_epoch(), 0);
     arm.tare();
     arm.tare();
-    assert_eq!(arm.tares(), 2);
+    assert_eq!(arm.tare_epoch(), 2);
 }
 
 #[test]
 fn an_estimate_carries_the_tick_of_its_sample() {
-    let mut arm = Arm::new(table());
+    let mut arm = BoardEstimator::new(table());
     arm.start();
-    assert_eq!(arm.step(&sample(77)).tick, 77);
+    assert_eq!(arm.update(&sample(77)).tick, 77);
 }
 
 /// Six segments with bend sensors, straight at 1.5 V, with contact detection and error sources.
@@ -91,11 +91,11 @@ fn turned(tick: u32, degrees: f64) -> Sample {
 
 #[test]
 fn contact_is_told_once_when_it_begins_and_once_when_a_tare_ends_it() {
-    let mut arm = Arm::new(full_table());
+    let mut arm = BoardEstimator::new(full_table());
     arm.start();
-    let tell = |arm: &mut Arm, tick, degrees| {
-        arm.step(&turned(tick, degrees));
-        arm.contact(tick)
+    let tell = |arm: &mut BoardEstimator, tick, degrees| {
+        arm.update(&turned(tick, degrees));
+        arm.contact_event(tick)
     };
     assert!((0..20).all(|tick| tell(&mut arm, tick, 0.0).is_none()));
     // The IMUs turn and the bend sensors do not: the first segment is bent where they do not feel it.
@@ -108,16 +108,16 @@ fn contact_is_told_once_when_it_begins_and_once_when_a_tare_ends_it() {
 
 #[test]
 fn an_uncertainty_is_of_the_newest_estimate() {
-    let mut arm = Arm::new(full_table());
+    let mut arm = BoardEstimator::new(full_table());
     arm.start();
     for tick in 0..20 {
-        arm.step(&turned(tick, 0.0));
+        arm.update(&turned(tick, 0.0));
     }
     let free = arm.uncertainty(19);
-    arm.step(&turned(20, 20.0));
+    arm.update(&turned(20, 20.0));
     let touched = arm.uncertainty(20);
     assert_eq!((free.tick, touched.tick), (19, 20));
-    assert!(!free.segments[0].is_touched && touched.segments[0].is_touched);
+    assert!(!free.segments[0].in_contact && touched.segments[0].in_contact);
     assert!(touched.segments[0].theta > free.segments[0].theta && free.segments[0].theta.is_some());
     assert!(touched.segments[5].end.is_some());
 }

@@ -119,7 +119,7 @@ impl RowAssembler {
                 let passed_us = (at.0.saturating_sub(last.at.0) / 1000).max(TICK_US);
                 self.base_us = (last.row_us + passed_us).saturating_sub(sample.time_us);
                 self.complete = sample.tick == 0;
-            } else if sample.tare != last.sample.tare {
+            } else if sample.tare_epoch != last.sample.tare_epoch {
                 self.complete = is_whole;
             } else {
                 starts = false;

@@ -17,7 +17,7 @@ pub const PATIENCE: Duration = Duration::from_secs(20);
 pub struct Board {
     encoder: Encoder,
     requests: Decoder<Request>,
-    link: board_core::Link,
+    server: board_core::CommandServer,
     /// Answers that are lost on their way.
     pub answers_lost: usize,
     /// Commands are refused.
@@ -41,7 +41,7 @@ impl Board {
 
     /// Restarts the board: frames are numbered from 0, and no request is stored.
     pub fn restart(&mut self, boot: u32) {
-        (self.encoder, self.link) = (Encoder::new(), board_core::Link::new());
+        (self.encoder, self.server) = (Encoder::new(), board_core::CommandServer::new());
         self.to_host.push_back(0);
         self.send(&Message::Hello(hello(boot)));
     }
@@ -51,7 +51,7 @@ impl Board {
         self.received.push(request);
         let tick = (self.began.elapsed().as_millis() / 10) as u32;
         let (done, refuses) = (&mut self.done, self.refuses);
-        let reply = self.link.answer(&request, tick, |command| {
+        let reply = self.server.answer(&request, tick, |command| {
             if refuses && command != Command::Ping {
                 return Err(telemetry::Refusal::Disarmed);
             }
@@ -79,7 +79,7 @@ impl Line {
         let board = Board {
             encoder: Encoder::new(),
             requests: Decoder::new(),
-            link: board_core::Link::new(),
+            server: board_core::CommandServer::new(),
             answers_lost: 0,
             refuses: false,
             done: Vec::new(),
@@ -159,7 +159,7 @@ pub fn sample(tick: u32) -> Sample {
     Sample {
         tick,
         time_us,
-        tare: 0,
+        tare_epoch: 0,
         bend: [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11].map(counts),
         imu: [0, 1, 2, 3, 4, 5].map(quaternion),
     }

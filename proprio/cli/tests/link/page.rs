@@ -33,7 +33,7 @@ pub fn health(tick: u32, imu_3: SensorState) -> Health {
         tick,
         bend: [sensor(SensorState::Ok); BEND_SENSORS],
         imu,
-        longest_tick_us: 5000,
+        max_estimate_latency_us: 5000,
         longest_imu_read_us: 2000,
         load_permille: 123,
         overruns: 0,
@@ -107,7 +107,7 @@ fn the_status_has_the_state_of_every_sensor_and_the_board_s_load() {
     let line = Line::new();
     let page = Page::of(&line, None);
     line.board().restart(1);
-    line.board().send(&Message::Health(health(0, SensorState::Off)));
+    line.board().send(&Message::Health(health(0, SensorState::NoResponse)));
     let status = page.wait_for_status(|status| status["sensors"][14]["state"] == "Off");
     assert_eq!(status["sensors"].as_array().map(Vec::len), Some(BEND_SENSORS + SEGMENTS));
     assert_eq!(status["sensors"][14]["reason"], "does not answer, or reads at a rail");
@@ -226,7 +226,7 @@ fn a_line_for_a_terminal_has_the_shape_the_rates_and_what_is_wrong() {
     let (mut plain, clock) = (Plain::new(), HostClock::new());
     assert!(plain.line(clock.now(), &link.state()).starts_with("no estimate yet  "));
     line.board().restart(1);
-    line.board().send(&Message::Health(health(0, SensorState::Off)));
+    line.board().send(&Message::Health(health(0, SensorState::NoResponse)));
     send_ticks(&line, 0..1);
     wait_for(&events, |kind| {
         plain.take(&Event { at: clock.now(), gaps: 0, kind: kind.clone() });
@@ -251,7 +251,7 @@ fn drift_and_innovations_of_a_live_board_are_those_of_its_recording() {
     let simulation = Simulation::new(Scenario::Push, 7, 10.0, 100.0).expect("a valid run");
     for (tick, read) in (0..).zip(simulation) {
         let time_us = u64::from(tick) * 10_000;
-        let said = Sample { tick, time_us, tare: 0, bend: read.counts, imu: read.quaternions };
+        let said = Sample { tick, time_us, tare_epoch: 0, bend: read.counts, imu: read.quaternions };
         line.board().send(&Message::Sample(said));
     }
     page.wait_for_status(|status| status["recording"]["samples"] == 1000);

@@ -13,7 +13,7 @@ use super::page::{health, send_ticks};
 fn uncertainty(tick: u32) -> Message {
     // mm² in units of 2⁻³² m², and 0.01 rad² in as many of rad².
     let end = [4295, 0, 4 * 4295];
-    let segment = SegmentUncertainty { theta: Some(42_949_673), end: Some(end), contact_percent: 3, is_touched: false };
+    let segment = SegmentUncertainty { theta: Some(42_949_673), end: Some(end), contact_percent: 3, in_contact: false };
     Message::Uncertainty(Uncertainty { tick, segments: [segment; SEGMENTS] })
 }
 

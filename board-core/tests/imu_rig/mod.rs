@@ -2,7 +2,7 @@
 
 #![allow(dead_code, reason = "each test program uses its own part")]
 
-use board_core::imus::{BusRecovery, BusStuck, Imus, Judged};
+use board_core::imus::{BusRecovery, BusStuck, ImuReadings, Imus};
 use board_core::tca9548a::{self, Tca9548a};
 use embedded_hal::digital::{self, OutputPin};
 use embedded_hal::i2c::{ErrorKind, NoAcknowledgeSource, Operation};
@@ -219,14 +219,14 @@ impl OutputPin for ResetPin {
 }
 
 /// The IMUs as the firmware reads them, and the bus as it is.
-pub struct Arm {
+pub struct ImuRig {
     pub imus: Imus<Controller, ResetPin>,
     wiring: Rc<RefCell<Wiring>>,
     /// Transactions of the last tick: address, and how many bits were on the wire.
     pub log: Vec<(u8, u32)>,
 }
 
-impl Arm {
+impl ImuRig {
     /// IMUs that have just come out of their reset, at headings 10°, 20° … 60°.
     pub fn powered_up() -> Self {
         let chips = std::array::from_fn(|k| Chip {
@@ -256,10 +256,10 @@ impl Arm {
 
     /// IMUs that have been read for a while.
     pub fn running() -> Self {
-        let mut arm = Self::powered_up();
-        arm.ticks(10);
-        assert!(arm.tick().imu.iter().all(Option::is_some));
-        arm
+        let mut rig = Self::powered_up();
+        rig.ticks(10);
+        assert!(rig.tick().imu.iter().all(Option::is_some));
+        rig
     }
 
     pub fn wiring(&self) -> std::cell::RefMut<'_, Wiring> {
@@ -267,17 +267,17 @@ impl Arm {
     }
 
     /// One tick. A transaction that does not end is cut off.
-    pub fn tick(&mut self) -> Judged {
+    pub fn tick(&mut self) -> ImuReadings {
         let tick = self.wiring().tick;
         {
             let reading = pin!(self.imus.read(tick));
             let _ = reading.poll(&mut Context::from_waker(Waker::noop()));
         }
-        let judged = self.imus.judge();
+        let readings = self.imus.validate();
         let mut wiring = self.wiring.borrow_mut();
         wiring.tick += 1;
         self.log = std::mem::take(&mut wiring.log);
-        judged
+        readings
     }
 
     pub fn ticks(&mut self, count: u32) {

@@ -1,6 +1,6 @@
 //! Requests: each acts once, in order, and a flood does not matter.
 
-use board_core::{ANEW_TICKS, BURST, Link, PER_TICK};
+use board_core::{BUCKET_SIZE, CommandServer, REFILL_PER_TICK, SESSION_TIMEOUT_TICKS};
 use proptest::prelude::*;
 use telemetry::{Command, Outcome, Refusal, Reply, Request};
 
@@ -8,17 +8,17 @@ const LATE: Option<Outcome> = Some(Outcome::Nack(Refusal::Late));
 const BUSY: Option<Outcome> = Some(Outcome::Nack(Refusal::Busy));
 const ACK: Option<Outcome> = Some(Outcome::Ack);
 
-/// A link, and what it had done.
+/// A server, and what it had done.
 #[derive(Default)]
 struct Board {
-    link: Link,
+    server: CommandServer,
     done: Vec<(u32, Command)>,
 }
 
 impl Board {
     /// Sends a request; what it would do succeeds.
     fn ask(&mut self, id: u32, command: Command, tick: u32) -> Option<Outcome> {
-        let reply = self.link.answer(&Request { id, command }, tick, |command| {
+        let reply = self.server.answer(&Request { id, command }, tick, |command| {
             self.done.push((id, command));
             Ok(())
         });
@@ -49,11 +49,11 @@ fn a_repeated_request_gets_its_answer_again_and_acts_once() {
 
 #[test]
 fn a_repeated_request_that_was_refused_is_not_tried_again() {
-    let mut link = Link::new();
+    let mut server = CommandServer::new();
     let request = Request { id: 1, command: Command::Arm };
     let refused = Some(Reply { id: 1, outcome: Outcome::Nack(Refusal::Disarmed) });
-    assert_eq!(link.answer(&request, 0, |_| Err(Refusal::Disarmed)), refused);
-    assert_eq!(link.answer(&request, 1, |_| Ok(())), refused);
+    assert_eq!(server.answer(&request, 0, |_| Err(Refusal::Disarmed)), refused);
+    assert_eq!(server.answer(&request, 1, |_| Ok(())), refused);
 }
 
 #[test]
@@ -87,18 +87,18 @@ fn numbers_may_have_gaps() {
 fn a_ping_starts_the_numbers_anew_after_silence() {
     let mut board = Board::default();
     board.ask(900, Command::Arm, 10);
-    assert_eq!(board.ask(1, Command::Ping, 10 + ANEW_TICKS - 1), LATE);
+    assert_eq!(board.ask(1, Command::Ping, 10 + SESSION_TIMEOUT_TICKS - 1), LATE);
     // Refused requests are no sign of life: who repeats its ping does not wait for ever.
-    assert_eq!(board.ask(1, Command::Ping, 10 + ANEW_TICKS), ACK);
-    assert_eq!(board.ask(2, Command::Arm, 10 + ANEW_TICKS), ACK);
-    assert_eq!(board.ask(900, Command::Disarm, 10 + ANEW_TICKS), ACK);
+    assert_eq!(board.ask(1, Command::Ping, 10 + SESSION_TIMEOUT_TICKS), ACK);
+    assert_eq!(board.ask(2, Command::Arm, 10 + SESSION_TIMEOUT_TICKS), ACK);
+    assert_eq!(board.ask(900, Command::Disarm, 10 + SESSION_TIMEOUT_TICKS), ACK);
 }
 
 #[test]
 fn a_new_host_may_begin_at_the_very_number_where_the_old_one_ended() {
     let mut board = Board::default();
     board.ask(1, Command::Ping, 0);
-    assert_eq!(board.ask(1, Command::Ping, ANEW_TICKS), ACK);
+    assert_eq!(board.ask(1, Command::Ping, SESSION_TIMEOUT_TICKS), ACK);
     assert_eq!(board.done.len(), 2);
 }
 
@@ -113,19 +113,19 @@ fn a_burst_is_served_and_then_a_steady_rate() {
         }
         served.push(board.done.len() - before);
     }
-    let per_tick = usize::from(PER_TICK);
-    assert_eq!(served, [usize::from(BURST), per_tick, per_tick, per_tick]);
+    let per_tick = usize::from(REFILL_PER_TICK);
+    assert_eq!(served, [usize::from(BUCKET_SIZE), per_tick, per_tick, per_tick]);
 }
 
 #[test]
 fn a_flood_is_told_busy_once_a_tick_and_then_nothing() {
     let mut board = Board::default();
-    for id in 0..u32::from(BURST) {
+    for id in 0..u32::from(BUCKET_SIZE) {
         assert_eq!(board.ask(id, Command::Ping, 0), ACK);
     }
     assert_eq!(board.ask(100, Command::Ping, 0), BUSY);
     assert_eq!(board.ask(101, Command::Ping, 0), None);
-    for id in 102..102 + u32::from(PER_TICK) {
+    for id in 102..102 + u32::from(REFILL_PER_TICK) {
         assert_eq!(board.ask(id, Command::Ping, 1), ACK);
     }
     assert_eq!(board.ask(200, Command::Ping, 1), BUSY);
@@ -135,7 +135,7 @@ fn a_flood_is_told_busy_once_a_tick_and_then_nothing() {
 #[test]
 fn who_was_told_busy_may_ask_again_under_the_same_number() {
     let mut board = Board::default();
-    for id in 0..u32::from(BURST) {
+    for id in 0..u32::from(BUCKET_SIZE) {
         board.ask(id, Command::Ping, 0);
     }
     assert_eq!(board.ask(100, Command::Tare, 0), BUSY);
@@ -152,7 +152,7 @@ fn a_disarm_is_done_in_the_middle_of_a_flood() {
     board.ask(1000, Command::Disarm, 0);
     assert_eq!(board.done.last(), Some(&(1000, Command::Disarm)));
     assert_eq!(board.ask(1000, Command::Disarm, 1), ACK);
-    assert_eq!(board.done.len(), usize::from(BURST) + 1);
+    assert_eq!(board.done.len(), usize::from(BUCKET_SIZE) + 1);
 }
 
 #[test]
@@ -161,7 +161,7 @@ fn a_long_pause_gives_no_more_than_a_burst() {
     for id in 0..100 {
         board.ask(id, Command::Ping, 100_000);
     }
-    assert_eq!(board.done.len(), usize::from(BURST));
+    assert_eq!(board.done.len(), usize::from(BUCKET_SIZE));
 }
 
 #[test]
@@ -174,7 +174,7 @@ fn a_pause_gives_the_burst_back_even_where_the_tick_wraps() {
     for id in 100..200 {
         board.ask(id, Command::Ping, 10);
     }
-    assert_eq!(board.done.len() - before, usize::from(BURST));
+    assert_eq!(board.done.len() - before, usize::from(BUCKET_SIZE));
 }
 
 /// What may come next on the line.
@@ -197,7 +197,7 @@ proptest! {
     /// Shorter than the silence after which numbers may start anew.
     #[test]
     fn whatever_is_repeated_or_delayed_acts_once_and_in_order(
-        arrivals in prop::collection::vec(arrival(), 1..ANEW_TICKS as usize),
+        arrivals in prop::collection::vec(arrival(), 1..SESSION_TIMEOUT_TICKS as usize),
         first in 20_u32..1000,
     ) {
         // Of one host, each number belongs to one command.
