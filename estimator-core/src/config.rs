@@ -260,7 +260,7 @@ impl BendErrorConfig {
 }
 
 impl BiasFilterConfig {
-    /// Priors and noise of BNO055 units in IMUPLUS mode and of flex sensors (`docs/METHOD.md` has the sources).
+    /// Priors and noise of BNO055 units in IMUPLUS mode and of flex sensors (`docs/explanation/drift.md` has the sources).
     pub const BNO055: Self = Self {
         initial_bias: variance_deg(0.1).q,
         straightness: variance_deg(0.3).q,

@@ -2,7 +2,7 @@
 //!
 //! The method is that of arXiv 2511.01165: quadratic V–Orient maps turn bend-sensor voltages into bend angles, a
 //! moving-average anchor removes the drift of the IMUs, two Kalman filters (KF_orient, KF_coord) fuse both, and
-//! piecewise-constant-curvature kinematics (PCC) chain the segments to the arm's shape. `docs/PAPER.md` in the
+//! piecewise-constant-curvature kinematics (PCC) chain the segments to the arm's shape. `docs/explanation/paper.md` in the
 //! repository lists where the paper's text errs and what is done here instead.
 //!
 //! The crate is `no_std`, does not allocate, and depends on no hardware, file or protocol. It is generic over its

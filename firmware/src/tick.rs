@@ -8,11 +8,11 @@ use atsam3x8e_hal::watchdog::Watchdog;
 use board_core::{Actuator, Boots, Late, Task};
 use rtic::Mutex;
 use rtic_sync::signal::SignalWriter;
-use telemetry::{BEND_SENSORS, REGULATORS};
+use telemetry::{BEND_SENSORS, REGULATORS, TICK_US};
 
 use crate::SUPERVISOR;
 use crate::kept;
-use crate::parameters::{BEND_POSITIONS, TICK_US};
+use crate::parameters::BEND_POSITIONS;
 
 /// What a tick hands on to the tasks that follow it.
 #[derive(Clone, Copy)]

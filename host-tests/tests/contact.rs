@@ -1,4 +1,4 @@
-//! Contact as the estimator tells it with the reference table, against what touches the simulated arm.
+//! Contact as the estimator detects it with the reference table, compared with the simulated arm's contacts.
 
 use std::path::Path;
 

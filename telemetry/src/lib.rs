@@ -2,7 +2,7 @@
 //!
 //! The board sends [`Message`]s, the host sends [`Request`]s. Either way an [`Encoder`] makes a frame of one, and a
 //! [`Decoder`] finds frames in whatever bytes arrive, checks them and counts what is missing. The crate is `no_std`,
-//! allocates nothing and does no input or output itself. `docs/PROTOCOL.md` in the repository has every byte.
+//! allocates nothing and does no input or output itself. `docs/reference/protocol.md` in the repository has every byte.
 //!
 //! | file | what it is for |
 //! |---|---|
@@ -11,7 +11,7 @@
 //! | `payload.rs` | topics and bodies |
 //! | `frame.rs` | COBS, CRC and [`Encoder`] |
 //! | `decoder.rs` | [`Decoder`] |
-//! | `schema.rs` | [`SCHEMA`] |
+//! | `schema.rs` | [`SCHEMA`], the hash of the messages' layout |
 //! | `estimator.rs` | a [`Sample`] for `estimator-core`, and an [`Estimate`], [`Uncertainty`] and contact from it |
 //!
 //! ```
@@ -56,9 +56,9 @@ pub use estimator::touched;
 pub use frame::{EncodeError, Encoder, MAX_FRAME, PROTOCOL_VERSION};
 pub use message::*;
 pub use payload::{Payload, topic};
-pub use schema::SCHEMA;
+pub use schema::{EARLIER_SCHEMAS, SCHEMA, is_same_layout};
 
 /// The page's example is true.
 #[cfg(doctest)]
-#[doc = include_str!("../../docs/PROTOCOL.md")]
+#[doc = include_str!("../../docs/reference/protocol.md")]
 struct ProtocolPage;

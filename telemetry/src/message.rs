@@ -7,8 +7,11 @@ use serde::{Deserialize, Serialize};
 
 use crate::wire::{EstimateWire, SampleWire, UncertaintyWire};
 
-/// Ticks a second: the rate of samples and estimates, where nothing else was asked for.
-pub const TICK_HZ: f64 = 100.0;
+/// Time between two ticks of the board, µs.
+pub const TICK_US: u64 = 10_000;
+
+/// Ticks a second: the rate of samples and estimates, unless the host requests a lower one.
+pub const TICK_HZ: f64 = 1e6 / TICK_US as f64;
 
 /// Segments of the arm.
 pub const SEGMENTS: usize = 6;

@@ -1,4 +1,4 @@
-//! Piecewise-constant-curvature kinematics (paper, eq. 4 to 7, with the corrections of `docs/PAPER.md`).
+//! Piecewise-constant-curvature kinematics (paper, eq. 4 to 7, with the corrections of `docs/explanation/paper.md`).
 
 use nalgebra::Vector2;
 

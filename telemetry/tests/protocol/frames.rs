@@ -2,8 +2,8 @@
 
 use proptest::prelude::*;
 use telemetry::{
-    DecodeError, Decoder, Encoder, Event, Message, PROTOCOL_VERSION, Payload, Request, SCHEMA, SEGMENTS,
-    SegmentUncertainty, Uncertainty, topic,
+    DecodeError, Decoder, EARLIER_SCHEMAS, Encoder, Event, Message, PROTOCOL_VERSION, Payload, Request, SCHEMA,
+    SEGMENTS, SegmentUncertainty, Uncertainty, topic,
 };
 
 use crate::values::{longest_messages, message, ping};
@@ -26,10 +26,13 @@ fn topics_are_those_of_the_protocol_page() {
 }
 
 #[test]
-fn the_schema_is_that_of_this_version() {
-    // If this fails, a message's form has changed: raise PROTOCOL_VERSION, put the new hash here, and bring
-    // docs/PROTOCOL.md up to date.
-    assert_eq!((PROTOCOL_VERSION, SCHEMA), (2, 0x03C8_8117));
+fn the_schema_is_that_of_this_version_and_of_the_protocol_page() {
+    // If this fails, the layout of a message has changed: raise PROTOCOL_VERSION, empty EARLIER_SCHEMAS, put the new hash
+    // here, and bring docs/reference/protocol.md up to date.
+    assert_eq!((PROTOCOL_VERSION, SCHEMA), (2, 0x666C_7703));
+    let page = include_str!("../../../docs/reference/protocol.md");
+    assert!(page.contains(&format!("`0x{SCHEMA:08x}`")));
+    assert!(EARLIER_SCHEMAS.iter().all(|schema| page.contains(&format!("`0x{schema:08x}`"))));
 }
 
 /// The body that a message has on the line.

@@ -9,18 +9,18 @@ use virtual_due::Rig;
 fn the_board_boots_to_its_first_frames() {
     let mut board = Board::new(Rig::new(Scenario::FreeSwing, 1));
     board.run_ms(100);
-    let first = board.received().first().expect("the board speaks within 100 ms");
+    let first = board.received().first().expect("the board sends within 100 ms");
     assert!(matches!(first.message, Message::Hello(_)), "{first:?}");
     assert!(board.samples().count() >= 5 && board.estimates().count() >= 5);
     assert_eq!(board.machine.resets(), [], "it came up at once");
 }
 
 #[test]
-fn the_board_says_who_it_is() {
+fn the_board_identifies_itself() {
     let mut board = Board::new(Rig::new(Scenario::FreeSwing, 1));
     board.run_ms(100);
-    let hello = board.hellos().next().expect("a board greets").clone();
-    let table = board_tests::table().compile::<estimator_core::Q>(100.0).expect("the reference file is a table");
+    let hello = board.hellos().next().expect("a board sends `Hello`").clone();
+    let table = board_tests::table().compile::<estimator_core::Q>(100.0).expect("the reference file is a valid table");
     assert_eq!((hello.protocol, hello.schema), (PROTOCOL_VERSION, SCHEMA));
     assert_eq!((hello.arm.as_str(), hello.table), ("planar-6", table.checksum()));
     assert_eq!((hello.reset, hello.boot, hello.last_panic), (ResetCause::PowerOn, 1, None));

@@ -1,11 +1,11 @@
-//! What the board streams is enough to compute the same, bit for bit, on a host.
+//! The board's stream is enough to compute the same estimates, bit for bit, on a host.
 
 use board_tests::{Board, replay};
 use rig_twin::{MotionProgram, Scenario};
 use telemetry::{Command, Event, Outcome};
 use virtual_due::Rig;
 
-/// All that the board says of the arm's shape is the host's of the same samples: every estimate, uncertainty and contact.
+/// Checks that every estimate, uncertainty and contact of the board equals the host's of the same samples.
 pub fn assert_replays(board: &Board) {
     let expected = replay(board.samples());
     let found: Vec<_> = board.estimates().copied().collect();
@@ -21,10 +21,13 @@ pub fn assert_replays(board: &Board) {
         let expected = expected.iter().find(|expected| expected.uncertainty.tick == found.tick);
         assert_eq!(Some(*found), expected.map(|expected| expected.uncertainty));
     }
-    let told: Vec<_> = board.events().filter(|event| matches!(event, Event::Contact(..))).collect();
+    let received: Vec<_> = board.events().filter(|event| matches!(event, Event::Contact(..))).collect();
     let expected: Vec<_> = expected.iter().filter_map(|expected| expected.contact).collect();
-    assert!(told.len() == expected.len() || told.len() + 1 == expected.len(), "{told:?} and not {expected:?}");
-    assert_eq!(told, expected[..told.len()]);
+    assert!(
+        received.len() == expected.len() || received.len() + 1 == expected.len(),
+        "{received:?}, expected {expected:?}"
+    );
+    assert_eq!(received, expected[..received.len()]);
 }
 
 #[test]
@@ -41,7 +44,7 @@ fn every_estimate_is_the_hosts_after_a_tare() {
     board.run_ms(2000);
     board.swing(&MotionProgram::new(Scenario::FreeSwing, 6), 3);
     board.run_ms(2500);
-    assert_eq!(board.ask(Command::Tare), Outcome::Ack);
+    assert_eq!(board.request(Command::Tare), Outcome::Ack);
     board.swing(&MotionProgram::new(Scenario::FreeSwing, 6), 3);
     assert_eq!(board.samples().next_back().expect("samples come").tare, 2);
     assert_replays(&board);

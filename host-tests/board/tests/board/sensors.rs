@@ -27,7 +27,7 @@ fn twelve_bend_sensors_and_six_imus_arrive_with_values_of_their_own() {
 #[test]
 fn the_counts_of_each_bend_sensor_are_those_of_its_strip() {
     let board = ready();
-    // The arm rests, so that the twin's strips read now what they read in the last tick, but for noise.
+    // The arm rests, so that the twin's strips read the same now as in the last tick, but for noise.
     let strips = board.machine.world().twin().clone().adc_counts();
     let sample = board.samples().next_back().expect("samples come");
     for (sensor, (counts, strip)) in sample.bend.iter().zip(strips).enumerate() {

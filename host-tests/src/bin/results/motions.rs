@@ -1,4 +1,4 @@
-//! Motions beyond the paper's, on some of the test arms.
+//! Motions that the paper does not have, on some of the test arms.
 
 use std::fmt::{self, Write};
 

@@ -1,4 +1,4 @@
-//! The moving average of the drift anchor, over what there is to show.
+//! The moving average of the drift anchor, for the figures.
 
 use std::collections::VecDeque;
 
@@ -9,7 +9,7 @@ use calibration_tables::AnchorToml;
 pub struct MovingAverage {
     rate_hz: f64,
     window: u64,
-    /// Values of one step of the anchor each.
+    /// Sums of the values in each step of the anchor.
     steps: VecDeque<Step>,
     sum: f64,
     count: u64,
@@ -28,7 +28,7 @@ impl MovingAverage {
         Self { rate_hz: anchor.rate_hz, window, steps: VecDeque::new(), sum: 0.0, count: 0 }
     }
 
-    /// Takes a value, if there is one, and gives the mean of the window that ends with it.
+    /// Takes a value, if there is one, and returns the mean of the window that ends with it.
     pub fn add(&mut self, time_us: u64, value: Option<f64>) -> Option<f64> {
         let number = (time_us as f64 * self.rate_hz / 1e6) as u64;
         while let Some(oldest) = self.steps.pop_front_if(|step| step.number + self.window <= number) {

@@ -1,12 +1,12 @@
 //! Limits of contact detection: coupled segments and their responses, and the scatter of the residuals over the sweep.
 //!
-//! The response of a segment beside the one that it is coupled to is fitted to the true angles; the scatter is that of the
-//! IMUs and bend sensors, as the detector sees them. The same model in fixed point is `estimator_core`'s `contact`.
+//! The response of a segment to the one that it is coupled to is fitted to the true angles; the scatter is that of the IMUs
+//! and bend sensors at the detector's rate. The same model in fixed point is `estimator_core`'s `contact`.
 
 use calibration_tables::{ArmFile, ChangeToml, CoupledToml, RATIO_RANGE};
 
 use super::maps::FittedMap;
-use super::quantile;
+use super::statistics::{quantile, rms};
 use super::sweep::{LEAST_ROWS, Sweep};
 
 /// Squared correlation of two segments whose response is fitted, and the share of the later one's variance that a response
@@ -18,8 +18,8 @@ const PLAY_STEPS: i32 = 6;
 const PLAY_STEP_DEG: f64 = 0.5;
 const LAG_STEPS: i32 = 3;
 const LAG_STEP_S: f64 = 0.1;
-/// Share of the fitted lag that is used: what the ratios and the play do not explain of a slow sweep looks like lag. Chosen on
-/// fast motion of development arms.
+/// Share of the fitted lag that is used: a part of it is motion of a slow sweep that the ratios and the play do not explain.
+/// Chosen on fast motion of development arms.
 const LAG_SHARE: f64 = 0.85;
 /// Values of the detector's window, and of its motion, which is the window of the fit, too.
 const WINDOW: usize = 10;
@@ -150,7 +150,7 @@ impl Values {
         let (_, model, residuals) = trials.filter_map(trial).min_by(|(a, ..), (b, ..)| a.total_cmp(b))?;
         let left = variance(residuals.iter().flatten().map(|[residual, _]| *residual));
         let all = variance(self.theta[j].iter().flatten().copied());
-        // A lag at the bound is none: friction looks like it at the sweep's pace, and does not at another.
+        // A lag at the bound is an artefact: friction looks like a lag at the sweep's pace alone.
         let is_lag = model.lag_s.abs() < (f64::from(LAG_STEPS) - 0.5) * LAG_STEP_S;
         (is_lag && left < (1.0 - COUPLED) * all).then_some(Model { lag_s: LAG_SHARE * model.lag_s, ..model })
     }
@@ -206,14 +206,14 @@ impl Model {
 }
 
 impl Response {
-    /// Of the coupled segment for a `sign` of 1, of the segment itself for −1.
+    /// The response of the coupled segment for a `sign` of 1, of the segment itself for −1.
     fn new(model: &Model, sign: f64, step_s: f64) -> Self {
         let lag_s = (sign * model.lag_s).max(0.0);
         let share = if lag_s > 0.0 { 1.0 - (-step_s / lag_s).exp() } else { 1.0 };
         Self { radius: (sign * model.play_rad).max(0.0), share, state: None }
     }
 
-    /// Takes one value; gives the output and its change.
+    /// Takes one value; returns the output and its change.
     fn step(&mut self, angle: f64) -> [f64; 2] {
         let [play, lag] = self.state.unwrap_or([angle; 2]);
         let play = play.clamp(angle - self.radius, angle + self.radius);
@@ -246,7 +246,7 @@ fn changes<'r>(residuals: &'r [Residual], runs: &'r [u32], window: usize) -> imp
 
 fn rms_change(residuals: &[Residual], runs: &[u32], window: usize) -> Option<f64> {
     let count = changes(residuals, runs, window).count();
-    (count >= LEAST_ROWS).then(|| super::rms(changes(residuals, runs, window).map(|[change, _]| change)))
+    (count >= LEAST_ROWS).then(|| rms(changes(residuals, runs, window).map(|[change, _]| change)))
 }
 
 /// Squared correlation of two columns without their means.
@@ -274,7 +274,7 @@ fn variance(values: impl Iterator<Item = f64> + Clone) -> f64 {
     values.map(|value| (value - mean).powi(2)).sum::<f64>() / count
 }
 
-/// To a thousandth: no sweep shows more.
+/// Rounds to a thousandth, the resolution of a sweep.
 fn rounded(value: f64) -> f64 {
     (value * 1000.0).round() / 1000.0
 }

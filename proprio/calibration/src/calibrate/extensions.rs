@@ -1,12 +1,12 @@
 //! Error sources of the estimates.
 //!
-//! Their parameters are those of the reference arm, but for what a sweep shows of its own: the errors of the bend sensors,
-//! and the error of constant curvature.
+//! Their parameters are those of the reference arm, but for those that a sweep determines: the errors of the bend sensors, and
+//! the error of constant curvature.
 
 use calibration_tables::{ArmFile, SegmentToml, UncertaintyToml};
 use serde::de::IgnoredAny;
 
-use super::quantile;
+use super::statistics::{quantile, rms};
 use super::sweep::{MeanSquare, Sweep};
 
 /// Share of the bend sensors' error that the moving-average anchor passes on to θ.
@@ -31,7 +31,7 @@ pub(super) fn set(sweep: &Sweep, table: &mut ArmFile) {
         heading_deg: if is_filtered { HEADING_DEG } else { 0.0 },
         end_mm: if is_filtered { end_mm(sweep) } else { anchored_end_mm(sweep) },
     };
-    // As far as the format goes.
+    // Clamped to the range of the format.
     table.uncertainty = Some(deviations.scaled(1.0));
 }
 
@@ -53,5 +53,5 @@ fn bend_deg(segments: &[SegmentToml]) -> f64 {
         let of_filter = segment.orient.as_ref().map(|noise| noise.r_bend.sqrt().to_degrees());
         of_filter.or(segment.bend_error.as_ref().map(|error| error.mean_deg))
     };
-    super::rms(segments.iter().filter_map(of_segment))
+    rms(segments.iter().filter_map(of_segment))
 }

@@ -1,8 +1,8 @@
 //! Memory of a bend sensor: weights of a lag and a play, by least squares.
 //!
 //! The features are computed by the recursion of `estimator-core`'s `sensing/hysteresis.rs`. The table's format has two lags and
-//! two plays; calibration uses one of each. In a sweep with periods of 20 to 40 s a lag of as many seconds cannot be told from
-//! the slope of the map, nor one play well from another: their weights become large and opposed, and are wrong where the arm
+//! two plays; calibration uses one of each. In a sweep with periods of 20 to 40 s a lag of as many seconds is collinear with the
+//! slope of the map, and one play nearly with another: their weights become large and opposed, and are wrong where the arm
 //! stays bent for minutes.
 
 use calibration_tables::MemoryToml;
@@ -12,7 +12,7 @@ use super::folds::{FOLDS, fold};
 use super::sweep::Sweep;
 
 /// Time constant of the lag, s: a bend sensor creeps, or overshoots, within seconds. Half a sweep's period is three times
-/// as long, so that the lag is told from the map.
+/// as long, so that the lag can be separated from the map.
 const LAG_S: f64 = 4.0;
 /// Radius of the play, a share of the largest bend angle. Shares from 0.1 to 0.2 are equally good on the simulated arms.
 const PLAY_SHARE: f64 = 0.15;
@@ -75,7 +75,7 @@ pub(super) fn features(angles: &[Option<f64>], sweep: &Sweep, largest_rad: f64) 
     features.collect()
 }
 
-/// Fits the weights to what a map leaves, `errors` = truth − angle; `None` where the features do not determine them.
+/// Fits the weights to the residual of a map, `errors` = truth − angle; `None` where the features do not determine them.
 pub(super) fn fit(features: &Features, errors: &[Option<f64>]) -> Option<FittedMemory> {
     let mut folds = [Sums::default(); FOLDS];
     for (row, (terms, error)) in features.iter().zip(errors).enumerate() {
@@ -163,7 +163,7 @@ mod tests {
             let expected = angles[row].zip(features[row]).map(|(angle, terms)| angle + WEIGHTS.dot(&terms));
             assert_eq!(bend.is_some(), expected.is_some(), "row {row}");
             if let Some((found, expected)) = bend.zip(expected) {
-                // The estimator's memory works in fixed point, whatever its number is.
+                // The estimator's memory works in fixed point with any number type.
                 assert!((found - expected).abs() < 2e-5, "row {row}: {found} and {expected} rad");
             }
         }

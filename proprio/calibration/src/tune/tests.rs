@@ -7,16 +7,16 @@ use estimator_core::{
     ArmConfig, BendMap, BendSensorConfig, Estimator, FusedOps, ImuReading, KalmanParams, Method, Phase, Q,
     QuadraticMap, Sample, SegmentConfig,
 };
-use proprio_analysis::metrics::Score;
+use proprio_analysis::metrics::ErrorMetrics;
 use proprio_analysis::replay::replay;
-use proprio_session::{NamedTable, NoProgress};
+use proprio_session::{LoadedTable, NoProgress};
 use proprio_simulation::{ImuColumns, SessionWriter, Simulation};
 use rig_twin::Scenario;
 
 use super::descent::{MAX_ITERATIONS, descend};
 use super::objective::{Evaluation, Objective};
 use super::parameters::Ranges;
-use super::search::{MAX_RUNS, Place, filter_at, search};
+use super::search::{GridPoint, MAX_RUNS, filter_at, search};
 use super::training::{Part, Training};
 use super::{Dual, TuningError, pooled};
 
@@ -45,13 +45,13 @@ fn session(folder: &Path, scenario: Scenario, rate_hz: f64, gaps: bool) -> PathB
 }
 
 /// The reference table, which has the bias filter.
-fn reference() -> NamedTable<'static> {
+fn reference() -> LoadedTable<'static> {
     let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../calibration-tables/planar-6.toml"));
-    NamedTable { file: ArmFile::load(path).expect("it is committed"), path }
+    LoadedTable { file: ArmFile::load(path).expect("it is committed"), path }
 }
 
 /// The reference table with the anchor, and with Kalman filters that remember, weigh and scale.
-fn table() -> NamedTable<'static> {
+fn table() -> LoadedTable<'static> {
     let mut table = reference();
     (table.file.drift, table.file.uncertainty) = (None, None);
     for (i, segment) in (1..).map(f64::from).zip(&mut table.file.segments) {
@@ -62,13 +62,13 @@ fn table() -> NamedTable<'static> {
     table
 }
 
-fn objective(table: &NamedTable, sessions: &[PathBuf]) -> Objective {
+fn objective(table: &LoadedTable, sessions: &[PathBuf]) -> Objective {
     let read = |path: &PathBuf| Training::read(path, Part::Both, table, &mut NoProgress).expect("a good session");
     let sessions = sessions.iter().map(read).collect();
     Objective::new(sessions, table.compile::<f64>(10.0).expect("a table").config().segments)
 }
 
-fn assert_gradient_is_exact(table: &NamedTable, sessions: &[PathBuf]) {
+fn assert_gradient_is_exact(table: &LoadedTable, sessions: &[PathBuf]) {
     let objective = objective(table, sessions);
     let place = objective.place(&table.file);
     let exact = objective.at(&place).gradient;
@@ -84,8 +84,8 @@ fn assert_gradient_is_exact(table: &NamedTable, sessions: &[PathBuf]) {
         let finite = (at(h) - at(-h)) / (2.0 * h);
         assert!((exact[k] - finite).abs() < 1e-9 + 1e-7 * finite.abs(), "{k}: {} instead of {finite}", exact[k]);
     }
-    let felt = exact.iter().filter(|derivative| derivative.abs() > 1e-5).count();
-    assert!(felt > 40, "only {felt} parameters act, so that this test shows little");
+    let acting = exact.iter().filter(|derivative| derivative.abs() > 1e-5).count();
+    assert!(acting > 40, "only {acting} parameters act, so that this test shows little");
 }
 
 #[test]
@@ -104,20 +104,20 @@ fn the_gradient_is_exact_over_sessions_of_two_rates_with_readings_and_truth_miss
     assert_gradient_is_exact(&table(), &sessions);
 }
 
-fn assert_errors_are_those_of_replay(table: &NamedTable) {
+fn assert_errors_are_those_of_replay(table: &LoadedTable) {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let path = session(folder.path(), Scenario::FreeSwing, 10.0, true);
-    let mut score = Score::new(table.file.length_mm());
+    let mut errors = ErrorMetrics::new(table.file.length_mm());
     let visit = |row: &_, outcome: &_| {
-        score.add(row, outcome);
+        errors.add(row, outcome);
         Ok(())
     };
     replay::<f64>(&path, table, &mut NoProgress, visit).expect("a good session");
-    let [.., fusion] = score.figures();
+    let [.., fusion] = errors.metrics();
 
     let found = objective(table, &[path]).of_table(&table.file);
     let mut errors = pooled(&found, |session| &session.training);
-    errors.append(&pooled(&found, |session| &session.held_back));
+    errors.append(&pooled(&found, |session| &session.validation));
     let (found, expected) = (errors.keys().tip_rmse_mm, fusion.tip_rmse_mm.expect("there is truth"));
     assert!((found - expected).abs() < 1e-9 * expected, "{found} instead of {expected}");
 }
@@ -141,7 +141,7 @@ fn of_three_sessions_the_third_judges_and_of_two_the_last_fifths() {
             let training = Training::read(&path, Part::of_session(k, count), &reference(), &mut NoProgress)
                 .expect("a good session");
             let errors = training.fused().expect("it has the bias filter");
-            [errors.training.tips.count(), errors.held_back.tips.count()]
+            [errors.training.tips.count(), errors.validation.tips.count()]
         });
         sessions.collect()
     };
@@ -170,7 +170,7 @@ fn a_place_is_worth_what_its_table_is() {
     let tables = [table.file.clone(), objective.table(&place, table.file.clone())];
     for of_table in tables.map(|table| objective.of_table(&table)) {
         assert!((of_table.loss - objective.at(&place).loss).abs() < 1e-12);
-        assert!((of_table.held_back_loss - objective.at(&place).held_back_loss).abs() < 1e-12);
+        assert!((of_table.validation_loss - objective.at(&place).validation_loss).abs() < 1e-12);
     }
 }
 
@@ -239,8 +239,8 @@ fn errors_that_are_no_numbers_are_refused() {
     assert_eq!(descend(steep, vec![0.0], |_| true), Err(TuningError::NotFinite));
 }
 
-/// What a place costs that is off from the bottom of a bowl, in decades.
-fn bowl(place: &Place, bottom: [f64; 5], depth: f64) -> Evaluation {
+/// Evaluation of a point by its distance from the bottom of a bowl, in decades.
+fn bowl(place: &GridPoint, bottom: [f64; 5], depth: f64) -> Evaluation {
     let off = place.iter().zip(bottom).map(|(steps, bottom)| f64::from(*steps) / 8.0 - bottom);
     Evaluation { loss: depth * off.map(|off| off * off).sum::<f64>(), ..Evaluation::default() }
 }

@@ -1,4 +1,4 @@
-//! Remedies: what to do about each error of the libraries.
+//! Remedies of the libraries' errors.
 
 mod calibration;
 mod flash;

@@ -9,7 +9,7 @@ impl Help for FileError {
         let help = match self {
             Self::Read(_) => "check the name and that you may read it; it must be a text file in UTF-8",
             Self::Size => "name the .toml file of the arm",
-            Self::Syntax { .. } => "correct the line; the keys are listed in docs/FORMATS.md",
+            Self::Syntax { .. } => "correct the line; the keys are listed in docs/reference/table.md",
             Self::Format(_) => "use a version of proprio that reads this format",
             Self::Value { .. } => "correct the value, or make the table again with `proprio calibrate`",
             Self::NotCalibrated(_) => "make a table of it with `proprio calibrate`, or write bend = [] if it has none",

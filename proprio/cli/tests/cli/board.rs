@@ -1,4 +1,4 @@
-//! A board that is none: the firmware's own estimator and frames, over what the twin's sensors read.
+//! A synthetic board: the firmware's estimator and frames, over the readings of the twin's sensors.
 
 use board_core::Arm;
 use calibration_tables::ArmFile;
@@ -86,7 +86,7 @@ impl SyntheticBoard {
         }
     }
 
-    /// All that it says.
+    /// All bytes that it sends.
     pub fn bytes(self) -> Vec<u8> {
         self.flat_map(|(frames, _)| frames.concat()).collect()
     }

@@ -12,6 +12,7 @@ mod calibrate_gaps;
 mod common;
 mod convert;
 mod drive;
+mod earlier_schema;
 mod estimates;
 mod figures;
 #[cfg(unix)]

@@ -1,4 +1,4 @@
-//! `tune` on good sessions: what the table becomes, what is told of it, and how a run ends.
+//! `tune` on good sessions: the tuned table, its report, and the end of a run.
 
 use std::path::Path;
 use std::sync::OnceLock;
@@ -169,7 +169,7 @@ fn a_calibration_of_a_tuned_table_forgets_the_tuning() {
     assert_eq!(load(tuned.folder.path("anew.toml")).tuning, None);
 }
 
-/// Truth that the old filters meet to a thousandth of a degree while it is held back: whatever descent finds is worse there.
+/// Truth that the old filters meet to a thousandth of a degree in the validation part: any other filters are worse there.
 #[test]
 fn filters_that_are_worse_on_what_is_held_back_are_not_kept() {
     let mut session = training();
@@ -185,7 +185,7 @@ fn filters_that_are_worse_on_what_is_held_back_are_not_kept() {
     let record = after.tuning.expect("a record");
     assert!(record.best_iteration == 0 && record.iterations > 0, "{record:?}");
     assert_eq!(before.segments, after.segments);
-    assert!(run.stderr.starts_with("warning: ") && run.stderr.contains("held back"), "{}", run.stderr);
+    assert!(run.stderr.starts_with("warning: ") && run.stderr.contains("validation error"), "{}", run.stderr);
     assert_eq!(run.stderr.lines().count(), 1, "{}", run.stderr);
 }
 

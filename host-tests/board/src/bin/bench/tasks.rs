@@ -1,15 +1,16 @@
-//! How long each task of the firmware takes at the most.
+//! Longest run of each task of the firmware.
 
 use board_tests::firmware;
 use object::{Object, ObjectSection, ObjectSymbol};
 use virtual_due::{CYCLES_PER_SECOND, Cycles};
 
-use crate::{Figure, trouble};
+use crate::fault_run;
+use crate::figure::Figure;
 
 const CYCLES_PER_US: f64 = CYCLES_PER_SECOND as f64 / 1e6;
 const CYCLES_PER_MS: Cycles = CYCLES_PER_SECOND / 1000;
 
-/// A tick is over then: the next has not begun.
+/// Time after a tick at which its work is over and the next has not begun.
 const TICK: Cycles = CYCLES_PER_SECOND / 100 - CYCLES_PER_MS / 10;
 
 /// The interrupt's handler that runs a task: its first instruction and its last.
@@ -18,8 +19,8 @@ struct Handler {
     exit: u32,
 }
 
-/// The longest of each task, µs, in a run with requests and faults: from the first instruction of its interrupt to the last,
-/// what preempts it included; of `shape`, which waits in between, from the tick to the end of its last piece.
+/// Longest run of each task, µs, with requests and faults: from the first instruction of its interrupt to the last,
+/// preemption included; of `shape`, which waits in between, from the tick to the end of its last piece.
 pub fn figures() -> [Figure; 5] {
     let longest = |name, handler| Figure { name, value: longest(&Handler::of(handler)) as f64 / CYCLES_PER_US };
     [
@@ -56,7 +57,7 @@ impl Handler {
 /// The longest run of a handler, cycles.
 fn longest(handler: &Handler) -> Cycles {
     let mut longest = 0;
-    trouble::board(|board, ms| {
+    fault_run::board(|board, ms| {
         let end = board.machine.now() + ms * CYCLES_PER_MS;
         while board.machine.run_to(handler.entry, end) {
             let begun = board.machine.now();
@@ -68,11 +69,11 @@ fn longest(handler: &Handler) -> Cycles {
     longest
 }
 
-/// The longest from a tick to the last piece of the shape's task, cycles.
+/// Longest time from a tick to the end of the shape task's last piece, cycles.
 fn longest_tick() -> Cycles {
     let (tick, shape) = (Handler::of("TC0"), Handler::of("SSC"));
     let mut longest = 0;
-    trouble::board(|board, ms| {
+    fault_run::board(|board, ms| {
         let end = board.machine.now() + ms * CYCLES_PER_MS;
         while board.machine.run_to(tick.entry, end) {
             let begun = board.machine.now();
