@@ -126,7 +126,7 @@ impl<'t, S: FusedOps, const N: usize, const W: usize> Estimator<'t, S, N, W> {
 }
 
 impl<'t, S: FusedOps, const N: usize, const W: usize, T: BiasTrace<Q>> Estimator<'t, S, N, W, T> {
-    /// As [`Self::new`], with a trace of the bias filter's operations.
+    /// An estimator at the start of a session, with a trace of the bias filter's operations.
     ///
     /// # Errors
     /// As [`Self::new`].

@@ -56,7 +56,7 @@ impl<S: Scalar, const N: usize> BiasState<S, N> {
 }
 
 impl<S: Scalar, const N: usize, T: BiasTrace<S>> BiasState<S, N, T> {
-    /// As [`Self::new`], with a trace.
+    /// States of `zero` without variance, with a trace.
     pub const fn with_trace(zero: S, trace: T) -> Self {
         Self {
             bias: [Turns::ZERO; N],
