@@ -278,13 +278,13 @@ fn a_recording_that_is_cut_at_any_byte_loses_no_more_than_its_last_second() {
         let cut = 4096 + random.next_u32() as usize % (recording.len() - 4096);
         let folder = Folder::with("cut.mcap", &recording[..cut]);
         let run = folder.done(&["recover", "cut.mcap", "-o", "whole.mcap"]);
-        assert!(run.stderr.contains("saved of a file that was cut"), "{}", run.stderr);
+        assert!(run.stderr.contains("recovered from a file that was cut"), "{}", run.stderr);
         let (recorded, stderr) = recorded(&folder, "whole.mcap");
         assert_eq!(recorded["first_difference"], Value::Null, "cut at {cut}: {stderr}");
         assert_eq!(recorded["equal"], recorded["estimates"], "cut at {cut}: {stderr}");
         let saved = recorded["equal"].as_u64().expect("a count");
         let at_best = 2000 * cut as u64 / recording.len() as u64;
-        assert!(saved + 200 > at_best, "cut at {cut}: {saved} saved of about {at_best}");
+        assert!(saved + 200 > at_best, "cut at {cut}: {saved} recovered of about {at_best}");
     }
 }
 
