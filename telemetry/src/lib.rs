@@ -55,7 +55,7 @@ mod schema;
 mod wire;
 mod wire_conversions;
 
-pub use constants::{BEND_SENSORS, MAX_FRAME, PROTOCOL_VERSION, REGULATORS, SEGMENTS, TICK_HZ};
+pub use constants::{BEND_SENSORS, MAX_FRAME, PROTOCOL_VERSION, REGULATORS, SEGMENTS, TICK_HZ, TICK_US};
 pub use decode_error::DecodeError;
 pub use decoder::{Counts, Decoder};
 pub use estimator::contact_flags;
