@@ -1,4 +1,4 @@
-//! Bend sensors: what reads at a rail is kept from the estimator, and only that.
+//! Readings of bend sensors at a rail are rejected, all others are passed on; states are debounced.
 
 use board_core::{BendSensorMonitor, LOSS_TICKS, RAIL_COUNTS, RETURN_TICKS};
 use telemetry::{BEND_SENSORS, Event, SensorState};
@@ -14,7 +14,7 @@ fn scan(counts: u16) -> [u16; BEND_SENSORS] {
     scan
 }
 
-/// Runs the same scan for some ticks; gives the broken sensor's counts in the last one, and what was events.
+/// Repeats a scan for some ticks; returns the broken sensor's counts in the last one, and all events.
 fn run(monitor: &mut BendSensorMonitor, scan: Option<&[u16; BEND_SENSORS]>, ticks: u8) -> (Option<u16>, Vec<Event>) {
     let mut events = Vec::new();
     let mut last = None;
@@ -33,7 +33,7 @@ fn good_counts_pass_unchanged() {
 }
 
 #[test]
-fn counts_at_a_rail_are_withheld_at_once_and_the_others_pass() {
+fn counts_at_a_rail_are_rejected_at_once_and_the_others_pass() {
     for counts in [0, RAIL_COUNTS - 1, 4096 - RAIL_COUNTS, 4095, u16::MAX] {
         let given = BendSensorMonitor::new().step(Some(&scan(counts)), |_| {});
         let mut expected = GOOD.map(Some);
@@ -46,7 +46,7 @@ fn counts_at_a_rail_are_withheld_at_once_and_the_others_pass() {
 }
 
 #[test]
-fn a_sensor_at_a_rail_is_off_after_three_ticks_and_says_so_once() {
+fn a_sensor_at_a_rail_has_no_response_after_three_ticks_and_one_event() {
     let mut monitor = BendSensorMonitor::new();
     let (_, events) = run(&mut monitor, Some(&scan(4095)), LOSS_TICKS - 1);
     assert_eq!((events, monitor.health()[BROKEN].state), (vec![], SensorState::Ok));
@@ -58,7 +58,7 @@ fn a_sensor_at_a_rail_is_off_after_three_ticks_and_says_so_once() {
 }
 
 #[test]
-fn short_visits_to_a_rail_do_not_switch_a_sensor_off() {
+fn shorter_readings_at_a_rail_do_not_change_the_state() {
     let mut monitor = BendSensorMonitor::new();
     for _ in 0..100 {
         assert_eq!(run(&mut monitor, Some(&scan(0)), LOSS_TICKS - 1), (None, vec![]));
@@ -67,11 +67,11 @@ fn short_visits_to_a_rail_do_not_switch_a_sensor_off() {
 }
 
 #[test]
-fn a_sensor_that_was_off_is_trusted_again_after_half_a_second_of_good_readings() {
+fn a_sensor_is_ok_again_after_half_a_second_of_good_readings() {
     let mut monitor = BendSensorMonitor::new();
     run(&mut monitor, Some(&scan(0)), LOSS_TICKS);
     assert_eq!(run(&mut monitor, Some(&scan(2000)), RETURN_TICKS - 1), (None, vec![]));
-    // One more reading at the rail, and the count begins again.
+    // One more reading at the rail restarts the debounce time.
     assert_eq!(run(&mut monitor, Some(&scan(0)), 1), (None, vec![]));
     assert_eq!(run(&mut monitor, Some(&scan(2000)), RETURN_TICKS - 1), (None, vec![]));
     let ok = Event::Bend(BROKEN as u8, SensorState::Ok);
@@ -79,7 +79,7 @@ fn a_sensor_that_was_off_is_trusted_again_after_half_a_second_of_good_readings()
 }
 
 #[test]
-fn each_tick_without_a_reading_counts_up_to_the_largest_value() {
+fn ticks_without_a_reading_are_counted_and_the_count_saturates() {
     let mut monitor = BendSensorMonitor::new();
     run(&mut monitor, Some(&scan(0)), 1);
     run(&mut monitor, Some(&scan(2000)), 1);
@@ -92,7 +92,7 @@ fn each_tick_without_a_reading_counts_up_to_the_largest_value() {
 }
 
 #[test]
-fn a_stale_scan_gives_nothing_and_a_stalled_converter_is_noticed() {
+fn a_stale_scan_has_no_readings_and_a_stalled_converter_is_detected() {
     let mut monitor = BendSensorMonitor::new();
     assert_eq!(monitor.step(None, |event| panic!("{event:?}")), [None; BEND_SENSORS]);
     assert_eq!(monitor.step(Some(&GOOD), |event| panic!("{event:?}")), GOOD.map(Some));

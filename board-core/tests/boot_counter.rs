@@ -1,10 +1,10 @@
-//! BootCounter and crashes are counted over resets, and a boot loop is noticed.
+//! Boots and crashes are counted over resets, and a boot loop is detected.
 
 use board_core::{BootCounter, CRASHES, RETAINED_WORDS, UPTIME_WORD, WINDOW_TICKS};
 use proptest::prelude::*;
 use telemetry::ResetCause;
 
-/// The words that a boot leaves when it ends after some ticks.
+/// Words of a boot that ends after some ticks.
 fn after(boot: &BootCounter, ticks: u32) -> [u32; RETAINED_WORDS] {
     let mut words = boot.retained();
     words[UPTIME_WORD] = boot.uptime(ticks);
@@ -20,7 +20,7 @@ fn next(boot: &BootCounter, ticks: u32, cause: ResetCause) -> BootCounter {
 }
 
 #[test]
-fn power_on_is_the_first_boot_whatever_the_words_hold() {
+fn power_on_is_the_first_boot_with_any_words() {
     let retained = after(&next(&power_on(), 10, ResetCause::Watchdog), 10);
     for words in [[0; RETAINED_WORDS], [u32::MAX; RETAINED_WORDS], retained] {
         let boot = BootCounter::start(words, ResetCause::PowerOn, false);
@@ -56,7 +56,7 @@ fn three_crashes_within_a_minute_are_a_boot_loop() {
 }
 
 #[test]
-fn three_crashes_in_more_than_a_minute_are_none() {
+fn three_crashes_in_more_than_a_minute_are_no_boot_loop() {
     let mut boot = next(&power_on(), 1_000_000, ResetCause::Watchdog);
     boot = next(&boot, WINDOW_TICKS / 2, ResetCause::Watchdog);
     boot = next(&boot, WINDOW_TICKS / 2 + 1, ResetCause::Watchdog);
@@ -93,7 +93,7 @@ fn safe_mode_outlasts_other_resets_until_the_minute_is_over() {
 }
 
 #[test]
-fn power_on_leads_out_of_safe_mode() {
+fn power_on_ends_safe_mode() {
     let mut boot = power_on();
     for _ in 0..CRASHES {
         boot = next(&boot, 0, ResetCause::Watchdog);
@@ -102,13 +102,13 @@ fn power_on_leads_out_of_safe_mode() {
 }
 
 #[test]
-fn uptime_goes_on_over_resets() {
+fn uptime_is_counted_across_resets() {
     let boot = next(&next(&power_on(), 500, ResetCause::Pin), 300, ResetCause::Watchdog);
     assert_eq!(boot.uptime(20), 820);
 }
 
 #[test]
-fn a_boot_loop_is_noticed_where_the_uptime_wraps() {
+fn a_boot_loop_is_detected_while_the_uptime_wraps() {
     let mut boot = next(&power_on(), u32::MAX - 50, ResetCause::Watchdog);
     boot = next(&boot, 100, ResetCause::Watchdog);
     boot = next(&boot, 100, ResetCause::Watchdog);
@@ -117,7 +117,7 @@ fn a_boot_loop_is_noticed_where_the_uptime_wraps() {
 
 proptest! {
     #[test]
-    fn words_left_to_chance_start_the_count_anew(words in prop::array::uniform7(any::<u32>())) {
+    fn random_words_restart_the_count(words in prop::array::uniform7(any::<u32>())) {
         let boot = BootCounter::start(words, ResetCause::Pin, false);
         prop_assert_eq!((boot.number(), boot.crashes(), boot.safe_mode()), (1, 0, false));
     }

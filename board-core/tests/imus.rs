@@ -1,4 +1,4 @@
-//! Six IMUs behind the multiplexer, and what becomes of their readings when things fail.
+//! Six IMUs behind the multiplexer, and their readings under faults.
 
 use board_core::imus::ImuReadings;
 use proptest::prelude::*;
@@ -7,10 +7,10 @@ use telemetry::{Event, SensorState};
 mod imu_rig;
 use imu_rig::{Holder, ImuRig, POWER_ON_TICKS, heading};
 
-/// Of the 4 ms in which the IMUs are to be read, a quarter is the processor's and the chips' that stretch the clock.
+/// Limit of the time on the wire: a quarter of the IMUs' 4 ms is for the processor and for clock stretching.
 const WIRE_LIMIT_US: f64 = 3_000.0;
 
-/// What unit k (from 0) is set to measure in a tick: no two are ever alike.
+/// Reading of IMU k (from 0) in a tick: no two are equal.
 fn measured(k: usize, tick: u32) -> [i16; 4] {
     heading(10.0 * (k + 1) as f64 + 0.02 * f64::from(tick % 200))
 }
@@ -39,7 +39,7 @@ fn ticks_until(rig: &mut ImuRig, k: usize, wanted: SensorState, limit: u32) -> u
 }
 
 #[test]
-fn imus_that_have_power_are_read_from_the_fifth_tick_each_under_its_own_number() {
+fn imus_with_power_are_read_from_the_fifth_tick_in_order() {
     let mut rig = ImuRig::powered_up();
     for _ in 0..4 {
         assert_eq!(rig.tick(), ImuReadings { imu: [None; 6], events: heapless::Vec::new() });
@@ -78,21 +78,21 @@ fn imus_that_are_absent_from_the_start_leave_the_others_on_schedule() {
         let mut rig = ImuRig::powered_up();
         rig.wiring().chips[absent].is_plugged = false;
         rig.ticks(4);
-        let mut asked = 0;
+        let mut polls = 0;
         for _ in 0..1000 {
             let readings = moving_tick(&mut rig);
             let read: Vec<_> = readings.imu.iter().map(Option::is_some).collect();
             assert_eq!(read, (0..6).map(|k| k != absent).collect::<Vec<_>>());
             assert!(rig.wire_us() < WIRE_LIMIT_US, "{} µs", rig.wire_us());
-            asked += rig.log.iter().filter(|(address, bits)| *address == 0x28 && *bits == 11).count();
+            polls += rig.log.iter().filter(|(address, bits)| *address == 0x28 && *bits == 11).count();
         }
-        assert_eq!(asked, 1000 / 25, "an absent IMU costs one address every 250 ms");
+        assert_eq!(polls, 1000 / 25, "an absent IMU costs one address every 250 ms");
         assert_eq!(rig.imus.bus_recoveries(), 0);
     }
 }
 
 #[test]
-fn an_imu_that_is_unplugged_is_off_within_five_ticks_and_back_when_it_answers() {
+fn an_imu_that_is_unplugged_has_no_response_within_five_ticks_and_back_when_it_answers() {
     let mut rig = ImuRig::running();
     rig.wiring().chips[2].is_plugged = false;
     let readings = moving_tick(&mut rig);
@@ -105,7 +105,7 @@ fn an_imu_that_is_unplugged_is_off_within_five_ticks_and_back_when_it_answers() 
 }
 
 #[test]
-fn a_single_refusal_costs_one_reading_and_no_event() {
+fn a_single_nack_costs_one_reading_and_no_event() {
     let mut rig = ImuRig::running();
     rig.wiring().chips[4].is_plugged = false;
     moving_tick(&mut rig);
@@ -116,7 +116,7 @@ fn a_single_refusal_costs_one_reading_and_no_event() {
 }
 
 #[test]
-fn a_silent_brown_out_is_seen_within_100_ms_and_over_within_2_s() {
+fn a_silent_brown_out_is_detected_within_100_ms_and_over_within_2_s() {
     for phase in 0..8 {
         for data in [None, Some(heading(77.0))] {
             let mut rig = ImuRig::running();
@@ -146,7 +146,7 @@ fn a_brown_out_in_which_the_chip_does_not_answer_is_over_within_2_s() {
 }
 
 #[test]
-fn a_quaternion_that_cannot_be_is_withheld_at_once_and_reported_after_three() {
+fn a_quaternion_of_wrong_norm_is_rejected_at_once_and_reported_after_three_ticks() {
     for bad in [[0; 4], [i16::MIN; 4], [16384, 16384, 16384, 16384]] {
         let mut rig = ImuRig::running();
         rig.wiring().chips[1].forced = Some(bad);
@@ -160,7 +160,7 @@ fn a_quaternion_that_cannot_be_is_withheld_at_once_and_reported_after_three() {
 }
 
 #[test]
-fn an_imu_frozen_while_the_others_move_is_stuck_after_half_a_second_and_until_it_moves() {
+fn an_imu_that_repeats_its_reading_while_the_others_move_is_stuck_after_half_a_second_and_until_it_moves() {
     let mut rig = ImuRig::running();
     rig.wiring().chips[5].forced = Some(heading(123.0));
     moving_tick(&mut rig);
@@ -181,7 +181,7 @@ fn an_imu_frozen_while_the_others_move_is_stuck_after_half_a_second_and_until_it
 }
 
 #[test]
-fn at_rest_ten_minutes_of_the_same_bytes_are_no_alarm_though_one_unit_drifts() {
+fn at_rest_ten_minutes_of_the_same_bytes_are_no_fault_though_one_imu_drifts() {
     let mut rig = ImuRig::running();
     for tick in 0..60_000 {
         // 45° in 900 s, the worst drift.
@@ -231,7 +231,7 @@ fn an_imu_that_keeps_holding_the_bus_is_cut_off_and_the_others_are_read() {
 }
 
 #[test]
-fn a_shorted_bus_costs_little_in_each_tick_and_is_reported_once_when_it_is_cleared() {
+fn a_shorted_bus_costs_little_in_each_tick_and_is_reported_once_when_it_recovers() {
     let mut rig = ImuRig::running();
     rig.wiring().holder = Some(Holder::Short);
     for tick in 1..=500 {
@@ -251,9 +251,9 @@ fn a_shorted_bus_costs_little_in_each_tick_and_is_reported_once_when_it_is_clear
 }
 
 #[test]
-fn a_multiplexer_that_is_gone_takes_the_imus_off_and_brings_them_back() {
+fn a_missing_multiplexer_disconnects_the_imus_until_it_returns() {
     let mut rig = ImuRig::running();
-    // What an IMU once said is no word on the multiplexer.
+    // An earlier fault of an IMU is independent of the multiplexer's.
     rig.wiring().chips[1].forced = Some([0; 4]);
     rig.tick();
     rig.wiring().chips[1].forced = None;
@@ -268,7 +268,7 @@ fn a_multiplexer_that_is_gone_takes_the_imus_off_and_brings_them_back() {
 }
 
 #[test]
-fn a_multiplexer_that_stays_on_a_channel_never_gives_its_imu_another_name() {
+fn a_multiplexer_stuck_on_a_channel_never_attributes_its_imu_to_another() {
     let mut rig = ImuRig::running();
     rig.wiring().connected = 1 << 4;
     rig.wiring().mux_ignores = true;
@@ -285,7 +285,7 @@ fn a_multiplexer_that_stays_on_a_channel_never_gives_its_imu_another_name() {
 }
 
 #[test]
-fn a_tick_cut_off_at_any_transaction_keeps_what_was_read_and_the_next_clears_the_bus_first() {
+fn a_tick_cut_off_at_any_transaction_keeps_the_readings_and_the_next_recovers_the_bus_first() {
     let mut whole = ImuRig::running();
     whole.tick();
     for cut in 0..whole.log.len() {
@@ -311,7 +311,7 @@ fn a_tick_cut_off_at_any_transaction_keeps_what_was_read_and_the_next_clears_the
 }
 
 #[test]
-fn an_imu_that_never_lets_go_of_the_clock_delays_the_others_once_in_250_ms() {
+fn an_imu_that_holds_the_clock_low_delays_the_others_once_in_250_ms() {
     let mut rig = ImuRig::running();
     rig.wiring().chips[1].stretches = true;
     let before = rig.imus.health()[5].missed;
@@ -323,9 +323,9 @@ fn an_imu_that_never_lets_go_of_the_clock_delays_the_others_once_in_250_ms() {
     assert_eq!(rig.imus.health()[5].missed - before, 10);
 }
 
-/// Something that goes wrong, for one tick or for good.
+/// A fault, for one tick or permanent.
 #[derive(Debug, Clone)]
-enum Mishap {
+enum Fault {
     Hang(usize),
     Plug(usize, bool),
     BrownOut(usize),
@@ -335,44 +335,44 @@ enum Mishap {
     MuxLosesPower,
 }
 
-fn mishap() -> impl Strategy<Value = Mishap> {
+fn fault() -> impl Strategy<Value = Fault> {
     prop_oneof![
-        (0_usize..25).prop_map(Mishap::Hang),
-        (0_usize..6, any::<bool>()).prop_map(|(k, is_plugged)| Mishap::Plug(k, is_plugged)),
-        (0_usize..6).prop_map(Mishap::BrownOut),
-        (0_usize..6).prop_map(|k| Mishap::Hold(Holder::Clockable(k))),
-        (0_usize..6).prop_map(|k| Mishap::Hold(Holder::Broken(k))),
-        Just(Mishap::Hold(Holder::Short)),
-        Just(Mishap::Release),
-        any::<bool>().prop_map(Mishap::MuxIgnores),
-        Just(Mishap::MuxLosesPower),
+        (0_usize..25).prop_map(Fault::Hang),
+        (0_usize..6, any::<bool>()).prop_map(|(k, is_plugged)| Fault::Plug(k, is_plugged)),
+        (0_usize..6).prop_map(Fault::BrownOut),
+        (0_usize..6).prop_map(|k| Fault::Hold(Holder::Clockable(k))),
+        (0_usize..6).prop_map(|k| Fault::Hold(Holder::Broken(k))),
+        Just(Fault::Hold(Holder::Short)),
+        Just(Fault::Release),
+        any::<bool>().prop_map(Fault::MuxIgnores),
+        Just(Fault::MuxLosesPower),
     ]
 }
 
-fn befall(rig: &ImuRig, mishap: &Mishap) {
+fn inject(rig: &ImuRig, fault: &Fault) {
     let mut wiring = rig.wiring();
     let tick = wiring.tick;
-    match *mishap {
-        Mishap::Hang(at) => wiring.hangs_at = Some(at),
-        Mishap::Plug(k, is_plugged) => wiring.chips[k].is_plugged = is_plugged,
-        Mishap::BrownOut(k) => {
+    match *fault {
+        Fault::Hang(at) => wiring.hangs_at = Some(at),
+        Fault::Plug(k, is_plugged) => wiring.chips[k].is_plugged = is_plugged,
+        Fault::BrownOut(k) => {
             (wiring.chips[k].mode, wiring.chips[k].answers_from) = (0, tick + POWER_ON_TICKS);
         }
-        Mishap::Hold(holder) => wiring.holder = Some(holder),
-        Mishap::Release => wiring.holder = None,
-        Mishap::MuxIgnores(ignores) => wiring.mux_ignores = ignores,
-        Mishap::MuxLosesPower => wiring.connected = 0,
+        Fault::Hold(holder) => wiring.holder = Some(holder),
+        Fault::Release => wiring.holder = None,
+        Fault::MuxIgnores(ignores) => wiring.mux_ignores = ignores,
+        Fault::MuxLosesPower => wiring.connected = 0,
     }
 }
 
 proptest! {
     #[test]
     fn whatever_happens_no_reading_goes_under_another_name_and_all_come_back(
-        mishaps in prop::collection::vec((mishap(), 0_u32..40), 1..30)
+        faults in prop::collection::vec((fault(), 0_u32..40), 1..30)
     ) {
         let mut rig = ImuRig::running();
-        for (mishap, ticks) in &mishaps {
-            befall(&rig, mishap);
+        for (fault, ticks) in &faults {
+            inject(&rig, fault);
             for _ in 0..=*ticks {
                 let tick = rig.wiring().tick;
                 let readings = moving_tick(&mut rig);

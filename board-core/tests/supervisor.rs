@@ -1,4 +1,4 @@
-//! The watchdog is fed only while every task is in time.
+//! The watchdog is fed only while every task meets its deadline.
 
 use board_core::{DeadlineMissed, STARTUP_TICKS, Supervisor, Task};
 

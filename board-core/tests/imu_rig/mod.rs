@@ -38,7 +38,7 @@ pub struct Chip {
     pub page: u8,
     pub answers_from: u32,
     pub quaternion: [i16; 4],
-    /// What QUA_DATA reads, whatever the chip measures.
+    /// Value of QUA_DATA in place of the measured one.
     pub forced: Option<[i16; 4]>,
     /// Its transactions never end.
     pub stretches: bool,
@@ -74,7 +74,7 @@ impl Chip {
     }
 }
 
-/// Who holds SDA low.
+/// Device that holds SDA low.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Holder {
     /// The IMU on this channel, while that is connected; clocks free it.
@@ -112,7 +112,7 @@ impl Wiring {
         }
     }
 
-    /// What the transaction comes to; `None`: it never ends.
+    /// Result of the transaction; `None`: it never ends.
     fn transact(&mut self, address: u8, operations: &mut [Operation<'_>]) -> Option<Result<(), ErrorKind>> {
         let bytes = operations.iter().map(|operation| match operation {
             Operation::Read(bytes) => 1 + bytes.len(),
@@ -286,7 +286,7 @@ impl ImuRig {
         }
     }
 
-    /// How long the last tick's transactions took at 400 kHz, µs.
+    /// Time of the last tick's transactions at 400 kHz, µs.
     pub fn wire_us(&self) -> f64 {
         self.log.iter().map(|(_, bits)| f64::from(*bits) * 2.5).sum()
     }
