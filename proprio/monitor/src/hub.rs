@@ -46,7 +46,9 @@ impl<'t> Hub<'t> {
     pub fn run(mut self, link: &Link, stop: &AtomicBool) {
         while !stop.load(Ordering::Relaxed) {
             let wait = PERIOD.saturating_sub(self.batch_sent.elapsed());
-            if let Some(event) = self.events.next(wait) {
+            if let Some(mut event) = self.events.next(wait) {
+                // Events that this program was too slow for are a gap, too.
+                event.gaps = event.gaps.saturating_add(self.events.dropped() as u32);
                 self.take(&event);
             }
             if self.batch_sent.elapsed() >= PERIOD {

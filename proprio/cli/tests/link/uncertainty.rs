@@ -2,6 +2,7 @@
 
 use proprio_link::Link;
 use proprio_link::status::Status;
+use proprio_session::CHI2_2_95;
 use serde_json::{Value, json};
 use telemetry::{Event, Message, SEGMENTS, SegmentUncertainty, Uncertainty};
 
@@ -26,6 +27,8 @@ fn the_page_receives_the_board_s_covariances_and_contact_before_the_next_of_them
     let page = Page::of(&line, None);
     line.board().restart(1);
     let mut socket = page.socket(Some(&page.origin())).expect("its own page");
+    let sigmas = socket.next("arm")["ellipse_sigmas"].as_f64().expect("a number");
+    assert!((sigmas - CHI2_2_95.sqrt()).abs() < 1e-12 && (sigmas - 2.4477).abs() < 1e-4, "{sigmas}");
     send_ticks(&line, 0..1);
     let rows = socket.next("rows");
     assert!(rows["uncertainty"].is_null() && rows["contact"].is_null(), "{rows}");
