@@ -17,7 +17,7 @@ const STRONG_RAD: f64 = 10.0 * std::f64::consts::PI / 180.0;
 const SOON_S: f64 = 0.5;
 
 /// A run, sample by sample and segment by segment.
-pub struct Run {
+pub struct ContactSession {
     /// True if the estimator reports contact of the segment.
     pub detected: Vec<[bool; SEGMENTS]>,
     /// Bend angle that contact adds to the segment, rad.
@@ -52,7 +52,7 @@ pub fn alarms(detected: &[[bool; SEGMENTS]]) -> usize {
     detected.windows(2).filter(|pair| pair[1] != [false; SEGMENTS] && pair[0] == [false; SEGMENTS]).count()
 }
 
-impl Run {
+impl ContactSession {
     /// Simulates a session of the reference arm and replays it with this table.
     ///
     /// # Errors

@@ -3,16 +3,16 @@
 use std::path::Path;
 
 use calibration_tables::ArmFile;
-use host_tests::contact::{Found, Run};
+use host_tests::contact::{ContactSession, Found};
 use rig_twin::Scenario;
 
 const SECONDS: f64 = 900.0;
 const SEEDS: [u64; 3] = [71, 72, 73];
 
-fn runs(scenario: Scenario) -> [Run; 3] {
+fn runs(scenario: Scenario) -> [ContactSession; 3] {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../calibration-tables/planar-6.toml");
     let table = ArmFile::load(&path).expect("the reference table");
-    SEEDS.map(|seed| Run::new(&table, scenario, seed, SECONDS).expect("it is a table"))
+    SEEDS.map(|seed| ContactSession::new(&table, scenario, seed, SECONDS).expect("it is a table"))
 }
 
 #[test]

@@ -6,7 +6,7 @@ use crate::dwt::Dwt;
 use crate::engine::DWT;
 use crate::memory_map::Memories;
 use crate::peripheral_map::{Directory, Slot};
-use sam3x_models::Report;
+use sam3x_models::WarningLog;
 use sam3x_models::flash::{BANK, FLASH};
 use sam3x_models::model::{Cause, Context, Cycles, Peripheral, Signal, World};
 
@@ -17,7 +17,7 @@ pub struct Chip<W> {
     pub clock: Clock,
     pub memories: Memories,
     pub world: W,
-    pub report: Report,
+    pub warnings: WarningLog,
     /// Cause of a requested reset.
     pub reset: Option<Cause>,
     /// True if the next reset boots from flash.
@@ -49,7 +49,7 @@ impl<W: World> Chip<W> {
             clock: Clock::new(master_clock_hz),
             memories,
             world,
-            report: Report::default(),
+            warnings: WarningLog::default(),
             reset: None,
             boots_from_flash: true,
             limit: 0,
@@ -101,7 +101,7 @@ impl<W: World> Chip<W> {
             self.refresh(index);
             if self.due[index] <= due {
                 let name = self.slots[index].name;
-                self.report
+                self.warnings
                     .warn_once(format!("the model of {name} is late for its own event: a defect of this emulator"));
                 self.due[index] = self.now + 1;
                 self.find_earliest();
@@ -117,7 +117,7 @@ impl<W: World> Chip<W> {
             master_clock_hz: self.master_clock_hz,
             memory: &mut self.memories,
             world: &mut self.world,
-            report: &mut self.report,
+            warnings: &mut self.warnings,
             signals: &mut self.signals,
         };
         run(&mut *self.slots[index].model, &mut context)
@@ -227,7 +227,7 @@ impl<W: World> Chip<W> {
         let shift = 8 * (access.address & 3);
         let answer = match access.store {
             Some(_) if !runs => {
-                self.report.warn_once(format!("{} written while its clock is off", slot.name));
+                self.warnings.warn_once(format!("{} written while its clock is off", slot.name));
                 return 0;
             }
             Some(value) => {
@@ -259,7 +259,7 @@ impl<W: World> Chip<W> {
         let start = FLASH + bank as u32 * BANK;
         if offset == FCR && programs && (start..start + BANK).contains(&access.pc) {
             let (name, pc) = (self.slots[index].name, access.pc);
-            self.report.warn_once(format!(
+            self.warnings.warn_once(format!(
                 "{name}: the program at pc {pc:#010x} programs the bank it runs from: a real chip hangs"
             ));
         }
@@ -294,7 +294,7 @@ impl<W: World> Bus for Chip<W> {
         if answer.is_none() {
             let Access { address, pc, .. } = access;
             let kind = if access.store.is_some() { "store to" } else { "load from" };
-            self.report
+            self.warnings
                 .warn_once(format!("bus fault: {kind} {address:#010x}, where nothing is mapped, at pc {pc:#010x}"));
         }
         answer

@@ -33,6 +33,6 @@ pub mod rig;
 
 pub use elf::ElfError;
 pub use machine::{Machine, Reset};
-pub use rig::Rig;
-pub use sam3x_models::Report;
+pub use rig::WiredRig;
+pub use sam3x_models::WarningLog;
 pub use sam3x_models::model::{self, CYCLES_PER_SECOND, Cause, Cycles};

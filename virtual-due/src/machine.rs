@@ -21,10 +21,10 @@ pub struct Reset {
 ///
 /// ```no_run
 /// use rig_twin::Scenario;
-/// use virtual_due::{CYCLES_PER_SECOND, Machine, Rig};
+/// use virtual_due::{CYCLES_PER_SECOND, Machine, WiredRig};
 ///
 /// let elf = std::fs::read("firmware.elf")?;
-/// let mut machine = Machine::new(&elf, Rig::new(Scenario::FreeSwing, 1))?;
+/// let mut machine = Machine::new(&elf, WiredRig::new(Scenario::FreeSwing, 1))?;
 /// machine.run_for(2 * CYCLES_PER_SECOND);
 /// println!("{} instructions, pc {:#x}", machine.instructions(), machine.pc());
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -155,7 +155,7 @@ impl<W: World> Machine<W> {
         let (stack_pointer, entry) = self.chip.memories.boot(&mut self.cpu, self.chip.boots_from_flash);
         if !self.chip.boots_from_flash {
             let text = "GPNVM bit 1 is clear: the boot loader in ROM runs and waits for a flash tool".to_owned();
-            self.chip.report.warn_once(text);
+            self.chip.warnings.warn_once(text);
         }
         self.cpu.reset(stack_pointer, entry);
         self.chip.apply_reset(cause, self.cpu.instructions());
@@ -164,7 +164,7 @@ impl<W: World> Machine<W> {
     fn report_lockup(&mut self) {
         if !self.locked_up {
             let (pc, seconds) = (self.cpu.pc(), self.seconds());
-            self.chip.report.warn_once(format!(
+            self.chip.warnings.warn_once(format!(
                 "the core locked up at pc {pc:#010x}, {seconds:.6} s: a fault in a fault's handler"
             ));
         }
@@ -242,7 +242,7 @@ impl<W: World> Machine<W> {
 
     /// Takes the warnings since the last call, about actions of the firmware that the models do not cover.
     pub fn reports(&mut self) -> Vec<String> {
-        self.chip.report.take()
+        self.chip.warnings.take()
     }
 
     /// The devices on the pins.

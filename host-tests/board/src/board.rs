@@ -5,7 +5,7 @@ use telemetry::{
     Command, Decoder, Encoder, Estimate, Event, Health, Hello, MAX_FRAME, Message, Outcome, Request, Sample,
     SetPressures, Uncertainty,
 };
-use virtual_due::{CYCLES_PER_SECOND, Cycles, Machine, Rig};
+use virtual_due::{CYCLES_PER_SECOND, Cycles, Machine, WiredRig};
 
 use crate::build::firmware;
 
@@ -27,7 +27,7 @@ pub struct Received {
 /// The board, and all messages that it has sent.
 pub struct Board {
     /// The emulated board.
-    pub machine: Machine<Rig>,
+    pub machine: Machine<WiredRig>,
     decoder: Decoder<Message>,
     encoder: Encoder,
     next_id: u32,
@@ -42,7 +42,7 @@ impl Board {
     /// # Panics
     /// If the firmware does not build.
     #[must_use]
-    pub fn new(rig: Rig) -> Self {
+    pub fn new(rig: WiredRig) -> Self {
         let machine = Machine::new(firmware(), rig).expect("cargo built an ELF for the board");
         Self {
             machine,

@@ -14,14 +14,14 @@ impl Peripheral for ChipId {
             0 => CIDR,
             4 => 0,
             _ => {
-                context.report.unmodelled("CHIPID", offset);
+                context.warnings.unmodelled("CHIPID", offset);
                 0
             }
         }
     }
 
     fn write(&mut self, offset: u32, _value: u32, context: &mut Context) {
-        context.report.warn_once(format!("CHIPID: write to a read-only register at offset {offset:#x}"));
+        context.warnings.warn_once(format!("CHIPID: write to a read-only register at offset {offset:#x}"));
     }
 
     fn reset(&mut self) {}

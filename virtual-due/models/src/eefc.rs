@@ -160,7 +160,7 @@ impl Eefc {
         }
         if (self.mode >> 8 & 0xF) < 6 {
             let text = "flash is programmed with fewer than 6 wait states: a real chip may write garbage".to_owned();
-            context.report.warn_once(text);
+            context.warnings.warn_once(text);
         }
         context.signals.push(Signal::Flash(self.base + page * PAGE, PAGE));
         self.begin(if erase { ERASE_WRITE } else { WRITE }, context);
@@ -190,7 +190,7 @@ impl Eefc {
         if hz > WAIT_STATES_HZ[states] {
             let name = self.name();
             context
-                .report
+                .warnings
                 .warn_once(format!("{name}: {states} wait states at {hz} Hz: a real chip reads garbage from flash"));
         }
     }
@@ -208,7 +208,7 @@ impl Peripheral for Eefc {
             FRR => self.results.pop().unwrap_or(0),
             FCR => 0,
             _ => {
-                context.report.unmodelled(self.name(), offset);
+                context.warnings.unmodelled(self.name(), offset);
                 0
             }
         }
@@ -221,12 +221,12 @@ impl Peripheral for Eefc {
                 self.check_wait_states(context.master_clock_hz, context);
             }
             FCR if self.ready.is_none() => self.command(value, context),
-            FCR => context.report.warn_once(format!("{}: a command while another is under way", self.name())),
+            FCR => context.warnings.warn_once(format!("{}: a command while another is under way", self.name())),
             FLASH.. => {
                 let at = (offset & (PAGE - 1) & !3) as usize;
                 self.latch[at..at + 4].copy_from_slice(&value.to_le_bytes());
             }
-            _ => context.report.unmodelled(self.name(), offset),
+            _ => context.warnings.unmodelled(self.name(), offset),
         }
     }
 

@@ -27,7 +27,7 @@ impl Peripheral for Matrix {
             WPMR => self.protection.mode(),
             WPSR => self.protection.take_status(),
             _ => {
-                context.report.unmodelled("MATRIX", offset);
+                context.warnings.unmodelled("MATRIX", offset);
                 0
             }
         }
@@ -41,7 +41,7 @@ impl Peripheral for Matrix {
                 }
             }
             WPMR => self.protection.set_mode(value),
-            _ => context.report.unmodelled("MATRIX", offset),
+            _ => context.warnings.unmodelled("MATRIX", offset),
         }
     }
 

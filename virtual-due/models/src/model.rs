@@ -1,6 +1,6 @@
 //! The interface of a peripheral's model, and of the rest of the board to the models. It does not depend on the CPU engine.
 
-use crate::report::Report;
+use crate::warning_log::WarningLog;
 
 /// An instant, or a span of time: cycles of 84 MHz since power-on, at any master clock.
 pub type Cycles = u64;
@@ -60,7 +60,7 @@ pub struct Context<'a> {
     /// The devices on the chip's pins.
     pub world: &'a mut dyn World,
     /// Receives warnings, such as accesses to unmodelled registers.
-    pub report: &'a mut Report,
+    pub warnings: &'a mut WarningLog,
     /// Signals to the rest of the chip, dispatched as soon as the call returns.
     pub signals: &'a mut Vec<Signal>,
 }

@@ -37,7 +37,7 @@ impl Peripheral for Rstc {
             MR => self.mode,
             CR => 0,
             _ => {
-                context.report.unmodelled("RSTC", offset);
+                context.warnings.unmodelled("RSTC", offset);
                 0
             }
         }
@@ -52,7 +52,7 @@ impl Peripheral for Rstc {
             CR if value & (PROCRST | PERRST) != 0 => context.signals.push(Signal::Reset(Cause::Software)),
             CR => {}
             MR => self.mode = value & 0x0000_0F11,
-            _ => context.report.unmodelled("RSTC", offset),
+            _ => context.warnings.unmodelled("RSTC", offset),
         }
     }
 

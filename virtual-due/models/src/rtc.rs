@@ -175,7 +175,7 @@ impl Peripheral for Rtc {
             IMR => self.mask,
             SCCR | IER | IDR | VER => 0,
             _ => {
-                context.report.unmodelled("RTC", offset);
+                context.warnings.unmodelled("RTC", offset);
                 0
             }
         }
@@ -200,7 +200,7 @@ impl Peripheral for Rtc {
             SCCR => self.status &= !value,
             IER => self.mask |= value & 0x1F,
             IDR => self.mask &= !value,
-            _ => context.report.unmodelled("RTC", offset),
+            _ => context.warnings.unmodelled("RTC", offset),
         }
     }
 

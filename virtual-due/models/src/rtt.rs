@@ -44,7 +44,7 @@ impl Peripheral for Rtt {
             VR => self.seen as u32,
             SR => std::mem::take(&mut self.status),
             _ => {
-                context.report.unmodelled("RTT", offset);
+                context.warnings.unmodelled("RTT", offset);
                 0
             }
         }
@@ -62,7 +62,7 @@ impl Peripheral for Rtt {
                 }
             }
             AR => self.alarm = value,
-            _ => context.report.unmodelled("RTT", offset),
+            _ => context.warnings.unmodelled("RTT", offset),
         }
     }
 

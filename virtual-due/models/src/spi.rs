@@ -64,7 +64,7 @@ impl Peripheral for Spi {
         match offset {
             CR => self.control(value),
             TDR => {
-                context.report.warn_once(format!("{} is not modelled: nothing is on its wires", self.name));
+                context.warnings.warn_once(format!("{} is not modelled: nothing is on its wires", self.name));
                 self.received = self.enabled;
             }
             _ => {}
@@ -91,6 +91,6 @@ mod tests {
         assert_eq!(bench.read(SR) & (RDRF | TDRE | TXEMPTY), RDRF | TDRE | TXEMPTY);
         assert_eq!(bench.read(RDR), 0xFF);
         assert_eq!(bench.read(SR) & RDRF, 0);
-        assert_eq!(bench.report.take().len(), 1);
+        assert_eq!(bench.warnings.take().len(), 1);
     }
 }

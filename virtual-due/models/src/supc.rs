@@ -48,7 +48,7 @@ impl Peripheral for Supc {
             }
             CR => 0,
             _ => {
-                context.report.unmodelled("SUPC", offset);
+                context.warnings.unmodelled("SUPC", offset);
                 0
             }
         }
@@ -61,7 +61,7 @@ impl Peripheral for Supc {
                     self.crystal = Some(context.now + CRYSTAL);
                 }
                 if value & VROFF != 0 {
-                    context.report.warn_once("SUPC_CR.VROFF: backup mode is not modelled".to_owned());
+                    context.warnings.warn_once("SUPC_CR.VROFF: backup mode is not modelled".to_owned());
                 }
             }
             MR if value >> 24 == KEY => self.mode = value & 0x0012_7000 | 0x0A00,
@@ -69,7 +69,7 @@ impl Peripheral for Supc {
             SMMR => self.monitor = value & 0x370F,
             WUMR => self.wake_up[0] = value,
             WUIR => self.wake_up[1] = value,
-            _ => context.report.unmodelled("SUPC", offset),
+            _ => context.warnings.unmodelled("SUPC", offset),
         }
     }
 

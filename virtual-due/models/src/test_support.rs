@@ -2,7 +2,7 @@
 
 use crate::flash::FlashBank;
 use crate::model::{CYCLES_PER_SECOND, Context, Cycles, I2c, Memory, Peripheral, Pin, Reception, Signal, World};
-use crate::report::Report;
+use crate::warning_log::WarningLog;
 use std::cell::RefCell;
 use std::collections::{BTreeMap, VecDeque};
 
@@ -180,7 +180,7 @@ pub struct Bench<P> {
     pub master_clock_hz: u32,
     pub memory: Ram,
     pub world: Pins,
-    pub report: Report,
+    pub warnings: WarningLog,
     /// Signals of the model to the chip, with their times.
     pub signals: Vec<(Cycles, Signal)>,
 }
@@ -194,7 +194,7 @@ impl<P: Peripheral> Bench<P> {
             master_clock_hz: CYCLES_PER_SECOND as u32,
             memory: Ram::new(),
             world: Pins::default(),
-            report: Report::default(),
+            warnings: WarningLog::default(),
             signals: Vec::new(),
         }
     }
@@ -207,7 +207,7 @@ impl<P: Peripheral> Bench<P> {
             master_clock_hz: self.master_clock_hz,
             memory: &mut self.memory,
             world: &mut self.world,
-            report: &mut self.report,
+            warnings: &mut self.warnings,
             signals: &mut signals,
         };
         let result = call(&mut self.model, &mut context);

@@ -43,7 +43,7 @@ impl Peripheral for Trng {
             ODATA => (self.state >> 32) as u32,
             CR | IER | IDR => 0,
             _ => {
-                context.report.unmodelled("TRNG", offset);
+                context.warnings.unmodelled("TRNG", offset);
                 0
             }
         }
@@ -57,7 +57,7 @@ impl Peripheral for Trng {
             CR => {}
             IER => self.mask |= value & 1 != 0,
             IDR => self.mask &= value & 1 == 0,
-            _ => context.report.unmodelled("TRNG", offset),
+            _ => context.warnings.unmodelled("TRNG", offset),
         }
     }
 

@@ -38,7 +38,7 @@ impl Peripheral for Uart {
             BRGR => self.divisor.into(),
             _ if Serial::owns(offset) => self.serial.read(offset, 0),
             _ => {
-                context.report.unmodelled("UART", offset);
+                context.warnings.unmodelled("UART", offset);
                 0
             }
         };
@@ -51,7 +51,7 @@ impl Peripheral for Uart {
             MR => self.mode = value & MR_BITS,
             BRGR => self.divisor = value as u16,
             _ if Serial::owns(offset) => {}
-            _ => context.report.unmodelled("UART", offset),
+            _ => context.warnings.unmodelled("UART", offset),
         }
         self.serial.write(offset, value, self.format(context), context);
     }

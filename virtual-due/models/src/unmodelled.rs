@@ -24,7 +24,7 @@ impl Unmodelled {
 impl Peripheral for Unmodelled {
     fn read(&mut self, offset: u32, context: &mut Context) -> u32 {
         context
-            .report
+            .warnings
             .warn_once(format!("{} is not modelled: writes to it have no effect, and it reads as 0", self.name));
         match self.ready {
             Some((status, bits)) if status == offset => bits,
@@ -49,6 +49,6 @@ mod tests {
         let mut bench = Bench::new(Unmodelled::ready("DACC", 0x30, 0xF));
         bench.write(0x20, 2048);
         assert_eq!((bench.read(0x30), bench.read(0x04)), (0xF, 0));
-        assert_eq!(bench.report.take().len(), 1);
+        assert_eq!(bench.warnings.take().len(), 1);
     }
 }

@@ -50,7 +50,7 @@ impl Peripheral for Uotghs {
                 if let Some(word) = self.word(offset) {
                     *word
                 } else {
-                    context.report.unmodelled("UOTGHS", offset);
+                    context.warnings.unmodelled("UOTGHS", offset);
                     0
                 }
             }
@@ -64,7 +64,7 @@ impl Peripheral for Uotghs {
             DEVIDR => self.words[DEVIMR as usize / 4] &= !value,
             _ => match self.word(offset) {
                 Some(word) => *word = value,
-                None => context.report.unmodelled("UOTGHS", offset),
+                None => context.warnings.unmodelled("UOTGHS", offset),
             },
         }
     }

@@ -118,7 +118,7 @@ impl Usart {
             self.times_out_at = self.silence_ends(context.now, context);
         }
         if value & !CR_BITS != 0 {
-            context.report.unmodelled(self.name(), CR);
+            context.warnings.unmodelled(self.name(), CR);
         }
     }
 
@@ -135,7 +135,7 @@ impl Usart {
                 self.mode = value;
                 let multidrop = (value >> 9) & 6 == 6;
                 if value & OTHER_MODES != 0 || multidrop {
-                    context.report.unmodelled(self.name(), MR);
+                    context.warnings.unmodelled(self.name(), MR);
                 }
             }
             BRGR => self.baud_rate = value & 0x7_FFFF,
@@ -159,7 +159,7 @@ impl Peripheral for Usart {
             WPSR => self.protection.take_status(),
             _ if Serial::owns(offset) => self.serial.read(offset, self.more_status()),
             _ => {
-                context.report.unmodelled(self.name(), offset);
+                context.warnings.unmodelled(self.name(), offset);
                 0
             }
         };
@@ -173,7 +173,7 @@ impl Peripheral for Usart {
             MR | BRGR | RTOR | TTGR | FIDI => self.write_protected(offset, value, context),
             WPMR => self.protection.set_mode(value),
             _ if Serial::owns(offset) => {}
-            _ => context.report.unmodelled(self.name(), offset),
+            _ => context.warnings.unmodelled(self.name(), offset),
         }
         self.serial.write(offset, value, self.format(context), context);
         self.watch_for_silence(context);
@@ -259,6 +259,6 @@ mod tests {
     fn other_modes_are_reported() {
         let mut bench = port();
         bench.write(MR, 0xE);
-        assert_eq!(bench.report.take().len(), 1);
+        assert_eq!(bench.warnings.take().len(), 1);
     }
 }

@@ -65,7 +65,7 @@ impl Peripheral for Wdt {
             SR => std::mem::take(&mut self.status),
             CR => 0,
             _ => {
-                context.report.unmodelled("WDT", offset);
+                context.warnings.unmodelled("WDT", offset);
                 0
             }
         }
@@ -88,8 +88,8 @@ impl Peripheral for Wdt {
                 self.mode_written = true;
                 self.ticks.origin = context.now;
             }
-            MR => context.report.warn_once("WDT_MR written again: it can be written once per reset".to_owned()),
-            _ => context.report.unmodelled("WDT", offset),
+            MR => context.warnings.warn_once("WDT_MR written again: it can be written once per reset".to_owned()),
+            _ => context.warnings.unmodelled("WDT", offset),
         }
     }
 

@@ -12,7 +12,7 @@ use rig_twin::Scenario;
 use run::Run;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use virtual_due::{ElfError, Machine, rig::Rig};
+use virtual_due::{ElfError, Machine, rig::WiredRig};
 
 /// An emulated Arduino Due with the simulated arm on its pins.
 #[derive(Debug, Parser)]
@@ -106,7 +106,7 @@ impl Cli {
     /// [`Error`] if the firmware or the serial port cannot be opened.
     pub fn execute(self) -> Result<ExitCode, Error> {
         let Command::Run(arguments) = self.command;
-        let machine = machine(&arguments.firmware, Rig::new(arguments.scenario, arguments.seed))?;
+        let machine = machine(&arguments.firmware, WiredRig::new(arguments.scenario, arguments.seed))?;
         let paced = arguments.speed == Speed::Real;
         let mut run = Run::new(machine, arguments.seconds, paced);
         match arguments.serial {
@@ -123,7 +123,7 @@ impl Cli {
     }
 }
 
-fn machine(path: &Path, rig: Rig) -> Result<Machine<Rig>, Error> {
+fn machine(path: &Path, rig: WiredRig) -> Result<Machine<WiredRig>, Error> {
     let shown = || path.display().to_string();
     let elf = std::fs::read(path).map_err(|error| Error::Firmware { path: shown(), error })?;
     Machine::new(&elf, rig).map_err(|error| Error::Elf { path: shown(), error })

@@ -4,7 +4,7 @@ use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
-use virtual_due::rig::Rig;
+use virtual_due::rig::WiredRig;
 use virtual_due::{CYCLES_PER_SECOND, Cycles, Machine};
 
 /// Time that the board runs between two transfers.
@@ -34,7 +34,7 @@ pub struct Received {
 
 /// A board that runs a firmware.
 pub struct Run {
-    machine: Machine<Rig>,
+    machine: Machine<WiredRig>,
     end: Option<Cycles>,
     paced: bool,
     began: Instant,
@@ -44,13 +44,13 @@ pub struct Run {
 
 impl Run {
     /// A run of `seconds`, or without end; at most as fast as real time if it is `paced`.
-    pub fn new(machine: Machine<Rig>, seconds: Option<f64>, paced: bool) -> Self {
+    pub fn new(machine: Machine<WiredRig>, seconds: Option<f64>, paced: bool) -> Self {
         let end = seconds.map(|seconds| (seconds * CYCLES_PER_SECOND as f64) as Cycles);
         Self { machine, end, paced, began: Instant::now(), resets_printed: 0, locked_up: None }
     }
 
     /// Runs to the end, or until Ctrl-C, or until the reader has gone; calls `inject` before every slice.
-    pub fn execute(&mut self, line: &mut dyn Line, mut inject: impl FnMut(&mut Rig)) -> std::io::Result<()> {
+    pub fn execute(&mut self, line: &mut dyn Line, mut inject: impl FnMut(&mut WiredRig)) -> std::io::Result<()> {
         let stop = Arc::new(AtomicBool::new(false));
         let flag = Arc::clone(&stop);
         ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed)).map_err(std::io::Error::other)?;

@@ -32,7 +32,7 @@ impl SetPoint {
 
 /// The arm, its regulators, and the source of their set-points.
 #[derive(Debug, Clone)]
-pub struct Arm {
+pub struct DrivenArm {
     twin: Twin,
     program: MotionProgram,
     grid_points: u64,
@@ -41,7 +41,7 @@ pub struct Arm {
     on_bench_supply: bool,
 }
 
-impl Arm {
+impl DrivenArm {
     /// At rest, at time 0.
     pub fn new(scenario: Scenario, seed: u64) -> Self {
         Self {

@@ -22,7 +22,7 @@ mod serial;
 mod tca9548a;
 mod wires;
 
-use arm::Arm;
+use arm::DrivenArm;
 pub use faults::{Faults, HeldLow, ImuFault, MuxFault, Rail};
 use rig_twin::{EndPose, REGULATORS, SEGMENTS, Scenario};
 use sam3x_models::model::Cycles;
@@ -38,18 +38,18 @@ const PORTS: usize = 5;
 /// ```
 /// use rig_twin::Scenario;
 /// use virtual_due::model::{CYCLES_PER_SECOND, World};
-/// use virtual_due::rig::{Rail, Rig};
+/// use virtual_due::rig::{Rail, WiredRig};
 ///
-/// let mut rig = Rig::new(Scenario::FreeSwing, 7);
+/// let mut rig = WiredRig::new(Scenario::FreeSwing, 7);
 /// rig.faults.bend[0] = Some(Rail::High);
 /// assert_eq!(rig.adc_counts(7, CYCLES_PER_SECOND), 4095);
 /// ```
 #[derive(Debug, Clone)]
-pub struct Rig {
+pub struct WiredRig {
     /// The present faults.
     pub faults: Faults,
     now: Cycles,
-    arm: Arm,
+    arm: DrivenArm,
     sensors: Sensors,
     wires: Wires,
     ports: [Port; PORTS],
@@ -58,10 +58,10 @@ pub struct Rig {
     truth_at_scan: [EndPose; SEGMENTS],
 }
 
-impl Rig {
+impl WiredRig {
     /// The rig at rest at time 0, in a session of `seed`.
     pub fn new(scenario: Scenario, seed: u64) -> Self {
-        let arm = Arm::new(scenario, seed);
+        let arm = DrivenArm::new(scenario, seed);
         let sensors = Sensors::new(arm.twin().imu_quaternions());
         let truth_at_scan = arm.twin().truth();
         Self {

@@ -1,6 +1,6 @@
 //! The rig as the chip's world: ADC channels, PWM, GPIOs, serial ports, and the I²C bus of TWI1.
 
-use super::Rig;
+use super::WiredRig;
 use super::faults::{HeldLow, Rail};
 use rig_twin::REGULATORS;
 use sam3x_models::model::{Cycles, I2c, Pin, Reception, World};
@@ -15,7 +15,7 @@ pub const SDA: Pin = Pin { port: PIOB, line: 12 };
 pub const SCL: Pin = Pin { port: PIOB, line: 13 };
 pub const MUX_RESET: Pin = Pin { port: PIOB, line: 26 };
 
-impl World for Rig {
+impl World for WiredRig {
     fn adc_counts(&mut self, channel: u8, now: Cycles) -> u16 {
         self.advance_to(now);
         let Some(sensor) = BEND_CHANNELS.iter().position(|wired| *wired == channel) else { return 0 };
@@ -76,7 +76,7 @@ impl World for Rig {
     }
 }
 
-impl I2c for Rig {
+impl I2c for WiredRig {
     fn start(&mut self, address: u8, read: bool, now: Cycles) -> bool {
         self.advance_to(now);
         let orientations = self.arm.twin().imu_quaternions();
@@ -113,7 +113,7 @@ impl I2c for Rig {
     }
 }
 
-impl Rig {
+impl WiredRig {
     /// Drives SDA; a rise while SCL is high is a stop condition.
     fn drive_sda(&mut self, level: Option<bool>) {
         let high = level.unwrap_or(true);

@@ -1,7 +1,7 @@
 #![expect(clippy::float_cmp, reason = "set-points are exact")]
 
 use super::pins::{MUX_RESET, PIOC, SCL, SDA};
-use super::{HeldLow, ImuFault, MuxFault, Rail, Rig};
+use super::{HeldLow, ImuFault, MuxFault, Rail, WiredRig};
 use rig_twin::Scenario;
 use sam3x_models::model::{CYCLES_PER_SECOND, Cycles, I2c, Pin, World};
 
@@ -9,18 +9,18 @@ const SECOND: Cycles = CYCLES_PER_SECOND;
 const D6: Pin = Pin { port: PIOC, line: 24 };
 
 fn rig() -> Rig {
-    Rig::new(Scenario::FreeSwing, 7)
+    WiredRig::new(Scenario::FreeSwing, 7)
 }
 
 /// Connects these channels.
-fn select(rig: &mut Rig, channels: u8, now: Cycles) -> bool {
+fn select(rig: &mut WiredRig, channels: u8, now: Cycles) -> bool {
     let acknowledged = rig.start(0x70, false, now) && rig.write(channels, now);
     rig.stop(now);
     acknowledged
 }
 
 /// Reads registers of the units connected at 0x28.
-fn registers<const COUNT: usize>(rig: &mut Rig, first: u8, now: Cycles) -> Option<[u8; COUNT]> {
+fn registers<const COUNT: usize>(rig: &mut WiredRig, first: u8, now: Cycles) -> Option<[u8; COUNT]> {
     let acknowledged = rig.start(0x28, false, now) && rig.write(first, now) && rig.start(0x28, true, now);
     let bytes = std::array::from_fn(|_| I2c::read(rig, now));
     rig.stop(now);
@@ -28,7 +28,7 @@ fn registers<const COUNT: usize>(rig: &mut Rig, first: u8, now: Cycles) -> Optio
 }
 
 /// All six in IMUPLUS, with output, at 1 s.
-fn fusing() -> Rig {
+fn fusing() -> WiredRig {
     let mut rig = rig();
     let now = SECOND / 2;
     select(&mut rig, 0x3F, now);
@@ -38,7 +38,7 @@ fn fusing() -> Rig {
 }
 
 /// The quaternion of one unit.
-fn quaternion(rig: &mut Rig, imu: usize, now: Cycles) -> Option<[i16; 4]> {
+fn quaternion(rig: &mut WiredRig, imu: usize, now: Cycles) -> Option<[i16; 4]> {
     assert!(select(rig, 1 << imu, now));
     let bytes = registers::<8>(rig, 0x20, now)?;
     Some(std::array::from_fn(|index| i16::from_le_bytes([bytes[2 * index], bytes[2 * index + 1]])))
@@ -47,7 +47,7 @@ fn quaternion(rig: &mut Rig, imu: usize, now: Cycles) -> Option<[i16; 4]> {
 #[test]
 fn each_bend_sensor_is_on_its_channel() {
     let mut rig = rig();
-    let counts = rig_twin::Rig::new(Scenario::FreeSwing, 7).adc_counts();
+    let counts = rig_twin::WiredRig::new(Scenario::FreeSwing, 7).adc_counts();
     for (channel, expected) in [7, 6, 5, 4, 3, 2, 1, 0, 10, 11, 12, 13].into_iter().zip(counts) {
         assert_eq!(rig.adc_counts(channel, 0), expected, "channel {channel}");
     }

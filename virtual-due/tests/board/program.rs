@@ -1,7 +1,7 @@
 //! Programs of a few instructions, as a linker would give them.
 
 use rig_twin::Scenario;
-use virtual_due::{CYCLES_PER_SECOND, Machine, Rig};
+use virtual_due::{CYCLES_PER_SECOND, Machine, WiredRig};
 
 pub const FLASH: u32 = 0x0008_0000;
 pub const ENTRY: u32 = FLASH + 0x40;
@@ -36,8 +36,8 @@ pub fn firmware(program: &[u16], fault: usize) -> Vec<u8> {
 }
 
 /// A board with this [`firmware`].
-pub fn board(program: &[u16], fault: usize) -> Machine<Rig> {
-    Machine::new(&firmware(program, fault), Rig::new(Scenario::FreeSwing, 1)).expect("a firmware for the Due")
+pub fn board(program: &[u16], fault: usize) -> Machine<WiredRig> {
+    Machine::new(&firmware(program, fault), WiredRig::new(Scenario::FreeSwing, 1)).expect("a firmware for the Due")
 }
 
 /// ldr r0, =address (kept at the end of the program, `at` words behind the entry).

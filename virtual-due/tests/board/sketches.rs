@@ -2,11 +2,11 @@
 
 use crate::program::{MILLISECOND, board};
 use rig_twin::Scenario;
-use virtual_due::Rig;
+use virtual_due::WiredRig;
 use virtual_due::model::World;
 
 /// The first word of RAM.
-fn result(board: &virtual_due::Machine<Rig>) -> u32 {
+fn result(board: &virtual_due::Machine<WiredRig>) -> u32 {
     let word = board.peek(0x2007_0000, 4).expect("RAM");
     u32::from_le_bytes(word.try_into().expect("four bytes"))
 }
@@ -23,7 +23,7 @@ fn analog_read_gives_the_counts_of_the_arms_sensor() {
     );
     board.run_until(MILLISECOND);
     assert!(board.sleeps());
-    let counts = Rig::new(Scenario::FreeSwing, 1).adc_counts(7, MILLISECOND);
+    let counts = WiredRig::new(Scenario::FreeSwing, 1).adc_counts(7, MILLISECOND);
     assert_eq!(result(&board), u32::from(counts));
 }
 

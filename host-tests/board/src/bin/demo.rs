@@ -9,7 +9,7 @@ use board_tests::{Board, View, replay};
 use proprio_simulation::{ImuColumns, Recorded, SessionWriter};
 use rig_twin::{MotionProgram, Scenario};
 use telemetry::{Command, Outcome};
-use virtual_due::Rig;
+use virtual_due::WiredRig;
 
 const SEED: u64 = 11;
 
@@ -23,7 +23,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let seconds: u64 = seconds.parse()?;
 
-    let mut board = Board::new(Rig::new(Scenario::FreeSwing, SEED));
+    let mut board = Board::new(WiredRig::new(Scenario::FreeSwing, SEED));
     // Power-on, IMUs, and a tare of one second while the arm rests.
     board.run_ms(2500);
     let program = MotionProgram::new(Scenario::FreeSwing, SEED);

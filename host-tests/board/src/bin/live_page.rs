@@ -15,7 +15,7 @@ mod figures {
     use proprio_monitor::{Monitor, Options};
     use proprio_session::LoadedTable;
     use rig_twin::Scenario;
-    use virtual_due::{CYCLES_PER_SECOND, Machine, Rig};
+    use virtual_due::{CYCLES_PER_SECOND, Machine, WiredRig};
 
     const LIVE: &str = "document.getElementById('arm-values')?.textContent.startsWith('tip x') ?? false";
     /// History that the page has, s.
@@ -132,7 +132,7 @@ mod figures {
 
     fn run(output: &SyncSender<Vec<u8>>, input: &Receiver<Vec<u8>>) {
         let mut machine =
-            Machine::new(firmware(), Rig::new(Scenario::FreeSwing, 1)).expect("cargo built an ELF for the board");
+            Machine::new(firmware(), WiredRig::new(Scenario::FreeSwing, 1)).expect("cargo built an ELF for the board");
         let history = HISTORY_S * CYCLES_PER_SECOND;
         let mut began = None;
         loop {

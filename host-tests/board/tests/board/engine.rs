@@ -3,12 +3,12 @@
 use board_tests::{UART, elf};
 use on_target_tests::arithmetic::hashes;
 use rig_twin::Scenario;
-use virtual_due::{CYCLES_PER_SECOND, Machine, Rig};
+use virtual_due::{CYCLES_PER_SECOND, Machine, WiredRig};
 
 /// Runs an on-target test to its end; returns its output.
 fn output_of(test: &str) -> String {
     let mut machine =
-        Machine::new(&elf("on-target-tests", test), Rig::new(Scenario::FreeSwing, 1)).expect("a firmware for the Due");
+        Machine::new(&elf("on-target-tests", test), WiredRig::new(Scenario::FreeSwing, 1)).expect("a firmware for the Due");
     let mut text = String::new();
     for _ in 0..1_000 {
         machine.run_for(CYCLES_PER_SECOND / 10);

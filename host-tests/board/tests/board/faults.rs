@@ -3,7 +3,7 @@
 use board_tests::Board;
 use rig_twin::Scenario;
 use telemetry::{Command, Event, Outcome, ResetCause, SetPressures};
-use virtual_due::Rig;
+use virtual_due::WiredRig;
 use virtual_due::rig::HeldLow;
 
 /// Address of the core's register that disables interrupts 0 to 31 (ARMv7-M, B3.4.5).
@@ -13,7 +13,7 @@ const NVIC_ICER0: u32 = 0xE000_E180;
 const TC0: u32 = 27;
 
 fn ready() -> Board {
-    let mut board = Board::new(Rig::new(Scenario::FreeSwing, 1));
+    let mut board = Board::new(WiredRig::new(Scenario::FreeSwing, 1));
     board.run_ms(1500);
     board
 }

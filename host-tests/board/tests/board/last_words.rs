@@ -7,7 +7,7 @@ use board_tests::{Board, firmware};
 use object::{Object, ObjectSymbol, Symbol};
 use rig_twin::Scenario;
 use telemetry::{Command, Hello, Outcome, Refusal, ResetCause, SetPressures};
-use virtual_due::{CYCLES_PER_SECOND, Cycles, Rig};
+use virtual_due::{CYCLES_PER_SECOND, Cycles, WiredRig};
 
 const PRESSURES: Command = Command::SetPressures(SetPressures { pressures_pa: [100_000; 6], valid_ms: 1000 });
 
@@ -28,7 +28,7 @@ const RECURSION: [u8; 4] = [0xFF, 0xB4, 0xFD, 0xE7];
 
 /// A board whose arm is under pressure.
 fn under_pressure() -> Board {
-    let mut board = Board::new(Rig::new(Scenario::FreeSwing, 1));
+    let mut board = Board::new(WiredRig::new(Scenario::FreeSwing, 1));
     board.run_ms(1500);
     assert_eq!(board.request(Command::Arm), Outcome::Ack);
     assert_eq!(board.request(PRESSURES), Outcome::Ack);

@@ -4,13 +4,13 @@ use board_tests::Board;
 use estimator_core::Q;
 use rig_twin::Scenario;
 use telemetry::{Actuation, Command, Event, Outcome, Refusal, SetPressures};
-use virtual_due::Rig;
+use virtual_due::WiredRig;
 
 /// The right side of all modules at 100 kPa.
 const RIGHT: SetPressures = SetPressures { pressures_pa: [100_000, 0, 100_000, 0, 100_000, 0], valid_ms: 200 };
 
 fn ready() -> Board {
-    let mut board = Board::new(Rig::new(Scenario::FreeSwing, 1));
+    let mut board = Board::new(WiredRig::new(Scenario::FreeSwing, 1));
     board.run_ms(2500);
     board
 }

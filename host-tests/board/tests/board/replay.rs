@@ -3,7 +3,7 @@
 use board_tests::{Board, replay};
 use rig_twin::{MotionProgram, Scenario};
 use telemetry::{Command, Event, Outcome};
-use virtual_due::Rig;
+use virtual_due::WiredRig;
 
 /// Checks that every estimate, uncertainty and contact of the board equals the host's of the same samples.
 pub fn assert_replays(board: &Board) {
@@ -32,7 +32,7 @@ pub fn assert_replays(board: &Board) {
 
 #[test]
 fn every_estimate_is_the_hosts_of_the_same_sample() {
-    let mut board = Board::new(Rig::new(Scenario::FreeSwing, 5));
+    let mut board = Board::new(WiredRig::new(Scenario::FreeSwing, 5));
     board.run_ms(2000);
     board.swing(&MotionProgram::new(Scenario::FreeSwing, 5), 20);
     assert_replays(&board);
@@ -40,7 +40,7 @@ fn every_estimate_is_the_hosts_of_the_same_sample() {
 
 #[test]
 fn every_estimate_is_the_hosts_after_a_tare() {
-    let mut board = Board::new(Rig::new(Scenario::FreeSwing, 6));
+    let mut board = Board::new(WiredRig::new(Scenario::FreeSwing, 6));
     board.run_ms(2000);
     board.swing(&MotionProgram::new(Scenario::FreeSwing, 6), 3);
     board.run_ms(2500);
@@ -52,7 +52,7 @@ fn every_estimate_is_the_hosts_after_a_tare() {
 
 #[test]
 fn the_stream_decodes_without_a_loss() {
-    let mut board = Board::new(Rig::new(Scenario::FreeSwing, 7));
+    let mut board = Board::new(WiredRig::new(Scenario::FreeSwing, 7));
     board.run_ms(10_000);
     let counts = board.counts();
     assert_eq!((counts.lost, counts.damaged, counts.wrong_version, counts.unknown), (0, 0, 0, 0));
@@ -65,7 +65,7 @@ fn the_stream_decodes_without_a_loss() {
 
 #[test]
 fn the_stream_leaves_a_fifth_of_the_line_to_spare() {
-    let mut board = Board::new(Rig::new(Scenario::FreeSwing, 8));
+    let mut board = Board::new(WiredRig::new(Scenario::FreeSwing, 8));
     board.run_ms(2000);
     let before = board.bytes();
     board.run_ms(10_000);
@@ -75,7 +75,7 @@ fn the_stream_leaves_a_fifth_of_the_line_to_spare() {
 
 #[test]
 fn ticks_are_ten_milliseconds_apart_to_the_microsecond() {
-    let mut board = Board::new(Rig::new(Scenario::FreeSwing, 9));
+    let mut board = Board::new(WiredRig::new(Scenario::FreeSwing, 9));
     board.run_ms(3000);
     let times: Vec<_> = board.samples().map(|sample| sample.time_us).collect();
     assert!(times.windows(2).all(|pair| pair[1] - pair[0] == 10_000));
@@ -83,7 +83,7 @@ fn ticks_are_ten_milliseconds_apart_to_the_microsecond() {
 
 #[test]
 fn an_estimate_is_made_within_six_milliseconds_of_its_tick() {
-    let mut board = Board::new(Rig::new(Scenario::FreeSwing, 10));
+    let mut board = Board::new(WiredRig::new(Scenario::FreeSwing, 10));
     board.run_ms(3000);
     let longest = board.healths().map(|health| health.max_estimate_latency_us).max().expect("health comes");
     assert!((1000..6000).contains(&longest), "{longest} µs");

@@ -3,10 +3,10 @@
 use board_tests::{Board, UART};
 use rig_twin::Scenario;
 use telemetry::{Command, Message, Outcome, Rates, Refusal, Request, ResetCause, SetPressures};
-use virtual_due::Rig;
+use virtual_due::WiredRig;
 
 fn ready() -> Board {
-    let mut board = Board::new(Rig::new(Scenario::FreeSwing, 1));
+    let mut board = Board::new(WiredRig::new(Scenario::FreeSwing, 1));
     board.run_ms(1500);
     board
 }

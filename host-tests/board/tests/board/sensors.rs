@@ -5,12 +5,12 @@ use std::collections::BTreeSet;
 use board_tests::Board;
 use rig_twin::Scenario;
 use telemetry::{BEND_SENSORS, SEGMENTS, SensorState};
-use virtual_due::Rig;
+use virtual_due::WiredRig;
 use virtual_due::rig::{ImuFault, Rail};
 
 /// A board whose sensors have all come up.
 fn ready() -> Board {
-    let mut board = Board::new(Rig::new(Scenario::FreeSwing, 1));
+    let mut board = Board::new(WiredRig::new(Scenario::FreeSwing, 1));
     board.run_ms(1500);
     board
 }
@@ -81,7 +81,7 @@ fn an_unplugged_imu_is_lost_alone() {
 
 #[test]
 fn an_imu_that_is_absent_at_boot_leaves_the_others_running() {
-    let mut rig = Rig::new(Scenario::FreeSwing, 1);
+    let mut rig = WiredRig::new(Scenario::FreeSwing, 1);
     rig.faults.imus[2] = ImuFault::Unplugged;
     let mut board = Board::new(rig);
     board.run_ms(4000);
@@ -97,7 +97,7 @@ fn an_imu_that_is_absent_at_boot_leaves_the_others_running() {
 
 #[test]
 fn an_imu_that_is_plugged_in_later_is_taken_in() {
-    let mut rig = Rig::new(Scenario::FreeSwing, 1);
+    let mut rig = WiredRig::new(Scenario::FreeSwing, 1);
     rig.faults.imus[4] = ImuFault::Unplugged;
     let mut board = Board::new(rig);
     board.run_ms(1500);

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use board_tests::{UART, firmware};
 use rig_twin::Scenario;
 use serialport::{SerialPort, TTYPort};
-use virtual_due::{CYCLES_PER_SECOND, Machine, Rig};
+use virtual_due::{CYCLES_PER_SECOND, Machine, WiredRig};
 
 /// Time that the board runs between two transfers, ms.
 const SLICE_MS: u64 = 2;
@@ -18,7 +18,7 @@ const ROOM: usize = 1 << 16;
 /// The board, and our end of its line.
 pub struct Terminal {
     /// The emulated board.
-    pub machine: Machine<Rig>,
+    pub machine: Machine<WiredRig>,
     line: TTYPort,
     port: String,
     /// Disturbance of the line: the bytes that arrive for those that the board sent.
@@ -33,7 +33,7 @@ impl Terminal {
         let port = theirs.name().expect("it has a name");
         line.set_timeout(Duration::from_millis(1)).expect("it is set");
         let machine =
-            Machine::new(firmware(), Rig::new(Scenario::FreeSwing, 1)).expect("cargo built an ELF for the board");
+            Machine::new(firmware(), WiredRig::new(Scenario::FreeSwing, 1)).expect("cargo built an ELF for the board");
         Self { machine, line, port, disturb: Box::new(|bytes| bytes), to_host: VecDeque::new() }
     }
 
@@ -46,7 +46,7 @@ impl Terminal {
     ///
     /// # Panics
     /// After five minutes.
-    pub fn run_until(&mut self, mut is_done: impl FnMut(&mut Machine<Rig>) -> bool) {
+    pub fn run_until(&mut self, mut is_done: impl FnMut(&mut Machine<WiredRig>) -> bool) {
         let deadline = Instant::now() + Duration::from_mins(5);
         let (mut begin, start) = (None, self.machine.now());
         while !is_done(&mut self.machine) {

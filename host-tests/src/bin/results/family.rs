@@ -4,7 +4,7 @@ use std::fmt::{self, Write};
 use std::path::Path;
 
 use calibration_tables::ArmFile;
-use host_tests::contact::{Found, Run};
+use host_tests::contact::{ContactSession, Found};
 use host_tests::parallel::in_parallel;
 use host_tests::twin::TwinSession;
 use proprio_analysis::metrics::Metrics as MethodMetrics;
@@ -58,7 +58,7 @@ impl ArmFigures {
             scenarios.push(evaluation.figures());
             paper.push(evaluation.paper.metrics());
             quadratic_mm.push(fusion_mm(&tables.quadratic, &session)?);
-            runs.push(Run::of(session, evaluation.contact));
+            runs.push(ContactSession::of(session, evaluation.contact));
         }
         let contact =
             Contact { false_alarms: runs[0].alarms(), pushes: runs[1].pushes(), encounters: runs[2].encounters() };

@@ -65,7 +65,7 @@ impl Adc {
             // Write-only registers read as zero.
             CR | CHER | CHDR | IER | IDR => 0,
             _ => {
-                context.report.unmodelled("ADC", offset);
+                context.warnings.unmodelled("ADC", offset);
                 0
             }
         }
@@ -91,7 +91,7 @@ impl Adc {
             }
             _ if Pdc::owns(offset) => self.pdc.write(offset, value),
             CHSR | LCDR | IMR | ISR | OVER | WPSR | CDR0..=CDR15 => {}
-            _ => context.report.unmodelled("ADC", offset),
+            _ => context.warnings.unmodelled("ADC", offset),
         }
     }
 
@@ -114,7 +114,7 @@ impl Adc {
             ACR => self.analog_control = value & 0x310,
             _ => {
                 if value != 0 {
-                    context.report.unmodelled("ADC", offset);
+                    context.warnings.unmodelled("ADC", offset);
                 }
                 *(if offset == CGR { &mut self.gain } else { &mut self.offset }) = value;
             }

@@ -163,7 +163,7 @@ impl Pio {
                 _ if self.interrupts.write(offset, value) => {}
                 // Read-only registers of the groups.
                 0x08 | 0x18 | 0x28 | PDSR | ISR | 0x58 | PUSR | IFDGSR | 0xA8 => {}
-                _ => context.report.unmodelled(self.name(), offset),
+                _ => context.warnings.unmodelled(self.name(), offset),
             },
         }
     }
@@ -194,7 +194,7 @@ impl Peripheral for Pio {
                 // The write-only halves of the pairs.
                 None if offset < 0xAC => 0,
                 None => {
-                    context.report.unmodelled(self.name(), offset);
+                    context.warnings.unmodelled(self.name(), offset);
                     0
                 }
             },

@@ -173,7 +173,7 @@ impl Pmc {
     fn signal_master_clock(&mut self, context: &mut Context) {
         let hz = self.master_hz();
         if hz == 0 {
-            context.report.warn_once("the master clock's source is off: a real chip stops here".to_owned());
+            context.warnings.warn_once("the master clock's source is off: a real chip stops here".to_owned());
             return;
         }
         let lock = match self.master & 3 {
@@ -182,10 +182,10 @@ impl Pmc {
             _ => 0,
         };
         if self.status & lock != lock {
-            context.report.warn_once("the master clock was switched to a PLL that has not locked".to_owned());
+            context.warnings.warn_once("the master clock was switched to a PLL that has not locked".to_owned());
         }
         if hz > HIGHEST_HZ {
-            context.report.warn_once(format!("master clock of {hz} Hz: the chip is specified up to {HIGHEST_HZ} Hz"));
+            context.warnings.warn_once(format!("master clock of {hz} Hz: the chip is specified up to {HIGHEST_HZ} Hz"));
         }
         if hz != self.signalled_hz {
             self.signalled_hz = hz;
@@ -272,7 +272,7 @@ impl Pmc {
                 }
             }
             FSMR | FSPR => self.startup[(offset - FSMR) as usize / 4] = value,
-            _ => context.report.unmodelled("PMC", offset),
+            _ => context.warnings.unmodelled("PMC", offset),
         }
     }
 }
@@ -306,7 +306,7 @@ impl Peripheral for Pmc {
             WPSR => self.protection.take_status(),
             SCER | SCDR | PCER0 | PCDR0 | PCER1 | PCDR1 | IER | IDR | FOCR => 0,
             _ => {
-                context.report.unmodelled("PMC", offset);
+                context.warnings.unmodelled("PMC", offset);
                 0
             }
         }

@@ -87,7 +87,7 @@ impl Pwm {
             ENA | DIS | IER1 | IDR1 | SCUPUPD | IER2 | IDR2 | OSS | OSC | OSSUPD | OSCUPD | FSR | FCR | WPCR => 0,
             _ if Pdc::owns(offset) => self.pdc.read(offset),
             _ => {
-                context.report.unmodelled("PWM", offset);
+                context.warnings.unmodelled("PWM", offset);
                 0
             }
         }
@@ -146,7 +146,7 @@ impl Pwm {
             CMP..CMP_END => self.write_comparison(offset - CMP, value),
             CHANNEL..CHANNEL_END => self.write_channel(offset - CHANNEL, value, context),
             _ if Pdc::owns(offset) => self.pdc.write(offset, value),
-            _ => context.report.unmodelled("PWM", offset),
+            _ => context.warnings.unmodelled("PWM", offset),
         }
     }
 
@@ -154,7 +154,7 @@ impl Pwm {
     fn store(&mut self, offset: u32, value: u32, context: &mut Context) {
         let acts = matches!(offset, FPE1 | FPE2 | ELMR0 | ELMR1 | SMMR) && value != 0;
         if acts {
-            context.report.unmodelled("PWM", offset);
+            context.warnings.unmodelled("PWM", offset);
         }
         let register = match offset {
             FMR => &mut self.fault[0],

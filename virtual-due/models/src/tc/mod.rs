@@ -98,14 +98,14 @@ impl Tc {
             BMR if self.protection.permits(offset) => {
                 self.block_mode = value;
                 if value & QDEN != 0 {
-                    context.report.unmodelled(self.name(), offset);
+                    context.warnings.unmodelled(self.name(), offset);
                 }
             }
             FMR if self.protection.permits(offset) => self.fault_mode = value & 3,
             WPMR => self.protection.set_mode(value),
-            QIER if value != 0 => context.report.unmodelled(self.name(), offset),
+            QIER if value != 0 => context.warnings.unmodelled(self.name(), offset),
             BCR | BMR | FMR | QIER | QIDR | QIMR | QISR => {}
-            _ => context.report.unmodelled(self.name(), offset),
+            _ => context.warnings.unmodelled(self.name(), offset),
         }
     }
 
@@ -116,7 +116,7 @@ impl Tc {
             WPMR => self.protection.mode(),
             BCR | QIER | QIDR | QIMR | QISR => 0,
             _ => {
-                context.report.unmodelled(self.name(), offset);
+                context.warnings.unmodelled(self.name(), offset);
                 0
             }
         }
@@ -130,7 +130,7 @@ impl Peripheral for Tc {
             None => return self.read_block(offset, context),
         };
         value.unwrap_or_else(|| {
-            context.report.unmodelled(self.name(), offset);
+            context.warnings.unmodelled(self.name(), offset);
             0
         })
     }
@@ -146,7 +146,7 @@ impl Peripheral for Tc {
             return;
         }
         if !channel.write(offset % 0x40, value, context) {
-            context.report.unmodelled(name, offset);
+            context.warnings.unmodelled(name, offset);
         }
         self.signal_edges(context);
     }

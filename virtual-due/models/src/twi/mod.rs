@@ -75,7 +75,7 @@ impl Twi {
         }
         // A master's start-up code may write SVEN before MSEN; a slave has an address.
         if value & SVEN != 0 && self.slave_mode != 0 {
-            context.report.unmodelled(self.name(), SMR);
+            context.warnings.unmodelled(self.name(), SMR);
         }
         if value & QUICK != 0 {
             self.master.quick(context);
@@ -127,7 +127,7 @@ impl Peripheral for Twi {
             CR | IER | IDR | THR => 0,
             _ if Pdc::owns(offset) => self.pdc.read(offset),
             _ => {
-                context.report.unmodelled(self.name(), offset);
+                context.warnings.unmodelled(self.name(), offset);
                 0
             }
         }
@@ -145,7 +145,7 @@ impl Peripheral for Twi {
             THR => self.master.write(value as u8, context),
             SR | IMR | RHR => {}
             _ if Pdc::owns(offset) => self.pdc.write(offset, value),
-            _ => context.report.unmodelled(self.name(), offset),
+            _ => context.warnings.unmodelled(self.name(), offset),
         }
         self.serve_pdc(context);
     }

@@ -3,7 +3,7 @@
 use board_tests::{Board, UART};
 use rig_twin::Scenario;
 use telemetry::{Command, SetPressures};
-use virtual_due::Rig;
+use virtual_due::WiredRig;
 use virtual_due::rig::{HeldLow, ImuFault, MuxFault, Rail};
 
 /// Requests that the host sends in one burst, more than the line carries in a tick.
@@ -14,7 +14,7 @@ const FLOOD: usize = 40;
 /// # Panics
 /// If the board resets.
 pub fn board(mut run_ms: impl FnMut(&mut Board, u64)) -> Board {
-    let mut board = Board::new(Rig::new(Scenario::FreeSwing, 1));
+    let mut board = Board::new(WiredRig::new(Scenario::FreeSwing, 1));
     // The first tick comes late, as the board is still being set up.
     board.run_ms(50);
     run_ms(&mut board, 1_950);

@@ -3,14 +3,14 @@
 use board_tests::{UART, firmware};
 use rig_twin::Scenario;
 use virtual_due::model::{I2c, Pin, Reception, World};
-use virtual_due::{CYCLES_PER_SECOND, Cycles, Machine, Rig};
+use virtual_due::{CYCLES_PER_SECOND, Cycles, Machine, WiredRig};
 
 /// The ADC channel under observation: that of A7, the first of a scan.
 const CHANNEL: u8 = 0;
 
 /// A rig that records the times at which the channel is converted.
 struct Watched {
-    rig: Rig,
+    rig: WiredRig,
     conversions: Vec<Cycles>,
 }
 
@@ -20,7 +20,7 @@ struct Watched {
 /// # Panics
 /// If the firmware does not sample.
 pub fn cycles() -> f64 {
-    let world = Watched { rig: Rig::new(Scenario::FreeSwing, 1), conversions: Vec::new() };
+    let world = Watched { rig: WiredRig::new(Scenario::FreeSwing, 1), conversions: Vec::new() };
     let mut machine = Machine::new(firmware(), world).expect("a firmware for the Due");
     for second in 0..20 {
         // Noise on the line, so that the processor's work is not the same every time.

@@ -3,7 +3,7 @@
 use board_tests::elf;
 use object::{Object, ObjectSymbol};
 use rig_twin::Scenario;
-use virtual_due::{CYCLES_PER_SECOND, Machine, Rig};
+use virtual_due::{CYCLES_PER_SECOND, Machine, WiredRig};
 
 use crate::figure::Figure;
 
@@ -67,7 +67,7 @@ fn arms(binary: &str, segments: &[u32]) -> Vec<(u32, Range, Range)> {
 
 /// The same for so many samples of each arm.
 fn arms_of(binary: &str, segments: &[u32], steps: usize) -> Vec<(u32, Range, Range)> {
-    let mut machine = Machine::new(&elf("on-target-tests", binary), Rig::new(Scenario::FreeSwing, 1))
+    let mut machine = Machine::new(&elf("on-target-tests", binary), WiredRig::new(Scenario::FreeSwing, 1))
         .expect("a firmware for the Due");
     println!("instructions of a step   in the tare          after it");
     let arm = |segments: &u32| {
@@ -86,7 +86,7 @@ fn arms_of(binary: &str, segments: &[u32], steps: usize) -> Vec<(u32, Range, Ran
 }
 
 /// Instructions of the next arm's steps, each with the two calls around it.
-fn counts(machine: &mut Machine<Rig>, steps: usize) -> Vec<u64> {
+fn counts(machine: &mut Machine<WiredRig>, steps: usize) -> Vec<u64> {
     let [begins, ends] = ["step_begins", "step_ends"].map(|name| machine.symbol(name).expect("the firmware has it"));
     let mut run_to = |address| {
         let limit = machine.now() + CYCLES_PER_SECOND;

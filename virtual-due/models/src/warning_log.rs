@@ -4,13 +4,13 @@ use std::collections::BTreeSet;
 
 /// Warnings about actions of the firmware that the emulated board does not model faithfully, each once.
 #[derive(Debug, Default)]
-pub struct Report {
+pub struct WarningLog {
     unmodelled: BTreeSet<(&'static str, u32)>,
     warned: BTreeSet<String>,
     lines: Vec<String>,
 }
 
-impl Report {
+impl WarningLog {
     /// Reports an access to a register that the model of `peripheral` does not have.
     pub fn unmodelled(&mut self, peripheral: &'static str, offset: u32) {
         if self.unmodelled.insert((peripheral, offset)) {
