@@ -3,13 +3,10 @@
 use core::ops::Range;
 
 use board_core::FULL_SCALE_PA;
-use telemetry::{BEND_SENSORS, REGULATORS};
+use telemetry::{BEND_SENSORS, REGULATORS, TICK_US};
 
 /// Ticks a second: the rate of the ADC's trigger and of all tasks.
-pub const TICK_HZ: u32 = 100;
-
-/// Time between two ticks, µs.
-pub const TICK_US: u64 = 10_000;
+pub const TICK_HZ: u32 = (1_000_000 / TICK_US) as u32;
 
 /// From the ADC's trigger to the tick's interrupt, µs: a scan of twelve channels takes 50 µs.
 pub const SCAN_US: u32 = 200;

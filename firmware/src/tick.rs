@@ -8,9 +8,9 @@ use atsam3x8e_hal::watchdog::Watchdog;
 use board_core::{Actuator, BootCounter, DeadlineMissed, Task};
 use rtic::Mutex;
 use rtic_sync::signal::SignalWriter;
-use telemetry::{BEND_SENSORS, REGULATORS};
+use telemetry::{BEND_SENSORS, REGULATORS, TICK_US};
 
-use crate::parameters::{BEND_POSITIONS, TICK_US};
+use crate::parameters::BEND_POSITIONS;
 use crate::retained;
 use crate::supervision::SUPERVISOR;
 

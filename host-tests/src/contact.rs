@@ -1,4 +1,4 @@
-//! Contact as the estimator tells it, against what touches the simulated arm.
+//! Contact as the estimator detects it, compared with the simulated arm's contacts.
 
 use std::error::Error;
 use std::ops::AddAssign;
@@ -9,26 +9,26 @@ use rig_twin::{Push, SEGMENTS, Scenario, Setup};
 
 use crate::twin::TwinSession;
 
-/// The rate of the estimator's samples.
+/// Rate of the estimator's samples, Hz.
 const RATE_HZ: f64 = 10.0;
-/// What bends a segment by more is to be found,
+/// Bend of a segment from which a contact has to be detected, rad.
 const STRONG_RAD: f64 = 10.0 * std::f64::consts::PI / 180.0;
-/// within this time.
+/// Time within which it has to be detected, s.
 const SOON_S: f64 = 0.5;
 
 /// A run, sample by sample and segment by segment.
 pub struct Run {
-    /// Whether the estimator says that something touches the segment.
-    pub told: Vec<[bool; SEGMENTS]>,
-    /// What contact adds to its bend angle, rad.
+    /// True if the estimator reports contact of the segment.
+    pub detected: Vec<[bool; SEGMENTS]>,
+    /// Bend angle that contact adds to the segment, rad.
     pub bends_rad: Vec<[f64; SEGMENTS]>,
     pushes: Vec<Push>,
 }
 
-/// How many there were, and how many of them were found.
+/// Number of contacts, and of those that were detected.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Found {
-    /// Found.
+    /// Detected ones.
     pub found: usize,
     /// All.
     pub all: usize,
@@ -48,58 +48,58 @@ impl AddAssign for Found {
 
 /// Number of contacts that begin; of a free arm, of false alarms.
 #[must_use]
-pub fn alarms(told: &[[bool; SEGMENTS]]) -> usize {
-    told.windows(2).filter(|pair| pair[1] != [false; SEGMENTS] && pair[0] == [false; SEGMENTS]).count()
+pub fn alarms(detected: &[[bool; SEGMENTS]]) -> usize {
+    detected.windows(2).filter(|pair| pair[1] != [false; SEGMENTS] && pair[0] == [false; SEGMENTS]).count()
 }
 
 impl Run {
     /// Simulates a session of the reference arm and replays it with this table.
     ///
     /// # Errors
-    /// [`Error`] where the file is no table, or the twin has no such session.
+    /// [`Error`] if the file is not a table, or the twin has no such session.
     pub fn new(table: &ArmFile, scenario: Scenario, seed: u64, seconds: f64) -> Result<Self, Box<dyn Error>> {
         let session = TwinSession::new(&Setup::new(scenario, seed), seconds, RATE_HZ)?;
-        let mut told = Vec::new();
-        session.replay(table, |_, outcome| told.push(in_contact(outcome)))?;
-        Ok(Self::of(session, told))
+        let mut detected = Vec::new();
+        session.replay(table, |_, outcome| detected.push(in_contact(outcome)))?;
+        Ok(Self::of(session, detected))
     }
 
-    /// A session that was replayed, with what the estimator said of each of its samples.
+    /// A replayed session, with the contact that the estimator detected in each of its samples.
     #[must_use]
-    pub fn of(session: TwinSession, told: Vec<[bool; SEGMENTS]>) -> Self {
-        Self { told, bends_rad: session.contact_bends_rad, pushes: session.pushes }
+    pub fn of(session: TwinSession, detected: Vec<[bool; SEGMENTS]>) -> Self {
+        Self { detected, bends_rad: session.contact_bends_rad, pushes: session.pushes }
     }
 
     /// Number of contacts that begin; of a free arm, of false alarms.
     #[must_use]
     pub fn alarms(&self) -> usize {
-        alarms(&self.told)
+        alarms(&self.detected)
     }
 
-    /// Pushes over 10°, and those of them that are told of on their segment within half a second of the first touch.
+    /// Pushes over 10°, and those that are detected on their segment within half a second of the first touch.
     #[must_use]
     pub fn pushes(&self) -> Found {
         let at = |time_s: f64| (time_s * RATE_HZ).ceil() as usize;
         let strong = self.pushes.iter().filter(|push| push.bend_rad.abs() > STRONG_RAD);
         let whole =
-            strong.filter_map(|push| Some((push, self.told.get(at(push.start_s)..=at(push.start_s + SOON_S))?)));
-        whole.fold(Found { found: 0, all: 0 }, |Found { found, all }, (push, told)| {
-            let is_found = told.iter().any(|told| told[push.segment]);
+            strong.filter_map(|push| Some((push, self.detected.get(at(push.start_s)..=at(push.start_s + SOON_S))?)));
+        whole.fold(Found { found: 0, all: 0 }, |Found { found, all }, (push, detected)| {
+            let is_found = detected.iter().any(|detected| detected[push.segment]);
             Found { found: found + usize::from(is_found), all: all + 1 }
         })
     }
 
-    /// Times that an obstacle comes to bend any segment by over 10°, and those of them that are told of on any segment
-    /// within half a second.
+    /// Times that an obstacle begins to bend any segment by over 10°, and those that are detected on any segment within
+    /// half a second.
     #[must_use]
     pub fn encounters(&self) -> Found {
         let is_strong = |bends: &[f64; SEGMENTS]| bends.iter().any(|bend| bend.abs() > STRONG_RAD);
         let begins =
-            (1..self.told.len()).filter(|k| is_strong(&self.bends_rad[*k]) && !is_strong(&self.bends_rad[k - 1]));
+            (1..self.detected.len()).filter(|k| is_strong(&self.bends_rad[*k]) && !is_strong(&self.bends_rad[k - 1]));
         let soon = (SOON_S * RATE_HZ) as usize;
-        let whole = begins.filter_map(|k| self.told.get(k..=k + soon));
-        whole.fold(Found { found: 0, all: 0 }, |Found { found, all }, told| {
-            let is_found = told.iter().any(|told| *told != [false; SEGMENTS]);
+        let whole = begins.filter_map(|k| self.detected.get(k..=k + soon));
+        whole.fold(Found { found: 0, all: 0 }, |Found { found, all }, detected| {
+            let is_found = detected.iter().any(|detected| *detected != [false; SEGMENTS]);
             Found { found: found + usize::from(is_found), all: all + 1 }
         })
     }

@@ -1,14 +1,14 @@
-//! Oracles for the host tests: what their results are judged against.
+//! Oracles for the host tests: the results that they are compared with.
 //!
-//! [`contact`] is what touches the simulated arm, beside what the estimator says of it.
+//! [`contact`] compares the simulated arm's contacts with those that the estimator detects.
 //!
 //! [`faults`] are faults of sensors and recordings, to be put into the sessions of [`twin`].
 //!
-//! [`literal`] is the mathematics of `docs/METHOD.md` once more, written down as it stands there and in floats: what the
-//! estimator, which is streaming, decoupled and fixed point, is judged against.
+//! [`reference_model`] is a second implementation of the method, equation by equation and in floats. The estimator, which is
+//! streaming, decoupled and fixed point, is compared with it.
 
 pub mod contact;
 pub mod faults;
-pub mod literal;
 pub mod parallel;
+pub mod reference_model;
 pub mod twin;

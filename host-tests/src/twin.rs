@@ -88,13 +88,13 @@ impl<'t> Replayer<'t> {
     /// An estimator at the start of a session.
     ///
     /// # Panics
-    /// If the arm is larger than the estimator has room for; tables from files are not.
+    /// If the arm has more segments than the estimator; tables from files do not.
     #[must_use]
     pub fn new(config: &'t ArmConfig<'t, Q>) -> Self {
         Self { estimator: Box::new(Estimator::new(config).expect("the file was checked")) }
     }
 
-    /// Takes a row.
+    /// Processes a row.
     ///
     /// # Panics
     /// As [`Self::new`].
@@ -106,15 +106,15 @@ impl<'t> Replayer<'t> {
 /// Replays rows sampled at `rate_hz`; `visit` receives every row with its outcome.
 ///
 /// # Errors
-/// [`FileError`] where the file is no table.
+/// [`FileError`] if the file is not a table.
 pub fn replay(
     table: &ArmFile,
     rate_hz: f64,
     rows: impl Iterator<Item = Row>,
     mut visit: impl FnMut(&Row, &Outcome<Q>),
 ) -> Result<(), FileError> {
-    let baked = table.bake::<Q>(rate_hz)?;
-    let config = baked.config();
+    let compiled = table.compile::<Q>(rate_hz)?;
+    let config = compiled.config();
     let mut replayer = Replayer::new(&config);
     for row in rows {
         visit(&row, &replayer.step(&row));
@@ -125,15 +125,15 @@ pub fn replay(
 /// Replays rows sampled at `rate_hz` and smooths them; `visit` receives every row with its outcome.
 ///
 /// # Errors
-/// [`FileError`] where the file is no table.
+/// [`FileError`] if the file is not a table.
 pub fn replay_smoothed<R: Iterator<Item = Row>>(
     table: &ArmFile,
     rate_hz: f64,
     rows: impl Fn() -> R,
     mut visit: impl FnMut(&Row, &Outcome<Q>),
 ) -> Result<(), FileError> {
-    let baked = table.bake::<Q>(rate_hz)?;
-    let config = baked.config();
+    let compiled = table.compile::<Q>(rate_hz)?;
+    let config = compiled.config();
     let mut forward = ForwardPass::new(&config);
     rows().for_each(|row| forward.add(&row));
     let mut smoothing = SmoothingPass::new(&config, forward.finish());

@@ -6,8 +6,11 @@ pub const PROTOCOL_VERSION: u8 = 2;
 /// Length of the longest frame in bytes, its zero included.
 pub const MAX_FRAME: usize = 255;
 
-/// Ticks a second: the default rate of samples and estimates.
-pub const TICK_HZ: f64 = 100.0;
+/// Time between two ticks of the board, µs.
+pub const TICK_US: u64 = 10_000;
+
+/// Ticks a second: the rate of samples and estimates, unless the host requests a lower one.
+pub const TICK_HZ: f64 = 1e6 / TICK_US as f64;
 
 /// Segments of the arm.
 pub const SEGMENTS: usize = 6;

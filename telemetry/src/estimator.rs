@@ -25,7 +25,7 @@ impl Estimate {
         let mut segments = [None; SEGMENTS];
         for (segment, SegmentShape { theta, end }) in segments.iter_mut().zip(shape) {
             *segment = theta.zip(*end).map(|(theta, end)| SegmentEstimate {
-                theta: theta.rest.to_bits(),
+                theta: theta.remainder.to_bits(),
                 end: [end.x.to_bits(), end.y.to_bits()],
             });
         }

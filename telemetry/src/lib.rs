@@ -2,7 +2,7 @@
 //!
 //! The board sends [`Message`]s, the host sends [`Request`]s. Either way an [`Encoder`] makes a frame of each, and a
 //! [`Decoder`] finds frames in a stream of bytes, checks them and counts the missing ones. The crate is `no_std`,
-//! allocates nothing and does no input or output. `docs/PROTOCOL.md` in the repository has every byte.
+//! allocates nothing and does no input or output. `docs/reference/protocol.md` in the repository has every byte.
 //!
 //! | file | contents |
 //! |---|---|
@@ -55,7 +55,7 @@ mod schema;
 mod wire;
 mod wire_conversions;
 
-pub use constants::{BEND_SENSORS, MAX_FRAME, PROTOCOL_VERSION, REGULATORS, SEGMENTS, TICK_HZ};
+pub use constants::{BEND_SENSORS, MAX_FRAME, PROTOCOL_VERSION, REGULATORS, SEGMENTS, TICK_HZ, TICK_US};
 pub use decode_error::DecodeError;
 pub use decoder::{Counts, Decoder};
 pub use estimator::contact_flags;
@@ -66,5 +66,5 @@ pub use schema::{EARLIER_SCHEMAS, SCHEMA, is_same_layout};
 
 /// Runs the example of the protocol's page.
 #[cfg(doctest)]
-#[doc = include_str!("../../docs/PROTOCOL.md")]
+#[doc = include_str!("../../docs/reference/protocol.md")]
 struct ProtocolPage;

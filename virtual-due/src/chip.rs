@@ -4,10 +4,11 @@ use crate::clock::Clock;
 use crate::cpu::{Access, Bus};
 use crate::dwt::Dwt;
 use crate::engine::DWT;
-use crate::memory_map::{BANK, FLASH, Memories};
-use crate::model::{Cause, Context, Cycles, Peripheral, Signal, World};
-use crate::peripherals::{Directory, Slot};
-use crate::report::Report;
+use crate::memory_map::Memories;
+use crate::peripheral_map::{Directory, Slot};
+use sam3x_models::Report;
+use sam3x_models::flash::{BANK, FLASH};
+use sam3x_models::model::{Cause, Context, Cycles, Peripheral, Signal, World};
 
 const NEVER: Cycles = Cycles::MAX;
 
@@ -17,19 +18,19 @@ pub struct Chip<W> {
     pub memories: Memories,
     pub world: W,
     pub report: Report,
-    /// What asked for a reset.
+    /// Cause of a requested reset.
     pub reset: Option<Cause>,
-    /// Whether the next reset boots from flash.
+    /// True if the next reset boots from flash.
     pub boots_from_flash: bool,
-    /// The CPU returns by then.
+    /// Time by which the CPU returns.
     pub limit: Cycles,
     directory: Directory,
     slots: Vec<Slot>,
-    // For each slot, when it next does something of its own, and its interrupt lines.
+    // For each slot, the time of its next event, and its interrupt lines.
     due: Vec<Cycles>,
     lines: Vec<u32>,
     earliest: Cycles,
-    // No model has been called at a later time.
+    // The latest time at which a model was called.
     now: Cycles,
     changed_lines: Vec<(u16, bool)>,
     signals: Vec<Signal>,
@@ -42,7 +43,7 @@ impl<W: World> Chip<W> {
     /// The chip with this world, before its first reset.
     pub fn new(world: W) -> Self {
         let memories = Memories::new();
-        let slots = crate::peripherals::all(&memories);
+        let slots = crate::peripheral_map::all(&memories);
         let master_clock_hz = 4_000_000;
         Self {
             clock: Clock::new(master_clock_hz),
@@ -75,8 +76,8 @@ impl<W: World> Chip<W> {
             self.slots[index].model.reset();
             self.call(index, |model, context| model.signal(Signal::Reset(cause), context));
         }
-        self.heed_signals(instructions);
-        // The CPU forgot its lines.
+        self.dispatch_signals(instructions);
+        // The CPU's lines are low after its reset.
         self.changed_lines.clear();
         for index in 0..self.slots.len() {
             self.lines[index] = 0;
@@ -84,23 +85,24 @@ impl<W: World> Chip<W> {
         }
     }
 
-    /// When a model next does something of its own.
+    /// Time of the next event of any model.
     pub fn next_event(&self) -> Cycles {
         self.earliest
     }
 
-    /// Does all that is due up to `now`, each at its own time.
+    /// Advances the models to `now`, each event at its own time.
     pub fn catch_up(&mut self, now: Cycles, instructions: u64) {
         while self.earliest <= now {
             let (index, due) =
                 self.due.iter().copied().enumerate().min_by_key(|(_, due)| *due).expect("there are peripherals");
             self.now = self.now.max(due);
             self.call(index, |model, context| model.advance(context));
-            self.heed_signals(instructions);
+            self.dispatch_signals(instructions);
             self.refresh(index);
             if self.due[index] <= due {
                 let name = self.slots[index].name;
-                self.report.once(format!("the model of {name} is late for its own event: a defect of this emulator"));
+                self.report
+                    .warn_once(format!("the model of {name} is late for its own event: a defect of this emulator"));
                 self.due[index] = self.now + 1;
                 self.find_earliest();
             }
@@ -108,7 +110,7 @@ impl<W: World> Chip<W> {
         self.now = self.now.max(now);
     }
 
-    /// Lends a model all it may see.
+    /// Calls a model with its context.
     fn call<R>(&mut self, index: usize, run: impl FnOnce(&mut dyn Peripheral, &mut Context) -> R) -> R {
         let mut context = Context {
             now: self.now,
@@ -121,7 +123,7 @@ impl<W: World> Chip<W> {
         run(&mut *self.slots[index].model, &mut context)
     }
 
-    /// Looks at a model's lines and next event after it was called.
+    /// Updates a model's lines and next event after it was called.
     fn refresh(&mut self, index: usize) {
         let slot = &self.slots[index];
         let lines = slot.model.interrupts();
@@ -145,26 +147,26 @@ impl<W: World> Chip<W> {
         self.earliest = self.due.iter().copied().min().unwrap_or(NEVER);
     }
 
-    /// Lets the chip hear what models had to say.
-    fn heed_signals(&mut self, instructions: u64) {
+    /// Dispatches the signals of the models.
+    fn dispatch_signals(&mut self, instructions: u64) {
         while !self.signals.is_empty() {
             for signal in std::mem::take(&mut self.signals) {
-                self.heed(signal, instructions);
+                self.dispatch(signal, instructions);
             }
         }
     }
 
-    fn heed(&mut self, signal: Signal, instructions: u64) {
+    fn dispatch(&mut self, signal: Signal, instructions: u64) {
         match signal {
             Signal::Tioa(_) | Signal::PwmEvent(_) => {
                 if let Some(adc) = self.directory.adc {
-                    self.tell(adc, signal);
+                    self.send_signal(adc, signal);
                 }
             }
             Signal::Flash(address, length) => self.memories.changed.push((address, length)),
             Signal::BootFlash(flash) => self.boots_from_flash = flash,
             Signal::Reset(cause) => self.reset = Some(cause),
-            Signal::Pins { .. } => (0..self.slots.len()).for_each(|index| self.tell(index, signal)),
+            Signal::Pins { .. } => (0..self.slots.len()).for_each(|index| self.send_signal(index, signal)),
             Signal::PeripheralClocks(clocks) => {
                 let switched = |slot: &Slot| slot.clock_runs(self.clocks) != slot.clock_runs(clocks);
                 let switched: Vec<usize> =
@@ -188,14 +190,14 @@ impl<W: World> Chip<W> {
                 self.master_clock_hz = hz;
                 self.clock.set_hz(instructions, hz);
                 for index in 0..self.slots.len() {
-                    self.tell(index, signal);
+                    self.send_signal(index, signal);
                 }
             }
         }
     }
 
-    /// Tells a model of a signal.
-    fn tell(&mut self, index: usize, signal: Signal) {
+    /// Sends a signal to a model.
+    fn send_signal(&mut self, index: usize, signal: Signal) {
         let runs = self.slots[index].clock_runs(self.clocks);
         self.call(index, |model, context| {
             if runs {
@@ -206,18 +208,18 @@ impl<W: World> Chip<W> {
         self.refresh(index);
     }
 
-    /// Brings all models up to now: the world was, or may be, looked at or changed from outside.
-    pub fn look(&mut self, instructions: u64) {
+    /// Advances all models to now, so that the world may be read or changed from outside.
+    pub fn advance_all(&mut self, instructions: u64) {
         for index in 0..self.slots.len() {
             if self.slots[index].clock_runs(self.clocks) {
                 self.call(index, |model, context| model.advance(context));
-                self.heed_signals(instructions);
+                self.dispatch_signals(instructions);
                 self.refresh(index);
             }
         }
     }
 
-    /// A register access. APB registers are 32 bits wide: a byte or halfword is a lane of one (datasheet 9.3).
+    /// Accesses a register. APB registers are 32 bits wide: a byte or halfword is a lane of one (datasheet 9.3).
     fn register(&mut self, index: usize, access: Access) -> u32 {
         let slot = &self.slots[index];
         let runs = slot.clock_runs(self.clocks);
@@ -225,7 +227,7 @@ impl<W: World> Chip<W> {
         let shift = 8 * (access.address & 3);
         let answer = match access.store {
             Some(_) if !runs => {
-                self.report.once(format!("{} written while its clock is off", slot.name));
+                self.report.warn_once(format!("{} written while its clock is off", slot.name));
                 return 0;
             }
             Some(value) => {
@@ -243,12 +245,12 @@ impl<W: World> Chip<W> {
                 model.read(offset, context) >> shift
             }),
         };
-        self.heed_signals(access.instructions);
+        self.dispatch_signals(access.instructions);
         self.refresh(index);
         answer
     }
 
-    /// A bank that is being programmed cannot be read, by the program neither (datasheet 18.4.1).
+    /// Warns if the program runs from the bank that it programs, which cannot be read meanwhile (datasheet 18.4.1).
     fn check_programming(&mut self, index: usize, offset: u32, access: Access) {
         const FCR: u32 = 4;
         const PROGRAMS: u32 = 0b0101_1011_0011_1110;
@@ -257,13 +259,13 @@ impl<W: World> Chip<W> {
         let start = FLASH + bank as u32 * BANK;
         if offset == FCR && programs && (start..start + BANK).contains(&access.pc) {
             let (name, pc) = (self.slots[index].name, access.pc);
-            self.report.once(format!(
+            self.report.warn_once(format!(
                 "{name}: the program at pc {pc:#010x} programs the bank it runs from: a real chip hangs"
             ));
         }
     }
 
-    /// A store to flash goes to the latch buffer of its bank.
+    /// Passes a store to flash to the latch buffer of its bank.
     fn latch(&mut self, access: Access) -> Option<u32> {
         let value = access.store?;
         let address = if access.address < FLASH { access.address + FLASH } else { access.address };
@@ -292,7 +294,8 @@ impl<W: World> Bus for Chip<W> {
         if answer.is_none() {
             let Access { address, pc, .. } = access;
             let kind = if access.store.is_some() { "store to" } else { "load from" };
-            self.report.once(format!("bus fault: {kind} {address:#010x}, where there is nothing, at pc {pc:#010x}"));
+            self.report
+                .warn_once(format!("bus fault: {kind} {address:#010x}, where nothing is mapped, at pc {pc:#010x}"));
         }
         answer
     }

@@ -1,6 +1,6 @@
-//! The board's time: what instructions and sleep add up to.
+//! The board's time: the sum of instructions and sleep.
 
-use crate::model::{CYCLES_PER_SECOND, Cycles};
+use sam3x_models::model::{CYCLES_PER_SECOND, Cycles};
 
 /// Time is kept in fifths of a cycle of 84 MHz, and an instruction is worth seven fifths of a core cycle: 1.4 cycles,
 /// the mean of Cortex-M3 code from the Due's flash. At 84 MHz no rounding exists.
@@ -35,20 +35,20 @@ impl Clock {
         self.core_fifths(self.fifths(instructions)) / FIFTHS
     }
 
-    /// Board time of a count of core cycles that is still to come: the first cycle at which it is reached.
+    /// Board time of a future count of core cycles: the first cycle at which it is reached.
     pub fn at_core_cycles(&self, core_cycles: u64) -> Cycles {
         let ahead = (core_cycles * FIFTHS).saturating_sub(self.core);
         (self.changed + scale_up(ahead, CYCLES_PER_SECOND, self.hz.into())).div_ceil(FIFTHS)
     }
 
-    /// How many instructions after `instructions` the board time is `then` or later.
+    /// Number of instructions after `instructions` until the board time is `then` or later.
     pub fn instructions_until(&self, instructions: u64, then: Cycles) -> u64 {
         let ahead = (then * FIFTHS).saturating_sub(self.fifths);
         let total = scale_up(ahead, self.hz.into(), CYCLES_PER_SECOND).div_ceil(FIFTHS_PER_INSTRUCTION);
         total.saturating_sub(instructions - self.instructions)
     }
 
-    /// With `instructions` retired the core sleeps until `then`.
+    /// Lets the core sleep until `then`, with `instructions` retired.
     pub fn sleep_until(&mut self, instructions: u64, then: Cycles) {
         let then = then * FIFTHS;
         if then > self.fifths(instructions) {
@@ -57,7 +57,7 @@ impl Clock {
         }
     }
 
-    /// From now on the core runs at `hz`.
+    /// Sets the core's frequency from now on, Hz.
     pub fn set_hz(&mut self, instructions: u64, hz: u32) {
         let now = self.fifths(instructions);
         self.core = self.core_fifths(now);
@@ -104,7 +104,7 @@ mod tests {
     }
 
     #[test]
-    fn an_instant_is_reached_after_the_instructions_it_asks_for() {
+    fn an_instant_is_reached_after_its_number_of_instructions() {
         for hz in [84_000_000, 12_000_000, 32_768, 4_000_000] {
             let mut clock = Clock::new(84_000_000);
             clock.set_hz(3, hz);
@@ -127,7 +127,7 @@ mod tests {
     }
 
     #[test]
-    fn core_cycles_go_on_at_the_new_frequency() {
+    fn core_cycles_continue_at_the_new_frequency() {
         let mut clock = Clock::new(84_000_000);
         clock.sleep_until(0, 84_000);
         clock.set_hz(0, 12_000_000);

@@ -1,4 +1,4 @@
-//! What the board asks of a CPU engine, and what the engine asks of the board.
+//! The interface between the board and a CPU engine.
 
 /// A Cortex-M3 that runs the firmware's instructions.
 ///
@@ -13,47 +13,48 @@ pub trait Cpu {
     /// Address of the next instruction.
     fn pc(&self) -> u32;
 
-    /// Whether it sleeps until an interrupt or event.
+    /// True if it sleeps until an interrupt or event.
     fn waiting(&self) -> bool;
 
     /// Drives an interrupt line.
     fn set_line(&mut self, line: u16, high: bool);
 
-    /// When its own timer next needs [`on_event`](Self::on_event).
+    /// Time at which its own timer next needs [`on_event`](Self::on_event).
     fn next_event(&self) -> Option<u64>;
 
-    /// Its own timer's instant has come.
+    /// Handles the event of its own timer that is due.
     fn on_event(&mut self, core_cycles: u64);
 
     /// Puts it into the state after reset and loads stack pointer and entry from the vector table at address 0.
     fn reset(&mut self, stack_pointer: u32, entry: u32);
 
-    /// Whether the firmware wrote AIRCR.SYSRESETREQ since last asked.
+    /// True if the firmware wrote AIRCR.SYSRESETREQ since the last call.
     fn take_reset_request(&mut self) -> bool;
 
-    /// Memory from `start`, for `length` bytes, has changed under it.
+    /// Drops translations of `length` bytes from `start`, which have changed.
     fn changed(&mut self, start: u32, length: u32);
 
-    /// Stops with [`Stop::Breakpoint`] before the instruction at `address`; false where there cannot be one.
+    /// Sets a breakpoint, which stops with [`Stop::Breakpoint`] before the instruction at `address`; false if that is not
+    /// possible.
     fn add_breakpoint(&mut self, address: u32) -> bool;
 
-    /// Takes a breakpoint back.
+    /// Removes a breakpoint.
     fn remove_breakpoint(&mut self, address: u32);
 
-    /// Leaves a breakpoint that it stands on.
+    /// Lets the next run pass the breakpoint at `address`.
     fn pass_breakpoint(&mut self, address: u32);
 
     /// Reads a word of its own registers, 0xE000_0000…, as a debugger does.
     fn peek(&mut self, address: u32, core_cycles: u64) -> Option<u32>;
 
-    /// Writes a word of its own registers as a debugger does; false where there is none.
+    /// Writes a word of its own registers as a debugger does; false if there is no register.
     fn poke(&mut self, address: u32, value: u32, core_cycles: u64) -> bool;
 }
 
-/// Why a CPU stopped.
+/// Reason why a CPU stopped.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Stop {
-    /// The budget is spent, or the bus asked for the return.
+    /// The budget is spent, or the bus requested the return.
     Returned,
     /// It sleeps.
     Waiting,
@@ -63,12 +64,12 @@ pub enum Stop {
     Lockup,
 }
 
-/// A load or store that is not answered by mapped memory.
+/// A load or store outside mapped memory.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Access {
-    /// Where.
+    /// Address of the first byte.
     pub address: u32,
-    /// 1, 2 or 4 bytes; aligned.
+    /// Width: 1, 2 or 4 bytes, aligned.
     pub bytes: u8,
     /// The value of a store.
     pub store: Option<u32>,
@@ -89,10 +90,10 @@ pub trait Bus {
     /// Takes a change of an interrupt line: number and level.
     fn take_line(&mut self) -> Option<(u16, bool)>;
 
-    /// Takes a piece of memory that changed under the CPU: start and length.
+    /// Takes a piece of memory that was changed by others than the CPU: start and length.
     fn take_changed(&mut self) -> Option<(u32, u32)>;
 
-    /// After an access, with its own next event at `event`: how many more instructions may run before the board needs
-    /// to know; `None`: it must return now.
+    /// Number of instructions that may run after an access before the board has to be called, with the CPU's own next event
+    /// at `event`; `None`: it must return now.
     fn carry_on(&mut self, instructions: u64, event: Option<u64>) -> Option<u32>;
 }

@@ -1,12 +1,12 @@
-//! A firmware's ELF file: what goes into flash, and its symbols.
+//! A firmware's ELF file: the contents of flash, and its symbols.
 
-use crate::memory_map::{BANK, FLASH};
 use object::elf::{EM_ARM, FileHeader32, PT_LOAD};
 use object::read::elf::{ElfFile32, FileHeader, ProgramHeader};
 use object::{Endianness, Object, ObjectSymbol};
+use sam3x_models::flash::{BANK, FLASH};
 use std::collections::BTreeMap;
 
-/// Why a file is no firmware for this board.
+/// Reason why a file is not a firmware for this board.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum ElfError {
     /// It is not an ELF file of 32 bits, or a damaged one.
@@ -20,9 +20,9 @@ pub enum ElfError {
         "{length} bytes are linked to {address:#010x}, outside flash (0x00080000 to 0x000fffff); link with the Due's memory map"
     )]
     Outside {
-        /// Where it should have gone.
+        /// Address of the first byte outside flash.
         address: u32,
-        /// How much.
+        /// Number of bytes.
         length: u32,
     },
     /// It has nothing to load.

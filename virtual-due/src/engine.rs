@@ -22,13 +22,13 @@ const CPUID: u32 = 0x412F_C230;
 /// The watchpoint unit's registers that the board answers: DWT_CTRL and DWT_CYCCNT.
 pub const DWT: std::ops::Range<u32> = 0xE000_1000..0xE000_1008;
 
-/// The engine tells time in ns. Its timer counts at a fixed 84 MHz of it, so that a core cycle, however long it is, goes
-/// by the name of 250/21 ns; rounded up, so that the engine's own rounding down gives the cycle back.
+/// Engine time of a core cycle. The engine measures time in ns, and its timer counts at a fixed 84 MHz of it. A core cycle of
+/// any length is therefore 250/21 ns to the engine; rounded up, so that the engine's own rounding down yields the cycle again.
 fn nanos(core_cycles: u64) -> VirtualNanos {
     VirtualNanos(core_cycles / 21 * 250 + (core_cycles % 21 * 250).div_ceil(21))
 }
 
-/// The first core cycle whose name is `nanos` or later.
+/// The first core cycle whose engine time is `at` or later.
 fn core_cycles(at: VirtualNanos) -> u64 {
     let floor = at.0 / 250 * 21 + at.0 % 250 * 21 / 250;
     if nanos(floor) >= at { floor } else { floor + 1 }
@@ -38,17 +38,18 @@ fn core_cycles(at: VirtualNanos) -> u64 {
 #[derive(Debug)]
 pub struct Engine {
     mapped: Mapped,
-    // The state after reset, once there has been one: loading it keeps what is translated, which the engine's own reset
-    // throws away, at a third of a second each time.
+    // The state after the first reset: loading it keeps translated code, which the engine's own reset drops, at a third of a
+    // second each time.
     fresh: Option<Vec<u8>>,
     // Instructions before the last reset; loading a state sets the engine's own count back.
     before: u64,
-    // When translations from RAM were last dropped, in instructions.
+    // Instructions at which translations from RAM were last dropped.
     swept: u64,
 }
 
-/// As long as a page of RAM has been translated from, the engine takes each store to it the long way, and variables are
-/// often beside a routine that ran once. Now and then such translations are dropped; what runs is translated again.
+/// Instructions after which translations from RAM are dropped. While a page of RAM has translated code, the engine takes the
+/// slow path for each store to it, and variables often share a page with a routine that ran once. Code that still runs is
+/// translated again.
 const SWEEP: u64 = 5_000_000;
 const RAM: std::ops::Range<u32> = 0x2000_0000..0x2010_1000;
 
@@ -85,13 +86,13 @@ impl Cpu for Engine {
             self.swept = self.instructions();
             self.changed(RAM.start, RAM.len() as u32);
         }
-        let (exit, _) = self.mapped.processor_mut().run(budget, &mut Lent { bus, before: self.before });
+        let (exit, _) = self.mapped.processor_mut().run(budget, &mut BusAdapter { bus, before: self.before });
         match exit {
             Exit::Waiting => Stop::Waiting,
             Exit::Breakpoint => Stop::Breakpoint,
             Exit::Lockup => Stop::Lockup,
             Exit::HostCall => {
-                // No host listens: the BKPT is a fault as without a debugger.
+                // There is no host: the BKPT is a fault as without a debugger.
                 self.mapped.processor_mut().answer_host_call(None);
                 Stop::Returned
             }
@@ -168,7 +169,7 @@ impl Cpu for Engine {
 }
 
 fn queued_line(line: u16, high: bool) -> Queued {
-    let line = InterruptLine::new(line).expect("the board has no line that the engine has not");
+    let line = InterruptLine::new(line).expect("the engine has all lines of the board");
     Queued::Line(line, if high { Level::High } else { Level::Low })
 }
 
@@ -176,13 +177,13 @@ fn queued_change(start: u32, length: u32) -> Queued {
     Queued::Invalidate(start.into(), u64::from(start) + u64::from(length))
 }
 
-/// The board as the engine wants to be lent it.
-struct Lent<'a> {
+/// The board's [`Bus`] as the engine's [`CoreBus`].
+struct BusAdapter<'a> {
     bus: &'a mut dyn Bus,
     before: u64,
 }
 
-impl CoreBus for Lent<'_> {
+impl CoreBus for BusAdapter<'_> {
     fn access(&mut self, access: Access, _from_code: bool) -> Option<u64> {
         let bytes = match access.width {
             Width::W8 => 1,

@@ -2,9 +2,9 @@
 //!
 //! ```text
 //!  Machine ──► Cpu (engine.rs: a JIT for Cortex-M3)
-//!     │            │ loads and stores that no memory answers
+//!     │            │ loads and stores outside memory
 //!     ▼            ▼
-//!   Chip: bus, time, interrupt lines ──► peripherals/…, each behind `model::Peripheral`
+//!   Chip: bus, time, interrupt lines ──► the crate `sam3x-models`, each model behind `model::Peripheral`
 //!                                           │ pins, ADC, I²C, serial
 //!                                           ▼
 //!                                     World: rig/…, the arm with its sensors and regulators
@@ -12,11 +12,11 @@
 //!
 //! Time is virtual: cycles of 84 MHz since power-on. An instruction takes 1.4 cycles of the core clock, so that a busy wait
 //! of two instructions a turn, three cycles on silicon, ends 7 % early; sleep costs nothing. The models follow the datasheet
-//! of the SAM3X/A (Atmel 11057C), whatever firmware runs; what they leave out is reported once. Two runs of the same
-//! firmware, world and input do the same.
+//! of the SAM3X/A (Atmel 11057C), not a particular firmware; use of parts that they leave out is reported once. Two runs of
+//! the same firmware, world and input are identical.
 //!
-//! Not modelled: HSMCI, EMAC, CAN, DMAC and the memory controllers read as zero; SPI, SSC and DACC are ready at once for
-//! what goes nowhere; the native USB port never sees a host; flash wait states and the bus matrix cost no time; the RTC's
+//! Not modelled: HSMCI, EMAC, CAN, DMAC and the memory controllers read as zero; SPI, SSC and DACC are always ready, and
+//! their data are lost; the native USB port never has a host; flash wait states and the bus matrix cost no time; the RTC's
 //! time and calendar events.
 
 mod chip;
@@ -28,13 +28,11 @@ mod engine;
 mod machine;
 mod memory;
 mod memory_map;
-pub mod model;
-mod peripherals;
-mod report;
+mod peripheral_map;
 pub mod rig;
 
 pub use elf::ElfError;
 pub use machine::{Machine, Reset};
-pub use model::{CYCLES_PER_SECOND, Cause, Cycles};
-pub use report::Report;
 pub use rig::Rig;
+pub use sam3x_models::Report;
+pub use sam3x_models::model::{self, CYCLES_PER_SECOND, Cause, Cycles};

@@ -4,27 +4,27 @@ use crate::chip::Chip;
 use crate::cpu::{Bus, Cpu, Stop};
 use crate::elf::{Elf, ElfError};
 use crate::engine::Engine;
-use crate::model::{Cause, Cycles, Memory, World};
+use sam3x_models::model::{Cause, Cycles, Memory, World};
 
 /// A reset that happened.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Reset {
-    /// What caused it.
+    /// Its cause.
     pub cause: Cause,
-    /// When.
+    /// Time of the reset.
     pub at: Cycles,
 }
 
 /// An Arduino Due that runs a firmware, in a world.
 ///
-/// Two machines of the same firmware and world do the same, in however many pieces they are run.
+/// Two machines of the same firmware and world behave the same, in however many pieces they are run.
 ///
 /// ```no_run
 /// use rig_twin::Scenario;
 /// use virtual_due::{CYCLES_PER_SECOND, Machine, Rig};
 ///
 /// let elf = std::fs::read("firmware.elf")?;
-/// let mut machine = Machine::new(&elf, Rig::new(Scenario::One, 1))?;
+/// let mut machine = Machine::new(&elf, Rig::new(Scenario::FreeSwing, 1))?;
 /// machine.run_for(2 * CYCLES_PER_SECOND);
 /// println!("{} instructions, pc {:#x}", machine.instructions(), machine.pc());
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -35,12 +35,12 @@ pub struct Machine<W> {
     elf: Elf,
     resets: Vec<Reset>,
     locked_up: bool,
-    // The world was lent out since the last instruction.
+    // The world may have been changed since the last instruction.
     touched: bool,
 }
 
 impl<W: World> Machine<W> {
-    /// A board with `elf` in its flash and power just come up.
+    /// A board with `elf` in its flash, at power-on.
     ///
     /// # Errors
     ///
@@ -69,8 +69,8 @@ impl<W: World> Machine<W> {
         self.run(self.now() + cycles);
     }
 
-    /// Runs until the instruction at `address` is next, or until board time `limit`: whether it got there. A CPU that is
-    /// there already runs on to the next time.
+    /// Runs until the instruction at `address` is next, or until board time `limit`; true if the instruction was reached. A
+    /// CPU that is at `address` already runs until it returns there.
     pub fn run_to(&mut self, address: u32, limit: Cycles) -> bool {
         let address = address & !1;
         if !self.cpu.add_breakpoint(address) {
@@ -84,13 +84,13 @@ impl<W: World> Machine<W> {
         stopped
     }
 
-    /// Runs until `end`, or a breakpoint: whether there was one.
+    /// Runs until `end`, or a breakpoint; true if a breakpoint was reached.
     fn run(&mut self, end: Cycles) -> bool {
         self.chip.limit = end;
         loop {
-            self.settle();
+            self.process_pending();
             if self.now() >= end {
-                self.chip.look(self.cpu.instructions());
+                self.chip.advance_all(self.cpu.instructions());
                 return false;
             }
             let instructions = self.cpu.instructions();
@@ -98,8 +98,8 @@ impl<W: World> Machine<W> {
             match self.cpu.run(u32::try_from(budget).unwrap_or(u32::MAX), &mut self.chip) {
                 Stop::Returned => {}
                 Stop::Breakpoint => {
-                    self.settle();
-                    self.chip.look(self.cpu.instructions());
+                    self.process_pending();
+                    self.chip.advance_all(self.cpu.instructions());
                     return true;
                 }
                 Stop::Waiting => self.sleep(end),
@@ -111,7 +111,7 @@ impl<W: World> Machine<W> {
         }
     }
 
-    /// Nothing runs before the next event.
+    /// Sleeps until the next event.
     fn sleep(&mut self, end: Cycles) {
         if self.chip.reset.is_none() {
             let next = self.next_event(end);
@@ -119,12 +119,12 @@ impl<W: World> Machine<W> {
         }
     }
 
-    /// Does what is due before the next instruction.
-    fn settle(&mut self) {
+    /// Processes everything that is due before the next instruction: events, resets, changed memory, interrupt lines.
+    fn process_pending(&mut self) {
         let instructions = self.cpu.instructions();
         self.chip.catch_up(self.chip.clock.now(instructions), instructions);
         if std::mem::take(&mut self.touched) {
-            self.chip.look(instructions);
+            self.chip.advance_all(instructions);
         }
         if self.cpu.take_reset_request() {
             self.chip.reset.get_or_insert(Cause::Software);
@@ -155,7 +155,7 @@ impl<W: World> Machine<W> {
         let (stack_pointer, entry) = self.chip.memories.boot(&mut self.cpu, self.chip.boots_from_flash);
         if !self.chip.boots_from_flash {
             let text = "GPNVM bit 1 is clear: the boot loader in ROM runs and waits for a flash tool".to_owned();
-            self.chip.report.once(text);
+            self.chip.report.warn_once(text);
         }
         self.cpu.reset(stack_pointer, entry);
         self.chip.apply_reset(cause, self.cpu.instructions());
@@ -164,9 +164,9 @@ impl<W: World> Machine<W> {
     fn report_lockup(&mut self) {
         if !self.locked_up {
             let (pc, seconds) = (self.cpu.pc(), self.seconds());
-            self.chip
-                .report
-                .once(format!("the core locked up at pc {pc:#010x}, {seconds:.6} s: a fault in a fault's handler"));
+            self.chip.report.warn_once(format!(
+                "the core locked up at pc {pc:#010x}, {seconds:.6} s: a fault in a fault's handler"
+            ));
         }
         self.locked_up = true;
     }
@@ -183,7 +183,7 @@ impl<W: World> Machine<W> {
 
     /// Board time in seconds.
     pub fn seconds(&self) -> f64 {
-        self.now() as f64 / crate::model::CYCLES_PER_SECOND as f64
+        self.now() as f64 / sam3x_models::model::CYCLES_PER_SECOND as f64
     }
 
     /// Instructions retired since power-on, sleep not counted.
@@ -196,12 +196,12 @@ impl<W: World> Machine<W> {
         self.cpu.pc()
     }
 
-    /// Whether the CPU sleeps until an interrupt.
+    /// True if the CPU sleeps until an interrupt.
     pub fn sleeps(&self) -> bool {
         self.cpu.waiting()
     }
 
-    /// Whether the CPU has locked up, and nothing has reset it since.
+    /// True if the CPU has locked up and was not reset since.
     pub fn locked_up(&self) -> bool {
         self.locked_up
     }
@@ -211,13 +211,13 @@ impl<W: World> Machine<W> {
         self.elf.symbol(name)
     }
 
-    /// Reads memory as a debugger does; `None` where there is none.
+    /// Reads memory as a debugger does; `None` outside memory.
     pub fn peek(&self, address: u32, length: usize) -> Option<Vec<u8>> {
         let mut bytes = vec![0; length];
         self.chip.memories.read(address, &mut bytes).then_some(bytes)
     }
 
-    /// Writes memory, flash too, as a debugger does; false where there is none.
+    /// Writes memory, flash too, as a debugger does; false outside memory.
     pub fn poke(&mut self, address: u32, bytes: &[u8]) -> bool {
         self.cpu.changed(address, bytes.len() as u32);
         self.chip.memories.load(address, bytes)
@@ -229,7 +229,7 @@ impl<W: World> Machine<W> {
         self.cpu.peek(address, core_cycles)
     }
 
-    /// Writes a word of the core's own registers as a debugger does; false where there is none.
+    /// Writes a word of the core's own registers as a debugger does; false if there is no register.
     pub fn poke_core(&mut self, address: u32, value: u32) -> bool {
         let core_cycles = self.chip.clock.core_cycles(self.cpu.instructions());
         self.cpu.poke(address, value, core_cycles)
@@ -240,17 +240,17 @@ impl<W: World> Machine<W> {
         &self.resets
     }
 
-    /// Takes what there is to tell since last asked, about things that this board cannot answer for.
+    /// Takes the warnings since the last call, about actions of the firmware that the models do not cover.
     pub fn reports(&mut self) -> Vec<String> {
         self.chip.report.take()
     }
 
-    /// What is wired to the pins.
+    /// The devices on the pins.
     pub fn world(&self) -> &W {
         &self.chip.world
     }
 
-    /// What is wired to the pins.
+    /// The devices on the pins.
     pub fn world_mut(&mut self) -> &mut W {
         self.touched = true;
         &mut self.chip.world

@@ -9,7 +9,7 @@ use std::alloc::{Layout, alloc_zeroed, dealloc, handle_alloc_error};
 use std::ptr::NonNull;
 use std::rc::Rc;
 
-/// What the engine maps at the least, and aligns to.
+/// Bytes of a page: the engine's smallest mapping, and its alignment.
 const PAGE: usize = 4096;
 
 /// A piece of memory, whole pages of it, zero at first.
@@ -35,18 +35,18 @@ impl Region {
         self.layout.size()
     }
 
-    /// Copies out the bytes at `offset`; false, and nothing done, where the region ends before.
+    /// Copies out the bytes at `offset`; does nothing and returns false if they exceed the region.
     pub fn read(&self, offset: usize, to: &mut [u8]) -> bool {
         if !self.holds(offset, to.len()) {
             return false;
         }
         // SAFETY: the range is inside the allocation, `to` is memory of its own as no reference to a region's bytes
-        // ever exists, and neither the region nor the engine is Send, so that nobody writes meanwhile.
+        // ever exists, and neither the region nor the engine is Send, so that no other thread writes meanwhile.
         unsafe { self.bytes.as_ptr().add(offset).copy_to_nonoverlapping(to.as_mut_ptr(), to.len()) };
         true
     }
 
-    /// Copies bytes in at `offset`; false, and nothing done, where the region ends before.
+    /// Copies bytes in at `offset`; does nothing and returns false if they exceed the region.
     pub fn write(&self, offset: usize, from: &[u8]) -> bool {
         if !self.holds(offset, from.len()) {
             return false;

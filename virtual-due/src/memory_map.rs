@@ -1,22 +1,19 @@
-//! Where memories are (datasheet 7, "Product mapping", and 9.1).
+//! The chip's memories and their addresses (datasheet 7, "Product mapping", and 9.1).
 
 use crate::cpu::Cpu;
 use crate::engine::Engine;
 use crate::memory::Region;
-use crate::model::Memory;
+use sam3x_models::flash::{BANK, FLASH, FlashBank};
+use sam3x_models::model::Memory;
 use std::rc::Rc;
 
-/// Start of flash: two banks of [`BANK`] bytes.
-pub const FLASH: u32 = 0x0008_0000;
-/// Bytes in a bank of flash.
-pub const BANK: u32 = 0x4_0000;
 const ROM: u32 = 0x0010_0000;
 const SRAM0: u32 = 0x2000_0000;
 const SRAM0_BYTES: u32 = 0x1_0000;
 const SRAM1: u32 = 0x2008_0000;
 const NFC_SRAM: u32 = 0x2010_0000;
 
-/// What a new chip has in ROM where a program relies on it: the vector table of a boot loader that waits for ever, and at
+/// Parts of a new chip's ROM that programs rely on: the vector table of a boot loader that waits endlessly, and at
 /// 0x0010_0008 the address of the In-Application Programming function, `status = iap(bank, command)`, which writes
 /// EEFC_FCR and waits for FRDY (datasheet 18.4.5, as Thumb code).
 const ROM_CODE: [(usize, &[u16]); 3] = [
@@ -37,7 +34,7 @@ pub struct Memories {
     sram0: Rc<Region>,
     sram1: Rc<Region>,
     nfc_sram: Rc<Region>,
-    /// What was written since the CPU was last told: start and length.
+    /// Pieces of memory that were written and not reported to the CPU yet: start and length.
     pub changed: Vec<(u32, u32)>,
     booted_from_flash: Option<bool>,
 }
@@ -79,7 +76,7 @@ impl Memories {
         cpu.map(NFC_SRAM, &self.nfc_sram, true);
     }
 
-    /// Maps what is at address 0 after a reset, flash or ROM (datasheet 9.1.4), and gives stack pointer and entry.
+    /// Maps flash or ROM at address 0 after a reset (datasheet 9.1.4); returns stack pointer and entry.
     pub fn boot(&mut self, cpu: &mut Engine, from_flash: bool) -> (u32, u32) {
         if self.booted_from_flash.replace(from_flash) != Some(from_flash) {
             cpu.map(0, if from_flash { &self.flash[0] } else { &self.rom }, false);
@@ -95,7 +92,7 @@ impl Memories {
         (sp, entry)
     }
 
-    /// Writes to any memory, flash too, as a debugger does; false where there is none.
+    /// Writes to any memory, flash too, as a debugger does; false outside memory.
     pub fn load(&mut self, address: u32, bytes: &[u8]) -> bool {
         let Some((region, offset, _)) = self.locate(address) else { return false };
         let done = region.write(offset, bytes);
@@ -114,6 +111,20 @@ impl Memories {
             _ => return None,
         };
         Some((region, (address - base) as usize, writable))
+    }
+}
+
+impl FlashBank for Region {
+    fn read(&self, offset: usize, to: &mut [u8]) -> bool {
+        self.read(offset, to)
+    }
+
+    fn write(&self, offset: usize, from: &[u8]) -> bool {
+        self.write(offset, from)
+    }
+
+    fn fill(&self, byte: u8) {
+        self.fill(byte);
     }
 }
 
@@ -150,7 +161,7 @@ impl Memory for Memories {
 #[cfg(test)]
 mod tests {
     use super::{Memories, SRAM0};
-    use crate::model::Memory;
+    use sam3x_models::model::Memory;
 
     #[test]
     fn ram_is_one_piece_across_both_srams() {

@@ -1,7 +1,7 @@
-//! `cargo xtask accept`: takes today's twin and estimator for right.
+//! `cargo xtask accept`: accepts the results of the current twin and estimator as expected.
 //!
-//! Records the committed sessions and the reference table anew by their own command lines, then has the host tests write
-//! the estimates that they expect. What changed is for the diff to show.
+//! Records the committed sessions and the reference table again by their own command lines, then lets the host tests write
+//! the estimates that they expect. The diff shows the changes.
 
 use std::fs;
 

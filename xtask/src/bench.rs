@@ -1,4 +1,4 @@
-//! `cargo xtask bench`: what the firmware costs on the emulated board, against `host-tests/board/budgets.toml`.
+//! `cargo xtask bench`: resources of the firmware on the emulated board, against `host-tests/board/budgets.toml`.
 
 use crate::board::{ANY_RUST, add_target};
 use crate::tool::cargo;

@@ -1,10 +1,10 @@
-//! What concerns the board, real or emulated: its target, and the packages that only these commands build.
+//! Commands for the board, real or emulated: its target, and the packages that only they build.
 
 use std::process::Command;
 
 use crate::tool::{cargo, check};
 
-/// The emulated board's engine says that it wants a newer Rust than it does.
+/// Lets the emulated board's engine build, which declares a newer Rust than it needs.
 pub const ANY_RUST: &str = "--ignore-rust-version";
 
 const TARGET: &str = "thumbv7m-none-eabi";
@@ -22,7 +22,7 @@ pub fn add_target() -> Result<(), String> {
 /// `cargo verify`: every test, those on the emulated board too.
 pub fn verify() -> Result<(), String> {
     add_target()?;
-    // The firmware and the probes have no host to be tested on.
-    let others = ["--exclude", "firmware", "--exclude", "board-probe"];
+    // The firmware and the on-target tests do not run on a host.
+    let others = ["--exclude", "firmware", "--exclude", "on-target-tests"];
     cargo(&[&["test", "--workspace", ANY_RUST], &others[..]].concat(), &[])
 }

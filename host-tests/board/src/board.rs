@@ -1,6 +1,6 @@
 //! A board that runs the firmware, and a host at its serial line.
 
-use rig_twin::{EndPose, Program, REGULATORS, SEGMENTS};
+use rig_twin::{EndPose, MotionProgram, REGULATORS, SEGMENTS};
 use telemetry::{
     Command, Decoder, Encoder, Estimate, Event, Health, Hello, MAX_FRAME, Message, Outcome, Request, Sample,
     SetPressures, Uncertainty,
@@ -18,13 +18,13 @@ const FULL_SCALE_PA: u32 = 280_000;
 /// A message, and when its last byte left the board.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Received {
-    /// When.
+    /// End of its last byte.
     pub at: Cycles,
-    /// What.
+    /// The message.
     pub message: Message,
 }
 
-/// The board, and all that it has said.
+/// The board, and all messages that it has sent.
 pub struct Board {
     /// The emulated board.
     pub machine: Machine<Rig>,
@@ -55,11 +55,11 @@ impl Board {
         }
     }
 
-    /// Lets time pass, and takes what the board says meanwhile. A frame that a reset cut short is counted, and left out.
+    /// Runs the board, and receives its messages. A frame that a reset cut short is counted, and left out.
     pub fn run_ms(&mut self, ms: u64) {
         let end = self.machine.now() + ms * CYCLES_PER_SECOND / 1000;
         while self.machine.now() < end {
-            // Pieces shorter than a tick, so that no scan of the ADC is overlooked.
+            // Pieces shorter than a tick, so that no scan of the ADC is missed.
             self.machine.run_until(end.min(self.machine.now() + CYCLES_PER_SECOND / 200));
             let (scans, truth) = self.machine.world().last_scan();
             if scans > self.truths.len() as u64 {
@@ -80,7 +80,7 @@ impl Board {
         &self.truths
     }
 
-    /// Sends a request once, and gives its number.
+    /// Sends a request once; returns its number.
     ///
     /// # Panics
     /// Never: every request fits a frame.
@@ -100,16 +100,16 @@ impl Board {
         let frame = self.encoder.encode(&request, &mut buffer).expect("every request fits");
         let now = self.machine.now();
         let line = self.machine.world_mut();
-        // Ends whatever noise came before.
+        // Ends a frame that noise may have begun.
         line.send(UART, &[0], now);
         line.send(UART, frame, now);
     }
 
-    /// Sends a request and gives the answer.
+    /// Sends a request; returns the answer.
     ///
     /// # Panics
     /// If none comes within 100 ms.
-    pub fn ask(&mut self, command: Command) -> Outcome {
+    pub fn request(&mut self, command: Command) -> Outcome {
         let before = self.received.len();
         let id = self.send(command);
         self.run_ms(100);
@@ -124,8 +124,8 @@ impl Board {
     ///
     /// # Panics
     /// If the board does not arm.
-    pub fn swing(&mut self, program: &Program, seconds: u64) {
-        assert_eq!(self.ask(Command::Arm), Outcome::Ack);
+    pub fn swing(&mut self, program: &MotionProgram, seconds: u64) {
+        assert_eq!(self.request(Command::Arm), Outcome::Ack);
         let start = self.machine.seconds();
         for _ in 0..seconds * 20 {
             self.set_pressures(program.duties(self.machine.seconds() - start));
@@ -139,25 +139,25 @@ impl Board {
         self.send(Command::SetPressures(SetPressures { pressures_pa, valid_ms: 200 }));
     }
 
-    /// Whether no regulator is commanded any pressure.
+    /// True if no regulator is commanded any pressure.
     #[must_use]
     pub fn is_vented(&self) -> bool {
         self.machine.world().set_points_pa().iter().all(|pressure_pa| *pressure_pa < 1.0)
     }
 
-    /// All that was received, in order.
+    /// All received messages, in order.
     #[must_use]
     pub fn received(&self) -> &[Received] {
         &self.received
     }
 
-    /// Bytes that were received.
+    /// Number of bytes received.
     #[must_use]
     pub const fn bytes(&self) -> u64 {
         self.bytes
     }
 
-    /// What the decoder counted.
+    /// Counts of the decoder.
     #[must_use]
     pub const fn counts(&self) -> telemetry::Counts {
         self.decoder.counts()
@@ -203,7 +203,7 @@ impl Board {
         })
     }
 
-    /// All greetings, in order.
+    /// All `Hello` messages, in order.
     pub fn hellos(&self) -> impl DoubleEndedIterator<Item = &Hello> {
         self.received.iter().filter_map(|received| match &received.message {
             Message::Hello(hello) => Some(hello),

@@ -8,21 +8,21 @@ use std::process::{Child, ChildStdin, Command, Stdio};
 
 use crate::build::firmware;
 
-/// A tool of this workspace: beside this program, or above it, as cargo builds tests in `deps`.
+/// Path of a tool of this workspace: in this program's folder, or the one above, as cargo builds tests in `deps`.
 ///
 /// # Panics
 /// If it is not built.
 #[must_use]
 pub fn tool(name: &str) -> PathBuf {
-    let own = env::current_exe().expect("the system tells");
+    let own = env::current_exe().expect("the program's own path");
     let mut built = own.ancestors().skip(1).take(2).map(|folder| folder.join(name));
     built.find(|tool| tool.is_file()).unwrap_or_else(|| panic!("{name} is not built; `cargo verify` does"))
 }
 
-/// A board at the pace of the wall clock, until it is dropped.
+/// A board in real time, until it is dropped.
 pub struct DueProcess {
     child: Child,
-    hand: ChildStdin,
+    faults: ChildStdin,
     /// Path of its serial port.
     pub port: String,
 }
@@ -39,26 +39,26 @@ impl DueProcess {
         command.current_dir(folder).args(["run", "firmware", "--speed", "real", "--serial", "pty"]);
         let mut child = command.stdin(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("the emulator starts");
         let mut lines = BufReader::new(child.stderr.take().expect("a pipe")).lines().map_while(Result::ok);
-        let first = lines.next().expect("it says its port");
+        let first = lines.next().expect("the emulator prints its port");
         let port = first.strip_prefix("serial port: ").expect("the path of its port").to_owned();
-        // It says more, which must not fill the pipe.
+        // Further lines must not fill the pipe.
         std::thread::spawn(move || lines.for_each(drop));
-        let hand = child.stdin.take().expect("a pipe");
-        Self { child, hand, port }
+        let faults = child.stdin.take().expect("a pipe");
+        Self { child, faults, port }
     }
 
-    /// `unplug imu3`, `plug imu3`, `unplug bend2a`.
+    /// Injects a fault: `unplug imu3`, `plug imu3`, `unplug bend2a`.
     ///
     /// # Panics
     /// If it has ended.
-    pub fn hand(&mut self, line: &str) {
-        writeln!(self.hand, "{line}").expect("it runs");
+    pub fn inject_fault(&mut self, line: &str) {
+        writeln!(self.faults, "{line}").expect("it runs");
     }
 }
 
 impl Drop for DueProcess {
     fn drop(&mut self) {
-        // It may have ended by itself.
+        // It may have ended already.
         let _ = self.child.kill();
         let _ = self.child.wait();
     }

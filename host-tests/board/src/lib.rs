@@ -1,4 +1,4 @@
-//! The firmware on the emulated board, as a host sees it: frames out, requests in, and the arm's truth beside them.
+//! The firmware on the emulated board, as a host sees it: received frames, sent requests, and the arm's truth.
 
 mod board;
 #[cfg(unix)]

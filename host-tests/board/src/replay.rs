@@ -1,42 +1,39 @@
-//! The host's own estimates of what the board has read.
+//! The host's own estimates from the board's samples.
 
 use std::path::Path;
 
 use calibration_tables::ArmFile;
 use estimator_core::{Estimator, Method, Q};
-use telemetry::{Estimate, Event, SEGMENTS, Sample, Uncertainty, contact_flags};
+use telemetry::{Estimate, Event, SEGMENTS, Sample, TICK_HZ, Uncertainty, contact_flags};
 
-/// Ticks a second of the board.
-const RATE_HZ: f64 = 100.0;
-
-/// The reference arm's table, which the firmware has baked in.
+/// The reference arm's table, which the firmware has compiled in.
 ///
 /// # Panics
-/// If the committed file is none.
+/// If the committed file is not a valid table.
 #[must_use]
 pub fn table() -> ArmFile {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../calibration-tables/planar-6.toml");
     ArmFile::load(&path).expect("the reference table is committed")
 }
 
-/// What the host's estimator makes of one sample.
+/// The host's results for one sample.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Replayed {
     /// The estimate.
     pub estimate: Estimate,
-    /// How far it may be off, which the board says from time to time.
+    /// Its uncertainty, which the board sends at a lower rate.
     pub uncertainty: Uncertainty,
-    /// Where contact has begun or ended.
+    /// Event of a contact that begins or ends with this sample.
     pub contact: Option<Event>,
 }
 
-/// What the host's estimator makes of the samples, in the same fixed point, started anew wherever the board's was.
+/// Replays the samples with the host's estimator, in the same fixed point, restarted at the same samples as the board's.
 ///
 /// # Panics
-/// If the reference table is none.
+/// If the reference table is not valid.
 pub fn replay<'s>(samples: impl Iterator<Item = &'s Sample>) -> Vec<Replayed> {
-    let baked = table().bake::<Q>(RATE_HZ).expect("the reference table bakes");
-    let table = baked.config();
+    let compiled = table().compile::<Q>(TICK_HZ).expect("the reference file is a valid table");
+    let table = compiled.config();
     let start = || Estimator::<Q, SEGMENTS, 100>::new(&table).expect("the reference arm has six segments");
     let (mut estimator, mut tare, mut touched_before) = (start(), 0, [false; SEGMENTS]);
     let mut replayed = Vec::new();

@@ -1,4 +1,4 @@
-//! The estimate beside the truth, in a terminal.
+//! Estimate and truth in a terminal.
 
 use std::io::{IsTerminal, Write, stdout};
 
@@ -7,10 +7,10 @@ use telemetry::SegmentEstimate;
 
 use crate::board::Board;
 
-/// Looks from one line to the next where the output is no terminal.
-const LOOKS_PER_LINE: u64 = 300;
+/// Comparisons for each printed line where the output is not a terminal.
+const LOOKS_PER_LINE: u64 = 100;
 
-/// What shows it: a block that is drawn over in a terminal, else a line now and then.
+/// Display of the run: in a terminal a block that is redrawn in place, else a line every 10 s.
 pub struct View {
     seconds: u64,
     looks: u64,
@@ -65,7 +65,7 @@ impl View {
         self.drawn_lines = lines.len();
     }
 
-    /// Leaves the last block standing.
+    /// Leaves the last block on the screen.
     pub fn finish(&self) {
         println!();
     }

@@ -6,7 +6,7 @@ use estimator_core::{
     AnchorConfig, BendMap, BendSensorConfig, FusedOps, KalmanParams, OffsetAt, Phase, QuadraticMap, Sample,
     SegmentConfig, Turns,
 };
-use host_tests::literal;
+use host_tests::reference_model;
 
 /// Volts between which all sensors are calibrated.
 const VOLTS: [f64; 2] = [0.4, 2.6];
@@ -44,7 +44,7 @@ impl Random {
     }
 }
 
-/// What a session is like; the rest is drawn from `seed`.
+/// Properties of a session; the rest is drawn from `seed`.
 #[derive(Debug, Clone, Copy)]
 pub struct Kind {
     pub seed: u64,
@@ -52,11 +52,11 @@ pub struct Kind {
     pub rate: f64,
     pub tare_seconds: f64,
     pub rows: usize,
-    /// Whether headings come as quaternions.
+    /// True if headings are quaternions.
     pub quaternions: bool,
     /// Fewest and most bend sensors that a segment has.
     pub bend: [u64; 2],
-    /// How far the IMUs of the session may drift, rad; all to one side.
+    /// Largest drift of the session's IMUs, rad; all to one side.
     pub drift: f64,
     pub noise: NoiseRanges,
 }
@@ -70,14 +70,14 @@ pub struct NoiseRanges {
 }
 
 /// An arm with random geometry, maps and filters.
-pub fn arm(kind: &Kind, random: &mut Random) -> literal::Arm {
+pub fn arm(kind: &Kind, random: &mut Random) -> reference_model::Arm {
     let mut heading = 0.0;
     let segments = (0..kind.segments).map(|i| {
         let [fewest, most] = kind.bend;
         let fewest = if i == 0 { fewest.max(most.min(1)) } else { fewest }; // or the arm could be without any
         let sensors = fewest + random.bits() % (most - fewest + 1);
         heading += random.or_zero(-0.3, 0.3);
-        literal::Segment {
+        reference_model::Segment {
             length: random.within(0.03, 0.12),
             offset: random.or_zero(0.005, 0.03),
             offset_at_end: random.chance(0.5),
@@ -87,7 +87,7 @@ pub fn arm(kind: &Kind, random: &mut Random) -> literal::Arm {
             coord: noise(kind, random, 1e-6, 1e-4),
         }
     });
-    literal::Arm {
+    reference_model::Arm {
         segments: segments.collect(),
         rate: kind.rate,
         tare_seconds: kind.tare_seconds,
@@ -98,17 +98,17 @@ pub fn arm(kind: &Kind, random: &mut Random) -> literal::Arm {
 }
 
 /// A monotonic map that is near 0 at the middle of the range.
-fn sensor(random: &mut Random) -> literal::Sensor {
+fn sensor(random: &mut Random) -> reference_model::Sensor {
     let (c1, c2) = (random.within(1.0, 1.6), random.within(-0.15, 0.15));
     let c0 = -(c2 * 1.5 + c1) * 1.5 + random.within(-0.1, 0.1);
     let sign = random.pick(&[1.0, -1.0]);
-    literal::Sensor { c2: sign * c2, c1: sign * c1, c0: sign * c0 }
+    reference_model::Sensor { c2: sign * c2, c1: sign * c1, c0: sign * c0 }
 }
 
-fn noise(kind: &Kind, random: &mut Random, low: f64, high: f64) -> literal::Noise {
+fn noise(kind: &Kind, random: &mut Random, low: f64, high: f64) -> reference_model::Noise {
     let NoiseRanges { q, r_imu, h } = kind.noise;
     let r_bend = random.log_within(low, high);
-    literal::Noise {
+    reference_model::Noise {
         q: r_bend * random.log_within(q[0], q[1]) * kind.rate,
         r_imu: r_bend * random.log_within(r_imu[0], r_imu[1]),
         r_bend,
@@ -117,8 +117,12 @@ fn noise(kind: &Kind, random: &mut Random, low: f64, high: f64) -> literal::Nois
     }
 }
 
-/// The motion of such an arm as its sensors tell it: for the oracle, and the same for the board.
-pub fn session(kind: &Kind, arm: &literal::Arm, random: &mut Random) -> (Vec<literal::Row>, Vec<Sample<16>>) {
+/// The motion of such an arm as its sensors measure it: rows for the reference model, and the same as samples of the board.
+pub fn session(
+    kind: &Kind,
+    arm: &reference_model::Arm,
+    random: &mut Random,
+) -> (Vec<reference_model::Row>, Vec<Sample<16>>) {
     let drift = kind.drift * random.pick(&[1.0, -1.0]);
     let mut imus: Vec<_> = arm.segments.iter().map(|_| Imu::new(kind, drift, random)).collect();
     let mut bends: Vec<_> = arm.segments.iter().map(|_| [Outage::default(); 2]).collect();
@@ -132,7 +136,7 @@ pub fn session(kind: &Kind, arm: &literal::Arm, random: &mut Random) -> (Vec<lit
     for t in 0..kind.rows {
         let seconds = t as f64 / kind.rate;
         let moving = (seconds - kind.tare_seconds).clamp(0.0, 1.0);
-        let mut row = literal::Row::default();
+        let mut row = reference_model::Row::default();
         let mut sample = Sample::missing((seconds * 1e6) as u64);
         let (mut heading, mut reference) = (0.0, 0.0);
         for (i, segment) in arm.segments.iter().enumerate() {
@@ -166,27 +170,27 @@ struct Imu {
 
 impl Imu {
     fn new(kind: &Kind, drift: f64, random: &mut Random) -> Self {
-        // Absolute headings are not mounted anyhow.
+        // Absolute headings need no mounting angle.
         let mount = if kind.tare_seconds > 0.0 { random.within(-PI, PI) } else { 0.0 };
         let drift = drift * random.pick(&[0.0, 0.02, 0.1, 1.0]);
         Self { mount, drift_per_row: drift / kind.rows as f64, outage: Outage::default() }
     }
 
     /// Heading in [0, 2π).
-    fn read(&mut self, heading: f64, t: usize, arm: &literal::Arm, random: &mut Random) -> Option<f64> {
+    fn read(&mut self, heading: f64, t: usize, arm: &reference_model::Arm, random: &mut Random) -> Option<f64> {
         let reading = heading + self.mount + self.drift_per_row * t as f64 + random.within(-0.01, 0.01);
         self.outage.passes(t, arm, random).then(|| reading.rem_euclid(TAU))
     }
 }
 
-/// A sensor that is missing now and then, rarely for longer than the anchor's window.
+/// Outages of a sensor, rarely longer than the anchor's window.
 #[derive(Clone, Copy, Default)]
 struct Outage {
     until: usize,
 }
 
 impl Outage {
-    fn passes(&mut self, t: usize, arm: &literal::Arm, random: &mut Random) -> bool {
+    fn passes(&mut self, t: usize, arm: &reference_model::Arm, random: &mut Random) -> bool {
         if t >= self.until && random.chance(0.01) {
             let window = arm.window as f64 * arm.rate / arm.anchor_rate;
             let long = if random.chance(0.03) { 1.5 * window } else { 10.0 };
@@ -196,8 +200,8 @@ impl Outage {
     }
 }
 
-/// What the ADC counts at a bend angle.
-fn counts_at(sensor: &literal::Sensor, theta: f64) -> u16 {
+/// Counts of the ADC at a bend angle.
+fn counts_at(sensor: &reference_model::Sensor, theta: f64) -> u16 {
     let angle = |volts: f64| (sensor.c2 * volts + sensor.c1) * volts + sensor.c0;
     let rising = sensor.c1 > 0.0;
     let (mut low, mut high) = (0.0, 3.3);
@@ -219,8 +223,8 @@ fn board_reading(kind: &Kind, heading: f64, random: &mut Random) -> estimator_co
 }
 
 /// The arm's segments as the estimator takes them: process noise per sample, covariances as ratios to the larger R.
-pub fn segments<S: FusedOps>(arm: &literal::Arm) -> Vec<SegmentConfig<S>> {
-    let noise = |noise: &literal::Noise| {
+pub fn segments<S: FusedOps>(arm: &reference_model::Arm) -> Vec<SegmentConfig<S>> {
+    let noise = |noise: &reference_model::Noise| {
         let unit = noise.r_imu.max(noise.r_bend);
         KalmanParams {
             q: S::from_f64(noise.q / arm.rate / unit),
@@ -230,9 +234,10 @@ pub fn segments<S: FusedOps>(arm: &literal::Arm) -> Vec<SegmentConfig<S>> {
             h_bend: S::from_f64(noise.h_bend),
         }
     };
-    let segment = |segment: &literal::Segment| {
+    let segment = |segment: &reference_model::Segment| {
         let sensor = |k: usize| {
-            let map = |s: &literal::Sensor| BendMap::Quadratic(QuadraticMap::from_volts(s.c2, s.c1, s.c0, VOLTS));
+            let map =
+                |s: &reference_model::Sensor| BendMap::Quadratic(QuadraticMap::from_volts(s.c2, s.c1, s.c0, VOLTS));
             segment.bend.get(k).map(|s| BendSensorConfig { map: map(s), memory: None })
         };
         SegmentConfig {
@@ -248,7 +253,7 @@ pub fn segments<S: FusedOps>(arm: &literal::Arm) -> Vec<SegmentConfig<S>> {
 }
 
 /// The anchor's rule and the tare in samples.
-pub fn rule(arm: &literal::Arm) -> (AnchorConfig, u32) {
+pub fn rule(arm: &reference_model::Arm) -> (AnchorConfig, u32) {
     let anchor = AnchorConfig {
         window: arm.window as u16,
         rate_millihertz: (arm.anchor_rate * 1000.0) as u32,

@@ -34,7 +34,7 @@ fn an_estimate_has_the_bits_of_the_shape_and_ends_where_it_is_unknown() {
     assert_eq!(estimate.tick, 7);
     for (segment, shape) in estimate.segments.iter().zip(&shape).take(4) {
         let (segment, end) = (segment.expect("it was read"), shape.end.expect("it was read"));
-        assert_eq!(Some(Q::from_bits(segment.theta)), shape.theta.map(|theta| theta.rest));
+        assert_eq!(Some(Q::from_bits(segment.theta)), shape.theta.map(|theta| theta.remainder));
         assert_eq!(segment.end.map(Q::from_bits), [end.x, end.y]);
     }
     assert_eq!(estimate.segments[4..], [None, None]);

@@ -28,9 +28,9 @@ fn topics_are_those_of_the_protocol_page() {
 #[test]
 fn the_schema_is_that_of_this_version_and_of_the_protocol_page() {
     // If this fails, the layout of a message has changed: raise PROTOCOL_VERSION, empty EARLIER_SCHEMAS, put the new hash
-    // here, and bring docs/PROTOCOL.md up to date.
+    // here, and bring docs/reference/protocol.md up to date.
     assert_eq!((PROTOCOL_VERSION, SCHEMA), (2, 0x666C_7703));
-    let page = include_str!("../../../docs/PROTOCOL.md");
+    let page = include_str!("../../../docs/reference/protocol.md");
     assert!(page.contains(&format!("`0x{SCHEMA:08x}`")));
     assert!(EARLIER_SCHEMAS.iter().all(|schema| page.contains(&format!("`0x{schema:08x}`"))));
 }

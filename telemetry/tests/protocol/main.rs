@@ -20,7 +20,7 @@ fn decode<P: Payload>(decoder: &mut Decoder<P>, bytes: &[u8]) -> Vec<Result<P, D
     bytes.iter().filter_map(|&byte| decoder.push(byte)).collect()
 }
 
-/// A frame put together by others' crates, from the layout in `docs/PROTOCOL.md`.
+/// A frame put together by others' crates, from the layout in `docs/reference/protocol.md`.
 fn frame_by_hand(version: u8, topic: u8, sequence: u16, body: &[u8]) -> Vec<u8> {
     let mut content = vec![version, topic];
     content.extend(sequence.to_le_bytes());

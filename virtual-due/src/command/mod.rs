@@ -1,7 +1,7 @@
-//! What the command line says, and the run it asks for.
+//! The command line, and the run that it starts.
 
 #[cfg(unix)]
-mod breakage;
+mod fault_injection;
 #[cfg(unix)]
 mod pty;
 mod run;
@@ -34,13 +34,13 @@ enum Command {
 struct Arguments {
     /// The firmware: an ELF file, as linked for the Due's flash.
     ///
-    /// Cargo leaves it as target/thumbv7m-none-eabi/release/NAME; the Arduino tools as NAME.ino.elf, beside the .bin (with
+    /// Cargo leaves it as target/thumbv7m-none-eabi/release/NAME; the Arduino tools as NAME.ino.elf, next to the .bin (with
     /// `arduino-cli compile --fqbn arduino:sam:arduino_due_x_dbg --output-dir DIR`, in DIR).
     firmware: PathBuf,
-    /// What the arm does until the firmware drives its regulators.
+    /// Motion of the arm until the firmware drives its regulators.
     #[arg(long, default_value = "1", value_parser = scenario)]
     scenario: Scenario,
-    /// Draws the arm's motion and the sensors' noise.
+    /// Seed of the arm's motion and the sensors' noise.
     #[arg(long, default_value_t = 1)]
     seed: u64,
     /// Virtual seconds to run; without it the run lasts until Ctrl-C.
@@ -49,32 +49,32 @@ struct Arguments {
     /// As fast as possible, or no faster than real time.
     #[arg(long, value_enum, default_value = "max")]
     speed: Speed,
-    /// What the programming port is connected to.
+    /// Connection of the programming port.
     #[arg(long, value_enum, default_value = "stdio")]
     serial: Serial,
 }
 
-/// How virtual time is paced.
+/// Pace of virtual time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Speed {
     /// As fast as possible.
     Max,
-    /// As the wall clock.
+    /// No faster than real time.
     Real,
 }
 
-/// What is on the programming port.
+/// Connection of the programming port.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Serial {
     /// This process' input and output. A file is read at the port's baud rate in virtual time.
     Stdio,
     /// A pseudo-terminal, whose path is printed. Opening it resets the board, as it does on a Due. Lines on the standard
-    /// input break sensors: `unplug imu3`, `plug imu3`, `unplug bend2a`.
+    /// input inject faults: `unplug imu3`, `plug imu3`, `unplug bend2a`.
     #[cfg(unix)]
     Pty,
 }
 
-/// Why there is no run.
+/// Reason why the firmware cannot be run.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
     /// The firmware cannot be read.
@@ -82,28 +82,28 @@ pub enum Error {
     Firmware {
         /// The path as it was given.
         path: String,
-        /// What the system says.
+        /// The system's error.
         error: std::io::Error,
     },
-    /// It is no firmware for the Due.
+    /// It is not a firmware for the Due.
     #[error("{path}: {error}")]
     Elf {
         /// The path as it was given.
         path: String,
-        /// Why not.
+        /// The reason.
         error: ElfError,
     },
-    /// The serial port cannot be had.
+    /// The serial port cannot be opened.
     #[error("serial port: {0}")]
     Serial(#[from] std::io::Error),
 }
 
 impl Cli {
-    /// Does what was asked.
+    /// Executes the command.
     ///
     /// # Errors
     ///
-    /// [`Error`] if there is nothing to run, or nothing to talk through.
+    /// [`Error`] if the firmware or the serial port cannot be opened.
     pub fn execute(self) -> Result<ExitCode, Error> {
         let Command::Run(arguments) = self.command;
         let machine = machine(&arguments.firmware, Rig::new(arguments.scenario, arguments.seed))?;
@@ -115,8 +115,8 @@ impl Cli {
             Serial::Pty => {
                 let mut pty = pty::Pty::new()?;
                 eprintln!("serial port: {}", pty.path());
-                let breakage = breakage::Breakage::new();
-                run.execute(&mut pty, |rig| breakage.apply(&mut rig.faults))?;
+                let injector = fault_injection::FaultInjector::new();
+                run.execute(&mut pty, |rig| injector.apply(&mut rig.faults))?;
             }
         }
         Ok(run.summary())
@@ -131,16 +131,16 @@ fn machine(path: &Path, rig: Rig) -> Result<Machine<Rig>, Error> {
 
 fn scenario(text: &str) -> Result<Scenario, String> {
     match text {
-        "1" => Ok(Scenario::One),
-        "2" => Ok(Scenario::Two),
-        "3" => Ok(Scenario::Three),
-        _ => Err("there are scenarios 1, 2 and 3".to_owned()),
+        "1" => Ok(Scenario::FreeSwing),
+        "2" => Ok(Scenario::Push),
+        "3" => Ok(Scenario::Obstacle),
+        _ => Err("expected 1, 2 or 3".to_owned()),
     }
 }
 
 fn seconds(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(seconds) if (0.0..=1e9).contains(&seconds) => Ok(seconds),
-        _ => Err("a number of seconds from 0 to 1e9 is wanted".to_owned()),
+        _ => Err("expected a number of seconds from 0 to 1e9".to_owned()),
     }
 }

@@ -1,4 +1,4 @@
-//! The serial line on a pseudo-terminal, as other programs know a serial port.
+//! The serial line on a pseudo-terminal, which other programs open as a serial port.
 
 use std::time::{Duration, Instant};
 
@@ -10,21 +10,22 @@ use rustix::io::{Errno, ioctl_fionbio};
 use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
 use rustix::termios::{LocalModes, OptionalActions, tcgetattr, tcsetattr};
 
-/// Who opens a serial port sets its modes at once and looks whether they stand; only then are they looked at here.
+/// Time after an opening at which the modes are checked here. The program that opens a port sets its modes at once, and checks
+/// that they are set.
 const SETTLING: Duration = Duration::from_millis(20);
 
 /// Our end of a pseudo-terminal.
 pub struct Pty {
     ours: OwnedFd,
-    /// Of the other end.
+    /// Path of the other end.
     path: String,
     open: bool,
-    /// When it was opened, until its modes are settled.
+    /// Time of its opening, until its modes are checked.
     opened: Option<Instant>,
 }
 
 impl Pty {
-    /// Opens one.
+    /// Opens a pseudo-terminal.
     pub fn new() -> std::io::Result<Self> {
         let ours = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY)?;
         ioctl_fionbio(&ours, true)?;
@@ -32,19 +33,19 @@ impl Pty {
         unlockpt(&ours)?;
         let path = ptsname(&ours, Vec::new())?;
         let path = path.to_string_lossy().into_owned();
-        // Opened and closed once: from then on a hang-up tells that nobody has it open.
+        // Opened and closed once: from then on a hang-up means that no program has it open.
         drop(open(path.as_str(), OFlags::RDWR | OFlags::NOCTTY, Mode::empty())?);
         let pty = Self { ours, path, open: false, opened: None };
         pty.make_raw()?;
         Ok(pty)
     }
 
-    /// Where other programs find its other end.
+    /// Path of its other end, for other programs.
     pub fn path(&self) -> &str {
         &self.path
     }
 
-    /// Each closing forgets the modes, and not every program sets them.
+    /// Sets raw modes: each closing loses them, and not every program sets them.
     fn make_raw(&self) -> std::io::Result<()> {
         let mut modes = tcgetattr(&self.ours)?;
         if modes.local_modes.intersects(LocalModes::ICANON | LocalModes::ECHO) {
@@ -54,7 +55,7 @@ impl Pty {
         Ok(())
     }
 
-    /// Whether a program has the other end open.
+    /// True if a program has the other end open.
     fn is_open(&self) -> std::io::Result<bool> {
         let mut polled = [PollFd::new(&self.ours, PollFlags::IN)];
         poll(&mut polled, Some(&Timespec { tv_sec: 0, tv_nsec: 0 }))?;
@@ -75,7 +76,7 @@ impl Line for Pty {
         }
         let mut bytes = vec![0; 4096];
         let count = match rustix::io::read(&self.ours, &mut bytes) {
-            // Nothing there, or nobody.
+            // No bytes, or no program at the other end.
             Err(Errno::AGAIN | Errno::IO) => 0,
             count => count?,
         };
@@ -84,7 +85,7 @@ impl Line for Pty {
     }
 
     fn send(&mut self, mut bytes: &[u8]) -> std::io::Result<bool> {
-        // What nobody takes is lost, as the USB bridge loses it.
+        // Bytes that no program reads are lost, as in the USB bridge.
         while self.open && !bytes.is_empty() {
             match rustix::io::write(&self.ours, bytes) {
                 Err(Errno::AGAIN | Errno::IO) => break,
@@ -100,18 +101,18 @@ mod tests {
     use super::{Line, Mode, OFlags, Pty, SETTLING, open};
 
     #[test]
-    fn each_opening_is_told_once_and_bytes_for_nobody_are_lost() {
+    fn each_opening_is_reported_once_and_bytes_without_a_reader_are_lost() {
         let mut pty = Pty::new().expect("a pseudo-terminal");
         let path = pty.path().to_owned();
         let open_it = || open(path.as_str(), OFlags::RDWR | OFlags::NOCTTY, Mode::empty()).expect("its other end");
         for _ in 0..2 {
-            assert!(!pty.receive().expect("nobody").opened);
-            pty.send(b"lost").expect("nobody");
+            assert!(!pty.receive().expect("no reader").opened);
+            pty.send(b"lost").expect("no reader");
             let theirs = open_it();
-            assert!(pty.receive().expect("somebody").opened);
+            assert!(pty.receive().expect("a reader").opened);
             std::thread::sleep(SETTLING);
-            assert!(!pty.receive().expect("somebody").opened);
-            pty.send(b"seen").expect("somebody");
+            assert!(!pty.receive().expect("a reader").opened);
+            pty.send(b"seen").expect("a reader");
             let mut bytes = [0; 16];
             let count = rustix::io::read(&theirs, &mut bytes).expect("four bytes");
             assert_eq!(bytes[..count], *b"seen");

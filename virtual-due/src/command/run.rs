@@ -1,4 +1,4 @@
-//! A run: the board in slices, and what goes in and out between them.
+//! A run: the board in slices of time, with input and output between them.
 
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -7,56 +7,56 @@ use std::time::{Duration, Instant};
 use virtual_due::rig::Rig;
 use virtual_due::{CYCLES_PER_SECOND, Cycles, Machine};
 
-/// How long the board runs at a stretch.
+/// Time that the board runs between two transfers.
 const SLICE: Cycles = CYCLES_PER_SECOND / 500;
 /// The UART, which is the programming port.
 const PORT: usize = 0;
-/// The slowest watchdog has bitten by then.
-const HOPELESS: Cycles = 20 * CYCLES_PER_SECOND;
+/// Time by which the slowest watchdog has reset a locked core.
+const LOCKED_UP_TOO_LONG: Cycles = 20 * CYCLES_PER_SECOND;
 
 /// The other end of the serial line.
 pub trait Line {
-    /// What came from it.
+    /// Takes the bytes received from it.
     fn receive(&mut self) -> std::io::Result<Received>;
 
-    /// Takes what the board sent; false if nobody will read any more.
+    /// Sends bytes of the board; false if the reader has gone.
     fn send(&mut self, bytes: &[u8]) -> std::io::Result<bool>;
 }
 
-/// What came over the serial line.
+/// Input of the serial line.
 #[derive(Debug, Default)]
 pub struct Received {
-    /// Somebody opened the port, which resets the board.
+    /// A program opened the port, which resets the board.
     pub opened: bool,
     /// The bytes.
     pub bytes: Vec<u8>,
 }
 
-/// A board at work.
+/// A board that runs a firmware.
 pub struct Run {
     machine: Machine<Rig>,
     end: Option<Cycles>,
     paced: bool,
     began: Instant,
-    resets_told: usize,
+    resets_printed: usize,
     locked_up: Option<Cycles>,
 }
 
 impl Run {
-    /// Of `seconds`, or without end; at most as fast as the wall clock if it is `paced`.
+    /// A run of `seconds`, or without end; at most as fast as real time if it is `paced`.
     pub fn new(machine: Machine<Rig>, seconds: Option<f64>, paced: bool) -> Self {
         let end = seconds.map(|seconds| (seconds * CYCLES_PER_SECOND as f64) as Cycles);
-        Self { machine, end, paced, began: Instant::now(), resets_told: 0, locked_up: None }
+        Self { machine, end, paced, began: Instant::now(), resets_printed: 0, locked_up: None }
     }
 
-    /// Runs to the end, or until Ctrl-C or until nobody listens, with a `hand` on the rig before every slice.
-    pub fn execute(&mut self, line: &mut dyn Line, mut hand: impl FnMut(&mut Rig)) -> std::io::Result<()> {
+    /// Runs to the end, or until Ctrl-C, or until the reader has gone; calls `inject` before every slice.
+    pub fn execute(&mut self, line: &mut dyn Line, mut inject: impl FnMut(&mut Rig)) -> std::io::Result<()> {
         let stop = Arc::new(AtomicBool::new(false));
         let flag = Arc::clone(&stop);
         ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed)).map_err(std::io::Error::other)?;
         let end = self.end.unwrap_or(Cycles::MAX);
         let mut now = 0;
-        while now < end && !stop.load(Ordering::Relaxed) && !self.is_hopeless() {
+        while now < end && !stop.load(Ordering::Relaxed) && !self.is_locked_up_for_good() {
             let Received { opened, bytes } = line.receive()?;
             if opened {
                 self.machine.press_reset();
@@ -64,10 +64,10 @@ impl Run {
             if !bytes.is_empty() {
                 self.machine.world_mut().send(PORT, &bytes, now);
             }
-            hand(self.machine.world_mut());
+            inject(self.machine.world_mut());
             now = end.min(now + SLICE);
             self.machine.run_until(now);
-            self.tell();
+            self.print_reports();
             let sent: Vec<u8> =
                 self.machine.world_mut().take_transmitted(PORT).into_iter().map(|(_, byte)| byte).collect();
             if !line.send(&sent)? {
@@ -78,27 +78,27 @@ impl Run {
         Ok(())
     }
 
-    /// Whether the core has been locked up for longer than any watchdog takes.
-    fn is_hopeless(&mut self) -> bool {
+    /// True if the core has been locked up for longer than any watchdog takes.
+    fn is_locked_up_for_good(&mut self) -> bool {
         if !self.machine.locked_up() {
             self.locked_up = None;
             return false;
         }
         let now = self.machine.now();
-        now - *self.locked_up.get_or_insert(now) > HOPELESS
+        now - *self.locked_up.get_or_insert(now) > LOCKED_UP_TOO_LONG
     }
 
-    fn tell(&mut self) {
+    fn print_reports(&mut self) {
         for report in self.machine.reports() {
             eprintln!("{report}");
         }
-        for reset in &self.machine.resets()[self.resets_told..] {
+        for reset in &self.machine.resets()[self.resets_printed..] {
             eprintln!("reset at {:.6} s: {:?}", seconds(reset.at), reset.cause);
         }
-        self.resets_told = self.machine.resets().len();
+        self.resets_printed = self.machine.resets().len();
     }
 
-    /// Waits until the wall clock has come to virtual time `now`.
+    /// Waits until real time has reached virtual time `now`.
     fn pace(&self, now: Cycles) {
         if self.paced {
             let due = self.began + Duration::from_secs_f64(seconds(now));
@@ -106,7 +106,7 @@ impl Run {
         }
     }
 
-    /// Prints what the run was; how the process ends.
+    /// Prints a summary of the run; returns the exit status.
     pub fn summary(&self) -> ExitCode {
         let machine = &self.machine;
         let (virtual_s, wall_s) = (machine.seconds(), self.began.elapsed().as_secs_f64());

@@ -10,8 +10,8 @@ pub struct Stdio {
 }
 
 impl Stdio {
-    /// Begins to read. A file is read whole before the run begins, so that two runs see the same input at the same virtual
-    /// times; from a terminal or pipe, bytes arrive when they come.
+    /// Starts to read. A file is read whole before the run begins, so that two runs receive the same input at the same virtual
+    /// times; bytes from a terminal or pipe arrive in real time.
     pub fn new() -> std::io::Result<Self> {
         let (sender, input) = channel();
         if is_file()? {
@@ -33,7 +33,7 @@ impl Stdio {
     }
 }
 
-/// Whether standard input is an ordinary file.
+/// True if standard input is an ordinary file.
 fn is_file() -> std::io::Result<bool> {
     #[cfg(unix)]
     let input = std::os::fd::AsFd::as_fd(&stdin()).try_clone_to_owned()?;

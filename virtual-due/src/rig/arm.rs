@@ -1,16 +1,16 @@
 //! The simulated arm in virtual time, and the pins that command its pressure regulators.
 
-use crate::model::Cycles;
-use rig_twin::{Program, REGULATORS, Rig as Twin, Scenario};
+use rig_twin::{MotionProgram, REGULATORS, Rig as Twin, Scenario};
+use sam3x_models::model::Cycles;
 
 /// The twin's own grid, s and cycles.
 const GRID_S: f64 = 0.002;
 const GRID: Cycles = 168_000;
 
-/// What a regulator reads as 1 (supply pressure of the reference rig).
+/// Pressure of a regulator at full duty, Pa (supply pressure of the reference rig).
 const FULL_SCALE_PA: f64 = 280_000.0;
 
-/// What a regulator's pin does.
+/// State of a regulator's pin.
 #[derive(Debug, Clone, Copy, Default)]
 struct SetPoint {
     /// The level that PIO drives.
@@ -20,7 +20,7 @@ struct SetPoint {
 }
 
 impl SetPoint {
-    /// 0 … 1; a pin that nothing drives vents.
+    /// Duty, 0 … 1; a pin that nothing drives vents.
     fn duty(self) -> f64 {
         match (self.driven, self.pulsed) {
             (Some(level), _) => f64::from(u8::from(level)),
@@ -30,11 +30,11 @@ impl SetPoint {
     }
 }
 
-/// The arm, its regulators, and who commands them.
+/// The arm, its regulators, and the source of their set-points.
 #[derive(Debug, Clone)]
 pub struct Arm {
     twin: Twin,
-    program: Program,
+    program: MotionProgram,
     grid_points: u64,
     set_points: [SetPoint; REGULATORS],
     /// No regulator pin was ever driven: the scenario's program moves the arm, as a bench supply would.
@@ -46,14 +46,14 @@ impl Arm {
     pub fn new(scenario: Scenario, seed: u64) -> Self {
         Self {
             twin: Twin::new(scenario, seed),
-            program: Program::new(scenario, seed),
+            program: MotionProgram::new(scenario, seed),
             grid_points: 0,
             set_points: [SetPoint::default(); REGULATORS],
             on_bench_supply: true,
         }
     }
 
-    /// Brings the arm to the last grid point at or before `now`; an earlier time changes nothing.
+    /// Advances the arm to the last grid point at or before `now`; an earlier time changes nothing.
     pub fn advance_to(&mut self, now: Cycles) {
         while (self.grid_points + 1) * GRID <= now {
             self.twin.step(GRID_S, self.duties());
@@ -61,7 +61,7 @@ impl Arm {
         }
     }
 
-    /// What the regulators are commanded now, 0 … 1.
+    /// Present set-points of the regulators, 0 … 1.
     fn duties(&self) -> [f64; REGULATORS] {
         if self.on_bench_supply {
             self.program.duties(self.grid_points as f64 * GRID_S)

@@ -1,8 +1,8 @@
-//! What a test or a user may break.
+//! Faults of the rig that tests and users inject.
 
 use rig_twin::{BEND_SENSORS, SEGMENTS};
 
-/// What is broken now.
+/// The present faults.
 #[derive(Debug, Clone, Default)]
 pub struct Faults {
     /// Bend sensors 1a, 1b, … 6b.
@@ -12,12 +12,12 @@ pub struct Faults {
     /// The multiplexer.
     pub mux: Option<MuxFault>,
     /// Something holds SDA low.
-    pub sda: Option<Held>,
+    pub sda: Option<HeldLow>,
     /// Something holds SCL low.
-    pub scl: Option<Held>,
+    pub scl: Option<HeldLow>,
 }
 
-/// Where a broken bend sensor's input lies.
+/// Level of a broken bend sensor's input.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Rail {
     /// 0 counts: the strip is shorted.
@@ -26,7 +26,7 @@ pub enum Rail {
     High,
 }
 
-/// What is wrong with an IMU.
+/// Fault of an IMU.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum ImuFault {
     /// Nothing.
@@ -38,7 +38,7 @@ pub enum ImuFault {
     Frozen,
 }
 
-/// What is wrong with the multiplexer, until its RESET.
+/// Fault of the multiplexer, until its RESET.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MuxFault {
     /// It does not answer; the channels stay as they are.
@@ -47,19 +47,19 @@ pub enum MuxFault {
     Stuck,
 }
 
-/// How long a line is held low.
+/// Duration for which a line is held low.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Held {
-    /// Until the fault is taken away.
-    Forever,
-    /// For this many more clock pulses, given by hand with SCL as a GPIO.
+pub enum HeldLow {
+    /// Until the fault is removed.
+    UntilRemoved,
+    /// For this many more clock pulses, generated with SCL as a GPIO.
     Clocks(u32),
     /// Until the multiplexer is reset, which disconnects the culprit.
     UntilMuxReset,
 }
 
-impl Held {
-    /// After a clock pulse.
+impl HeldLow {
+    /// The rest of the duration after a clock pulse.
     pub(super) fn clocked(self) -> Option<Self> {
         match self {
             Self::Clocks(left) => left.checked_sub(1).filter(|left| *left > 0).map(Self::Clocks),

@@ -11,36 +11,27 @@
 //!
 //! A regulator gives 280 kPa at full duty. Its pin counts as 0 or 1 where PIO drives it, and vents where nothing does. As
 //! long as no regulator pin was ever given to the PWM or driven, the scenario's own program moves the arm, as a bench supply
-//! would, so that a firmware that only senses sees a moving arm. From then on the pins alone count.
+//! would, so that a firmware that only reads sensors has a moving arm. From then on the pins alone count.
 
 mod arm;
 mod bno055;
 mod faults;
+mod pins;
 mod sensors;
 mod serial;
 mod tca9548a;
 mod wires;
 
-use crate::model::{Cycles, I2c, Pin, Reception, World};
 use arm::Arm;
-pub use faults::{Faults, Held, ImuFault, MuxFault, Rail};
+pub use faults::{Faults, HeldLow, ImuFault, MuxFault, Rail};
 use rig_twin::{EndPose, REGULATORS, SEGMENTS, Scenario};
+use sam3x_models::model::Cycles;
 use sensors::Sensors;
 use serial::Port;
 use wires::{NoDevices, Wires};
 
-/// The ADC channel of each bend sensor.
-const BEND_CHANNELS: [u8; 12] = [7, 6, 5, 4, 3, 2, 1, 0, 10, 11, 12, 13];
-/// PWM channel and line of PIOC of each regulator.
-const REGULATOR_PINS: [(u8, u8); REGULATORS] = [(7, 24), (6, 23), (5, 22), (4, 21), (0, 2), (1, 4)];
 /// UART and USART0 … USART3.
 const PORTS: usize = 5;
-
-const PIOB: u8 = 1;
-const PIOC: u8 = 2;
-const SDA: Pin = Pin { port: PIOB, line: 12 };
-const SCL: Pin = Pin { port: PIOB, line: 13 };
-const MUX_RESET: Pin = Pin { port: PIOB, line: 26 };
 
 /// The rig.
 ///
@@ -49,13 +40,13 @@ const MUX_RESET: Pin = Pin { port: PIOB, line: 26 };
 /// use virtual_due::model::{CYCLES_PER_SECOND, World};
 /// use virtual_due::rig::{Rail, Rig};
 ///
-/// let mut rig = Rig::new(Scenario::One, 7);
+/// let mut rig = Rig::new(Scenario::FreeSwing, 7);
 /// rig.faults.bend[0] = Some(Rail::High);
 /// assert_eq!(rig.adc_counts(7, CYCLES_PER_SECOND), 4095);
 /// ```
 #[derive(Debug, Clone)]
 pub struct Rig {
-    /// What is broken.
+    /// The present faults.
     pub faults: Faults,
     now: Cycles,
     arm: Arm,
@@ -86,26 +77,24 @@ impl Rig {
         }
     }
 
-    /// Lets the arm move up to `now`. The world's calls do so by themselves; who looks at the truth while the firmware sleeps
-    /// asks for it.
+    /// Advances the arm to `now`. Calls of [`World`](sam3x_models::model::World) do so, too; call it before you read the truth while the firmware sleeps.
     pub fn advance_to(&mut self, now: Cycles) {
         self.now = self.now.max(now);
         self.arm.advance_to(now);
-        self.sensors.follow(&self.faults, self.now);
+        self.sensors.apply_power_faults(&self.faults, self.now);
     }
 
-    /// True world pose of each segment's end, at the last 2 ms before the latest time that the rig knows.
+    /// True world pose of each segment's end, at the last multiple of 2 ms before the rig's time.
     pub fn truth(&self) -> [EndPose; SEGMENTS] {
         self.arm.twin().truth()
     }
 
-    /// How often bend sensor 1a was converted, and the truth at the last time: what a sample's estimate is to be held
-    /// against.
+    /// Number of conversions of bend sensor 1a, and the truth at the last of them, with which a sample's estimate is compared.
     pub fn last_scan(&self) -> (u64, [EndPose; SEGMENTS]) {
         (self.scans, self.truth_at_scan)
     }
 
-    /// What the regulators are commanded, Pa: module 1 right, left, module 2 right, left, module 3 right, left.
+    /// Set-points of the regulators, Pa: module 1 right, left, module 2 right, left, module 3 right, left.
     pub fn set_points_pa(&self) -> [f64; REGULATORS] {
         self.arm.set_points_pa()
     }
@@ -115,81 +104,20 @@ impl Rig {
         self.arm.twin()
     }
 
-    /// IMU `imu`, counted from 0, falls back to its CONFIG mode without a word, as of the latest time that the rig knows.
+    /// Resets IMU `imu`, counted from 0, to its CONFIG mode at the rig's time, as a dip of its supply does.
     pub fn brown_out(&mut self, imu: usize) {
         self.sensors.brown_out(imu, self.now);
     }
 
-    /// Bytes for the receiver of a serial port, 0 for UART and 1 … 4 for USART0 … USART3: one after the other, at its byte
-    /// time, and none before a time.
+    /// Sends bytes to the receiver of a serial port, 0 for UART and 1 … 4 for USART0 … USART3: one after the other, at its
+    /// byte time, from `not_before` on.
     pub fn send(&mut self, port: usize, bytes: &[u8], not_before: Cycles) {
         self.ports[port].send(bytes, not_before);
     }
 
-    /// What a serial port has sent since last asked, each byte with the end of its stop bit.
+    /// Takes the bytes that a serial port has sent since the last call, each with the end of its stop bit.
     pub fn take_transmitted(&mut self, port: usize) -> Vec<(Cycles, u8)> {
         self.ports[port].take_transmitted()
-    }
-}
-
-impl World for Rig {
-    fn adc_counts(&mut self, channel: u8, now: Cycles) -> u16 {
-        self.advance_to(now);
-        let Some(sensor) = BEND_CHANNELS.iter().position(|wired| *wired == channel) else { return 0 };
-        let counts = self.arm.convert(sensor);
-        if sensor == 0 {
-            self.scans += 1;
-            self.truth_at_scan = self.truth();
-        }
-        match self.faults.bend[sensor] {
-            None => counts,
-            Some(Rail::Low) => 0,
-            Some(Rail::High) => 4095,
-        }
-    }
-
-    fn i2c(&mut self, twi: usize) -> &mut dyn I2c {
-        if twi == 1 { self } else { &mut self.no_devices }
-    }
-
-    fn pwm(&mut self, channel: u8, duty: Option<(u32, u32)>, now: Cycles) {
-        self.advance_to(now);
-        if let Some(regulator) = REGULATOR_PINS.iter().position(|(wired, _)| *wired == channel) {
-            self.arm.pulse(regulator, duty);
-        }
-    }
-
-    fn drive(&mut self, pin: Pin, level: Option<bool>, now: Cycles) {
-        self.advance_to(now);
-        let regulator = REGULATOR_PINS.iter().position(|(_, line)| pin == Pin { port: PIOC, line: *line });
-        match pin {
-            SDA => self.drive_sda(level),
-            SCL => self.drive_scl(level, now),
-            MUX_RESET => self.drive_mux_reset(level),
-            _ => {
-                if let Some(regulator) = regulator {
-                    self.arm.drive(regulator, level);
-                }
-            }
-        }
-    }
-
-    /// Pull-ups hold the wires and RESET high.
-    fn level(&mut self, pin: Pin, _now: Cycles) -> Option<bool> {
-        match pin {
-            SDA => Some(self.faults.sda.is_none()),
-            SCL => Some(self.faults.scl.is_none()),
-            MUX_RESET => Some(true),
-            _ => None,
-        }
-    }
-
-    fn transmitted(&mut self, port: usize, byte: u8, now: Cycles) {
-        self.ports[port].note_transmitted(byte, now);
-    }
-
-    fn receive(&mut self, port: usize, byte_time: Cycles, now: Cycles) -> Reception {
-        self.ports[port].receive(byte_time, now)
     }
 }
 

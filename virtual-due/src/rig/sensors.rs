@@ -1,18 +1,18 @@
-//! What hangs on TWI1: the multiplexer and, behind it, the IMUs.
+//! The devices on TWI1: the multiplexer and, behind it, the IMUs.
 
 use super::bno055::Bno055;
 use super::faults::{Faults, ImuFault};
 use super::tca9548a::Tca9548a;
-use crate::model::Cycles;
 use rig_twin::SEGMENTS;
+use sam3x_models::model::Cycles;
 
-/// The devices, and which of them the master talks to.
+/// The devices, and those that the master has addressed.
 #[derive(Debug, Clone)]
 pub struct Sensors {
     pub mux: Tca9548a,
     imus: [Bno055; SEGMENTS],
     powered: [bool; SEGMENTS],
-    /// What a frozen unit goes on showing.
+    /// The orientations that frozen units keep showing.
     last_orientations: [[i16; 4]; SEGMENTS],
     mux_addressed: bool,
     imus_addressed: [bool; SEGMENTS],
@@ -31,8 +31,8 @@ impl Sensors {
         }
     }
 
-    /// Takes or gives the units their power as the faults say.
-    pub fn follow(&mut self, faults: &Faults, now: Cycles) {
+    /// Switches the units' power according to the faults.
+    pub fn apply_power_faults(&mut self, faults: &Faults, now: Cycles) {
         for ((imu, powered), fault) in self.imus.iter_mut().zip(&mut self.powered).zip(&faults.imus) {
             let has_power = *fault != ImuFault::Unplugged;
             if has_power && !*powered {
@@ -46,7 +46,8 @@ impl Sensors {
         self.imus[imu].brown_out(now);
     }
 
-    /// A start condition and an address. All units on connected channels hear it: their open drains make a wired AND.
+    /// Handles a start condition and an address. All units on connected channels receive it: their open drains make a wired
+    /// AND.
     pub fn start(
         &mut self,
         address: u8,
@@ -57,8 +58,8 @@ impl Sensors {
     ) -> bool {
         self.mux_addressed = address == Tca9548a::ADDRESS && self.mux.answers(faults.mux);
         for (index, imu) in self.imus.iter_mut().enumerate() {
-            let heard = address == Bno055::ADDRESS && self.mux.connected() & (1 << index) != 0;
-            let addressed = heard && self.powered[index] && imu.answers(now);
+            let is_called = address == Bno055::ADDRESS && self.mux.connected() & (1 << index) != 0;
+            let addressed = is_called && self.powered[index] && imu.answers(now);
             self.imus_addressed[index] = addressed;
             if addressed {
                 if faults.imus[index] != ImuFault::Frozen {
@@ -70,12 +71,12 @@ impl Sensors {
         self.mux_addressed || self.imus_addressed.contains(&true)
     }
 
-    /// The units that the master talks to.
+    /// The addressed units.
     fn addressed(&mut self) -> impl Iterator<Item = &mut Bno055> {
         self.imus.iter_mut().zip(&self.imus_addressed).filter(|(_, addressed)| **addressed).map(|(imu, _)| imu)
     }
 
-    /// A byte to whoever was addressed.
+    /// Writes a byte to the addressed devices; true if one acknowledged.
     pub fn write(&mut self, byte: u8, now: Cycles, faults: &Faults) -> bool {
         if self.mux_addressed {
             self.mux.write(byte, faults.mux);
@@ -88,7 +89,7 @@ impl Sensors {
         acknowledged
     }
 
-    /// A byte from whoever was addressed; a line that nobody pulls is high.
+    /// Reads a byte from the addressed devices; a line that no device pulls is high.
     pub fn read(&mut self) -> u8 {
         let from_mux = if self.mux_addressed { self.mux.read() } else { 0xFF };
         self.addressed().fold(from_mux, |wires, imu| wires & imu.read())
@@ -101,7 +102,7 @@ impl Sensors {
         self.mux.stop();
     }
 
-    /// The slowest holds the clock.
+    /// Time for which the slowest device holds the clock low.
     pub fn stretch(&mut self) -> Cycles {
         self.addressed().map(Bno055::stretch).max().unwrap_or(0)
     }

@@ -1,15 +1,15 @@
-//! The far ends of the serial ports.
+//! The other ends of the serial ports.
 
-use crate::model::{Cycles, Reception};
+use sam3x_models::model::{Cycles, Reception};
 use std::collections::VecDeque;
 
-/// What has come from a port and what is on its way to it.
+/// Bytes that a port has sent, and bytes on their way to it.
 #[derive(Debug, Clone, Default)]
 pub struct Port {
     transmitted: Vec<(Cycles, u8)>,
     /// Bytes to be sent, each not before a time.
     queue: VecDeque<(Cycles, u8)>,
-    /// When the first of the queue is complete; none before the port first asked for it.
+    /// Time at which the first of the queue is complete; `None` until the port first polls.
     due: Option<Cycles>,
 }
 
@@ -26,7 +26,7 @@ impl Port {
         self.queue.extend(bytes.iter().map(|byte| (not_before, *byte)));
     }
 
-    /// A byte begins when its time has come and the one before it is complete, and takes `byte_time`.
+    /// Takes a byte that is complete. A byte begins at its time or when the one before it is complete, and takes `byte_time`.
     pub fn receive(&mut self, byte_time: Cycles, now: Cycles) -> Reception {
         let Some((not_before, byte)) = self.queue.front().copied() else { return Reception::Idle };
         let due = *self.due.get_or_insert(not_before.max(now) + byte_time);
@@ -44,7 +44,7 @@ mod tests {
     use super::{Port, Reception};
 
     #[test]
-    fn bytes_come_one_byte_time_apart_however_late_one_asks() {
+    fn bytes_arrive_one_byte_time_apart_however_late_the_port_polls() {
         let mut port = Port::default();
         assert_eq!(port.receive(10, 0), Reception::Idle);
         port.send(b"ab", 100);

@@ -7,7 +7,7 @@ use super::faults::MuxFault;
 pub struct Tca9548a {
     /// The control register: a bit for each channel.
     control: u8,
-    /// What the channels are: the register as of the last stop condition (SCPS207 8.6.2).
+    /// The connected channels: the register at the last stop condition (SCPS207 8.6.2).
     connected: u8,
     held_in_reset: bool,
 }
@@ -16,7 +16,7 @@ impl Tca9548a {
     /// Its address, A2 to A0 low.
     pub const ADDRESS: u8 = 0x70;
 
-    /// Whether it acknowledges its address.
+    /// True if it acknowledges its address.
     pub fn answers(&self, fault: Option<MuxFault>) -> bool {
         !self.held_in_reset && fault != Some(MuxFault::Silent)
     }
@@ -33,7 +33,7 @@ impl Tca9548a {
         self.control
     }
 
-    /// A stop condition connects what the register says.
+    /// Handles a stop condition, which connects the channels in the register.
     pub fn stop(&mut self) {
         self.connected = self.control;
     }
@@ -67,7 +67,7 @@ mod tests {
     }
 
     #[test]
-    fn reset_disconnects_all_and_silences_it() {
+    fn reset_disconnects_all_and_it_does_not_answer() {
         let mut mux = Tca9548a::default();
         mux.write(0xFF, None);
         mux.stop();

@@ -1,14 +1,15 @@
 #![expect(clippy::float_cmp, reason = "set-points are exact")]
 
-use super::{Held, ImuFault, MUX_RESET, MuxFault, PIOC, Pin, Rail, Rig, SCL, SDA};
-use crate::model::{CYCLES_PER_SECOND, Cycles, I2c, World};
+use super::pins::{MUX_RESET, PIOC, SCL, SDA};
+use super::{HeldLow, ImuFault, MuxFault, Rail, Rig};
 use rig_twin::Scenario;
+use sam3x_models::model::{CYCLES_PER_SECOND, Cycles, I2c, Pin, World};
 
 const SECOND: Cycles = CYCLES_PER_SECOND;
 const D6: Pin = Pin { port: PIOC, line: 24 };
 
 fn rig() -> Rig {
-    Rig::new(Scenario::One, 7)
+    Rig::new(Scenario::FreeSwing, 7)
 }
 
 /// Connects these channels.
@@ -18,12 +19,12 @@ fn select(rig: &mut Rig, channels: u8, now: Cycles) -> bool {
     acknowledged
 }
 
-/// Reads registers of whatever is connected at 0x28.
+/// Reads registers of the units connected at 0x28.
 fn registers<const COUNT: usize>(rig: &mut Rig, first: u8, now: Cycles) -> Option<[u8; COUNT]> {
-    let heard = rig.start(0x28, false, now) && rig.write(first, now) && rig.start(0x28, true, now);
+    let acknowledged = rig.start(0x28, false, now) && rig.write(first, now) && rig.start(0x28, true, now);
     let bytes = std::array::from_fn(|_| I2c::read(rig, now));
     rig.stop(now);
-    heard.then_some(bytes)
+    acknowledged.then_some(bytes)
 }
 
 /// All six in IMUPLUS, with output, at 1 s.
@@ -46,7 +47,7 @@ fn quaternion(rig: &mut Rig, imu: usize, now: Cycles) -> Option<[i16; 4]> {
 #[test]
 fn each_bend_sensor_is_on_its_channel() {
     let mut rig = rig();
-    let counts = rig_twin::Rig::new(Scenario::One, 7).adc_counts();
+    let counts = rig_twin::Rig::new(Scenario::FreeSwing, 7).adc_counts();
     for (channel, expected) in [7, 6, 5, 4, 3, 2, 1, 0, 10, 11, 12, 13].into_iter().zip(counts) {
         assert_eq!(rig.adc_counts(channel, 0), expected, "channel {channel}");
     }
@@ -61,7 +62,7 @@ fn broken_bend_sensor_lies_at_a_rail() {
 }
 
 #[test]
-fn arm_moves_by_itself_until_a_regulator_pin_is_used() {
+fn arm_moves_by_its_program_until_a_regulator_pin_is_used() {
     let mut rig = rig();
     rig.advance_to(12 * SECOND);
     assert!(rig.set_points_pa().iter().any(|pressure| *pressure > 1000.0));
@@ -81,7 +82,7 @@ fn pin_driven_high_is_full_scale_and_bends_the_arm_clockwise() {
 }
 
 #[test]
-fn arm_is_the_same_however_often_it_is_looked_at() {
+fn arm_is_the_same_however_often_it_is_advanced() {
     let (mut often, mut once) = (rig(), rig());
     for ms in 0..8000 {
         often.advance_to(ms * SECOND / 1000);
@@ -125,7 +126,7 @@ fn unplugged_imu_does_not_answer_and_boots_when_it_is_back() {
 }
 
 #[test]
-fn frozen_imu_goes_on_showing_the_same() {
+fn frozen_imu_keeps_showing_the_same() {
     let mut rig = fusing();
     let before = quaternion(&mut rig, 5, SECOND);
     rig.faults.imus[5] = ImuFault::Frozen;
@@ -135,7 +136,7 @@ fn frozen_imu_goes_on_showing_the_same() {
 }
 
 #[test]
-fn browned_out_imu_gives_zeros_without_a_word() {
+fn browned_out_imu_reads_as_zero() {
     let mut rig = fusing();
     assert_ne!(quaternion(&mut rig, 0, SECOND), Some([0; 4]));
     rig.brown_out(0);
@@ -159,7 +160,7 @@ fn reset_pin_ends_what_is_wrong_with_the_mux() {
 #[test]
 fn data_line_is_freed_by_clock_pulses() {
     let mut rig = rig();
-    rig.faults.sda = Some(Held::Clocks(9));
+    rig.faults.sda = Some(HeldLow::Clocks(9));
     for pulse in 0..9 {
         assert_eq!(rig.level(SDA, 0), Some(false), "after {pulse} pulses");
         rig.drive(SCL, Some(false), 0);
@@ -179,7 +180,7 @@ fn stop_condition_by_hand_ends_a_transfer() {
 }
 
 #[test]
-fn nobody_is_on_the_other_bus() {
+fn no_device_is_on_the_other_bus() {
     let mut rig = rig();
     assert!(!rig.i2c(0).start(0x70, false, SECOND));
     assert!(rig.i2c(1).start(0x70, false, SECOND));

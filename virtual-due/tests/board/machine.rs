@@ -17,7 +17,7 @@ fn instructions_take_7_5_of_a_core_cycle_and_sleep_takes_none() {
 }
 
 #[test]
-fn the_watchdog_resets_a_program_that_does_not_feed_it() {
+fn the_watchdog_resets_a_program_that_does_not_restart_it() {
     let mut board = board(&[SPIN], 0);
     board.run_until(33 * CYCLES_PER_SECOND);
     let resets: Vec<_> = board.resets().iter().map(|reset| (reset.cause, reset.at / CYCLES_PER_SECOND)).collect();
@@ -30,7 +30,7 @@ fn a_load_from_nothing_is_a_fault_and_is_reported_with_its_pc() {
     let mut board = board(&[load_r0(2), 0x6801, SPIN, 0x2701, SPIN, 0, 0x8000, 0x400A], 3);
     assert!(board.run_to(ENTRY + 8, MILLISECOND), "the fault's handler runs");
     let reports = board.reports();
-    assert_eq!(reports, ["bus fault: load from 0x400a8000, where there is nothing, at pc 0x00080042"]);
+    assert_eq!(reports, ["bus fault: load from 0x400a8000, where nothing is mapped, at pc 0x00080042"]);
 }
 
 #[test]
@@ -95,6 +95,6 @@ fn a_run_in_pieces_is_the_same_run() {
 
 #[test]
 fn firmware_for_another_address_is_refused() {
-    let refused = Machine::new(&elf(0x0800_0000, &[0; 64]), Rig::new(Scenario::One, 1)).err();
+    let refused = Machine::new(&elf(0x0800_0000, &[0; 64]), Rig::new(Scenario::FreeSwing, 1)).err();
     assert_eq!(refused, Some(ElfError::Outside { address: 0x0800_0000, length: 64 }));
 }

@@ -12,7 +12,7 @@ fn result(board: &virtual_due::Machine<Rig>) -> u32 {
 }
 
 #[test]
-fn analog_read_gives_what_the_arms_sensor_gives() {
+fn analog_read_gives_the_counts_of_the_arms_sensor() {
     // PMC_PCER1 = ADC; ADC_CHER = channel 7; ADC_CR = START; until ADC_ISR.DRDY; RAM = ADC_LCDR; wfi; b .
     let mut board = board(
         &[
@@ -23,7 +23,7 @@ fn analog_read_gives_what_the_arms_sensor_gives() {
     );
     board.run_until(MILLISECOND);
     assert!(board.sleeps());
-    let counts = Rig::new(Scenario::One, 1).adc_counts(7, MILLISECOND);
+    let counts = Rig::new(Scenario::FreeSwing, 1).adc_counts(7, MILLISECOND);
     assert_eq!(result(&board), u32::from(counts));
 }
 
@@ -47,7 +47,7 @@ fn analog_write_of_255_on_pin_6_gives_the_first_regulator_full_pressure() {
 
 #[test]
 fn countflag_is_seen_once_a_period_of_systick() {
-    // SYST_RVR = 3999; SYST_CVR = 0; SYST_CSR = core clock, enabled; for ever: until COUNTFLAG; RAM = ++r7
+    // SYST_RVR = 3999; SYST_CVR = 0; SYST_CSR = core clock, enabled; loop: until COUNTFLAG; RAM = ++r7
     let mut board = board(
         &[
             0x4807, 0xF640, 0x719F, 0x6041, 0x6081, 0x2105, 0x6001, 0x4A05, 0x2700, 0x6801, 0x03C9, 0xD5FC, 0x3701,

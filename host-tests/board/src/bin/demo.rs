@@ -1,4 +1,4 @@
-//! The firmware on the emulated board in scenario I: armed, moved, its estimate beside the truth, its stream recorded.
+//! The firmware on the emulated board in scenario I: armed, moved, its estimate compared with the truth, its stream recorded.
 
 use std::env;
 use std::error::Error;
@@ -7,13 +7,13 @@ use std::io::BufWriter;
 
 use board_tests::{Board, View, replay};
 use proprio_simulation::{ImuColumns, Recorded, SessionWriter};
-use rig_twin::{Program, Scenario};
+use rig_twin::{MotionProgram, Scenario};
 use telemetry::{Command, Outcome};
 use virtual_due::Rig;
 
 const SEED: u64 = 11;
 
-/// Board time from one look to the next, ms; set-points go out as often.
+/// Board time from one comparison to the next, ms; set-points are sent as often.
 const LOOK_MS: u64 = 100;
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -23,12 +23,12 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let seconds: u64 = seconds.parse()?;
 
-    let mut board = Board::new(Rig::new(Scenario::One, SEED));
+    let mut board = Board::new(Rig::new(Scenario::FreeSwing, SEED));
     // Power-on, IMUs, and a tare of one second while the arm rests.
     board.run_ms(2500);
-    let program = Program::new(Scenario::One, SEED);
+    let program = MotionProgram::new(Scenario::FreeSwing, SEED);
     let mut view = View::new(seconds);
-    if board.ask(Command::Arm) != Outcome::Ack {
+    if board.request(Command::Arm) != Outcome::Ack {
         return Err("the board does not arm".into());
     }
     let start_s = board.machine.seconds();
@@ -49,7 +49,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// The stream since the first tare as a session, with the truth beside it.
+/// Writes the stream since the first tare as a session, with the truth in further columns.
 fn record(board: &Board, path: &str) -> Result<(), Box<dyn Error>> {
     let mut session = SessionWriter::new(BufWriter::new(File::create(path)?), ImuColumns::Quaternion)?;
     for sample in board.samples().filter(|sample| sample.tare_epoch > 0) {

@@ -1,5 +1,5 @@
-//! What the live page reaches, in headless Chromium on this machine: how soon it is live, frames a second with ten minutes of
-//! history, and the time from a sample to the screen. Figures, no judgement: they are the machine's as much as the page's.
+//! Speed of the live page in headless Chromium on this machine: time until it is live, frames a second with ten minutes of
+//! history, and latency from a sample to the screen. There are no limits: the figures depend on the machine as much as on the page.
 
 #[cfg(unix)]
 mod figures {
@@ -13,7 +13,7 @@ mod figures {
     use board_tests::{UART, firmware};
     use proprio_link::{Link, LinkError, Source, Transport};
     use proprio_monitor::{Monitor, Options};
-    use proprio_session::NamedTable;
+    use proprio_session::LoadedTable;
     use rig_twin::Scenario;
     use virtual_due::{CYCLES_PER_SECOND, Machine, Rig};
 
@@ -27,7 +27,7 @@ mod figures {
         let folder = tempfile::tempdir().expect("there is room for a temporary folder");
         let options = Options {
             port: 0,
-            table: Some(NamedTable::load(&table).expect("the reference table")),
+            table: Some(LoadedTable::load(&table).expect("the reference table")),
             folder: folder.path().to_owned(),
             token: None,
             session: None,
@@ -54,9 +54,9 @@ mod figures {
         Path::new(env!("CARGO_MANIFEST_DIR")).join("../../calibration-tables/planar-6.toml")
     }
 
-    /// From the start of the monitor to the arm on the screen; the browser is there already.
+    /// Measures the time from the start of the monitor to the arm on the screen; the browser runs already.
     fn start() {
-        // It is built only once.
+        // Built before the time is taken.
         firmware();
         let mut browser = Browser::start();
         let mut times: Vec<f64> = (0..5)
@@ -90,7 +90,7 @@ mod figures {
         println!("{name}, {span} s seen: {} frames/s median, {} least of 20 s ({rows})", rates[10], rates[0]);
     }
 
-    /// Of the last 3000 pictures, which are those of one screen and some of the one before.
+    /// Latency of the last 3000 pictures, which are those of one screen and some of the one before.
     fn latency(browser: &mut Browser) {
         let status = browser.value("fetch('/status').then((answer) => answer.json())");
         let of = |name: &str| status["latency"][name].as_f64().unwrap_or(f64::NAN);
@@ -106,7 +106,7 @@ mod figures {
         );
     }
 
-    /// The virtual Due in a thread of this process: its first minutes at once, then as the wall clock.
+    /// The virtual Due in a thread of this process: its first minutes as fast as possible, then in real time.
     struct Due;
 
     /// Its serial line.
@@ -125,14 +125,14 @@ mod figures {
             Ok(("virtual Due, ten minutes old".to_owned(), Box::new(Line { output, input, rest: VecDeque::new() })))
         }
 
-        fn comes_back(&self) -> bool {
+        fn can_reconnect(&self) -> bool {
             false
         }
     }
 
     fn run(output: &SyncSender<Vec<u8>>, input: &Receiver<Vec<u8>>) {
         let mut machine =
-            Machine::new(firmware(), Rig::new(Scenario::One, 1)).expect("cargo built an ELF for the board");
+            Machine::new(firmware(), Rig::new(Scenario::FreeSwing, 1)).expect("cargo built an ELF for the board");
         let history = HISTORY_S * CYCLES_PER_SECOND;
         let mut began = None;
         loop {

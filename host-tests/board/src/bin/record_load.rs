@@ -1,5 +1,5 @@
-//! What `proprio record` takes of a core while the virtual Due sends all that it can, over a pseudo-terminal and in a process of its
-//! own. A figure, no judgement: it is the machine's as much as the recorder's.
+//! Processor load of `proprio record` while the virtual Due sends all that it can, over a pseudo-terminal and in a process of its
+//! own. There is no limit: the figure depends on the machine as much as on the recorder.
 
 #[cfg(target_os = "linux")]
 mod figure {
@@ -11,7 +11,7 @@ mod figure {
 
     use board_tests::due::{DueProcess, tool};
 
-    /// Before the measurement, s: the start, and the tare.
+    /// Time before the measurement, s: start and tare.
     const BEFORE_S: u64 = 5;
     const MEASURED_S: u64 = 60;
     /// The system counts a process's time in hundredths of a second.
@@ -39,7 +39,7 @@ mod figure {
         recorder.wait().expect("it ends");
     }
 
-    /// Time that all threads of a process have had, s.
+    /// Processor time of all threads of a process, s.
     fn cpu_s(process: u32) -> f64 {
         let stat = fs::read_to_string(format!("/proc/{process}/stat")).expect("it runs");
         // Behind the name, which may have spaces: the 14th and 15th field of all.

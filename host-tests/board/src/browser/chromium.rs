@@ -13,8 +13,8 @@ use tempfile::TempDir;
 use tungstenite::stream::MaybeTlsStream;
 use tungstenite::{Message, WebSocket};
 
-/// Longest time for anything to be so.
-const PATIENCE: Duration = Duration::from_mins(1);
+/// Longest time to wait for anything.
+const TIMEOUT: Duration = Duration::from_mins(1);
 
 /// A browser with one page.
 pub struct Browser {
@@ -22,14 +22,14 @@ pub struct Browser {
     socket: WebSocket<MaybeTlsStream<TcpStream>>,
     last_id: u64,
     session: String,
-    /// Errors of scripts, and what the console was told.
-    pub complaints: Vec<String>,
-    /// Its profile, and what it downloads.
+    /// Errors of scripts, and messages of the console.
+    pub errors: Vec<String>,
+    /// Folder of its profile and its downloads.
     pub folder: TempDir,
 }
 
 impl Browser {
-    /// Starts it, with nothing in its page.
+    /// Starts it with an empty page.
     ///
     /// # Panics
     /// If there is no Chromium.
@@ -45,14 +45,14 @@ impl Browser {
         let process_ref = process.as_mut().unwrap_or_else(|error| panic!("{}: {error}", program.display()));
         let mut lines = BufReader::new(process_ref.stderr.take().expect("a pipe")).lines().map_while(Result::ok);
         let address = lines.find_map(|line| line.strip_prefix("DevTools listening on ").map(str::to_owned));
-        let address = address.expect("it says where it listens");
+        let address = address.expect("the browser prints where it listens");
         std::thread::spawn(move || lines.for_each(drop));
         let (socket, _) = tungstenite::connect(&address).expect("it listens");
         if let MaybeTlsStream::Plain(stream) = socket.get_ref() {
-            stream.set_read_timeout(Some(PATIENCE)).expect("a timeout");
+            stream.set_read_timeout(Some(TIMEOUT)).expect("a timeout");
         }
         let process = process.expect("it was looked at");
-        let mut browser = Self { process, socket, last_id: 0, session: String::new(), complaints: Vec::new(), folder };
+        let mut browser = Self { process, socket, last_id: 0, session: String::new(), errors: Vec::new(), folder };
         let target = browser.call("Target.createTarget", &json!({"url": "about:blank"}))["targetId"].clone();
         let attached = browser.call("Target.attachToTarget", &json!({"targetId": target, "flatten": true}));
         attached["sessionId"].as_str().expect("a session").clone_into(&mut browser.session);
@@ -64,7 +64,7 @@ impl Browser {
         browser
     }
 
-    /// Calls a method, and gives its result.
+    /// Calls a method; returns its result.
     ///
     /// # Panics
     /// If the browser has ended, or refuses.
@@ -77,18 +77,18 @@ impl Browser {
         self.socket.send(Message::from(call.to_string())).expect("it runs");
         loop {
             let Message::Text(text) = self.socket.read().expect("it runs") else { continue };
-            let mut message: Value = serde_json::from_str(&text).expect("it says JSON");
+            let mut message: Value = serde_json::from_str(&text).expect("the browser sends JSON");
             if message["id"] == self.last_id {
                 assert!(message["error"].is_null(), "{method}: {}", message["error"]);
                 return message["result"].take();
             }
             if let Some("Runtime.exceptionThrown" | "Log.entryAdded") = message["method"].as_str() {
-                self.complaints.push(message["params"].to_string());
+                self.errors.push(message["params"].to_string());
             }
         }
     }
 
-    /// As wide and high as a screen, light or dark.
+    /// Sets the size of the screen, and light or dark.
     pub fn screen(&mut self, [width, height]: [u32; 2], scheme: &str) {
         let metrics = json!({"width": width, "height": height, "deviceScaleFactor": 1, "mobile": width < 600});
         self.call("Emulation.setDeviceMetricsOverride", &metrics);
@@ -96,14 +96,14 @@ impl Browser {
         self.call("Emulation.setEmulatedMedia", &json!({"features": features}));
     }
 
-    /// Opens a page, and waits until all of it is there.
+    /// Opens a page, and waits until it is complete.
     pub fn open(&mut self, address: &str) {
         self.call("Page.navigate", &json!({"url": address}));
         let page = address.split('#').next().unwrap_or_default();
         self.wait_for(&format!("document.readyState === 'complete' && document.URL.startsWith('{page}')"));
     }
 
-    /// What an expression of JavaScript comes to; a promise, when it is kept.
+    /// Evaluates an expression of JavaScript; of a promise, its result.
     ///
     /// # Panics
     /// If the expression throws.
@@ -120,14 +120,14 @@ impl Browser {
         text.as_str().unwrap_or_default().to_owned()
     }
 
-    /// Waits until an expression is true, and says how long it took.
+    /// Waits until an expression is true; returns the time that it took.
     ///
     /// # Panics
-    /// If it is not so within a minute.
+    /// If it is not true within a minute.
     pub fn wait_for(&mut self, expression: &str) -> Duration {
         let start = Instant::now();
         while self.value(expression) != true {
-            assert!(start.elapsed() < PATIENCE, "{expression} never came; {:?}", self.complaints);
+            assert!(start.elapsed() < TIMEOUT, "{expression} never came; {:?}", self.errors);
             std::thread::sleep(Duration::from_millis(10));
         }
         start.elapsed()
@@ -141,28 +141,44 @@ impl Browser {
         }
     }
 
-    /// Waits for a download, and gives what is in it.
+    /// Waits for a download; returns its text.
     ///
     /// # Panics
-    /// If there is none within a minute.
+    /// If it is missing after a minute.
     pub fn download(&mut self, name: &str) -> String {
         let path = self.folder.path().join("downloads").join(name);
         let start = Instant::now();
         while !path.is_file() {
-            assert!(start.elapsed() < PATIENCE, "{name} was never downloaded; {:?}", self.complaints);
+            assert!(start.elapsed() < TIMEOUT, "{name} was never downloaded; {:?}", self.errors);
             std::thread::sleep(Duration::from_millis(20));
         }
         fs::read_to_string(path).expect("it is text")
     }
 
-    /// Leaves a picture of the whole page in `target/browser`.
+    /// Writes a picture of the whole page to `target/browser`.
     ///
     /// # Panics
     /// If it cannot be written.
     pub fn picture(&mut self, name: &str) {
-        let picture = self.call("Page.captureScreenshot", &json!({"format": "png", "captureBeyondViewport": true}));
+        self.capture(name, &json!({"format": "png", "captureBeyondViewport": true}));
+    }
+
+    /// Leaves a picture of one element, which an expression of JavaScript selects, in `target/browser`.
+    ///
+    /// # Panics
+    /// If there is no such element, or the picture cannot be written.
+    pub fn picture_of(&mut self, name: &str, element: &str) {
+        let rectangle = self.value(&format!(
+            "(({{x, y, width, height}}) => ({{x: x + scrollX, y: y + scrollY, width, height, scale: 1}}))\
+             ({element}.getBoundingClientRect())"
+        ));
+        self.capture(name, &json!({"format": "png", "captureBeyondViewport": true, "clip": rectangle}));
+    }
+
+    fn capture(&mut self, name: &str, parameters: &Value) {
+        let picture = self.call("Page.captureScreenshot", parameters);
         // target/debug/deps/browser-…
-        let own = env::current_exe().expect("the system tells");
+        let own = env::current_exe().expect("the program's own path");
         let target = own.ancestors().nth(3).expect("cargo's folder").join("browser");
         fs::create_dir_all(&target).expect("cargo's folder can be written to");
         let picture = BASE64_STANDARD.decode(picture["data"].as_str().expect("a picture")).expect("a picture");

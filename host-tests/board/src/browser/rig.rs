@@ -1,4 +1,4 @@
-//! The tools as they are used: the virtual Due on a pseudo-terminal, and `proprio monitor` on that.
+//! The tools as users run them: the virtual Due on a pseudo-terminal, and `proprio monitor` connected to it.
 
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
@@ -12,9 +12,9 @@ use crate::due::{DueProcess, tool};
 pub struct MonitorRun {
     due: Option<DueProcess>,
     monitor: Child,
-    /// What the monitor has printed.
+    /// The page's address, as the monitor printed it.
     pub address: String,
-    /// Where it records.
+    /// Folder of its recordings.
     pub folder: TempDir,
 }
 
@@ -56,12 +56,12 @@ impl MonitorRun {
         Self { due, monitor, address: address.trim().to_owned(), folder }
     }
 
-    /// `unplug imu3`, `plug imu3`, `unplug bend2a`.
+    /// Injects a fault: `unplug imu3`, `plug imu3`, `unplug bend2a`.
     ///
     /// # Panics
     /// If there is no board.
-    pub fn hand(&mut self, line: &str) {
-        self.due.as_mut().expect("there is a board").hand(line);
+    pub fn inject_fault(&mut self, line: &str) {
+        self.due.as_mut().expect("there is a board").inject_fault(line);
     }
 
     /// The address without the token.
@@ -73,7 +73,7 @@ impl MonitorRun {
 
 impl Drop for MonitorRun {
     fn drop(&mut self) {
-        // It may have ended by itself.
+        // It may have ended already.
         let _ = self.monitor.kill();
         let _ = self.monitor.wait();
     }

@@ -7,7 +7,7 @@ use std::process::{Child, Command, Stdio};
 
 use crate::terminal::Terminal;
 use crate::tools::{Running, folder, proprio, replayed, table};
-use virtual_due::rig::{Held, Rail};
+use virtual_due::rig::{HeldLow, Rail};
 
 /// Half a second up to 60 kPa on module 1's right, a second of that, and a step down to 20 kPa on module 2's left.
 const PROFILE: &str = "time_s,pressure1_kpa,pressure2_kpa,pressure3_kpa,pressure4_kpa,pressure5_kpa,pressure6_kpa\n\
@@ -26,15 +26,15 @@ fn start(folder: &Path, terminal: &Terminal, arguments: &[&str]) -> Running {
 fn run(terminal: &mut Terminal, child: &mut Child, mut see: impl FnMut([f64; 6])) {
     terminal.run_until(|machine| {
         see(machine.world().set_points_pa());
-        child.try_wait().expect("it can be asked").is_some()
+        child.try_wait().expect("its state is readable").is_some()
     });
 }
 
-/// Its exit status, and what it said.
+/// Its exit status and its messages.
 fn ended(mut drive: Running) -> (Option<i32>, String) {
-    let mut said = String::new();
-    drive.0.stderr.take().expect("a pipe").read_to_string(&mut said).expect("the tool writes UTF-8");
-    (drive.0.wait().expect("it has ended").code(), said)
+    let mut messages = String::new();
+    drive.0.stderr.take().expect("a pipe").read_to_string(&mut messages).expect("the tool writes UTF-8");
+    (drive.0.wait().expect("it has ended").code(), messages)
 }
 
 fn is_vented(terminal: &Terminal) -> bool {
@@ -66,14 +66,14 @@ fn a_profile_is_followed_and_recorded_and_ends_vented() {
         before = set_points;
     });
     assert!(is_vented(&terminal));
-    let (code, said) = ended(drive);
-    assert_eq!(code, Some(0), "{said}");
+    let (code, messages) = ended(drive);
+    assert_eq!(code, Some(0), "{messages}");
     for (found, asked) in highest.into_iter().zip([60e3, 0.0, 0.0, 20e3, 0.0, 0.0]) {
         assert!((found - asked).abs() <= STEP_PA, "{highest:?}");
     }
     // Set-points come every 50 ms, and may be late by as much.
     assert!(longest_step <= 15e3 + STEP_PA, "{longest_step} Pa at once");
-    assert!(said.contains("in a step before row 4") && said.contains(", vented"), "{said}");
+    assert!(messages.contains("in a step before row 4") && messages.contains(", vented"), "{messages}");
     let (equal, report) = replayed(&folder, "drive.mcap");
     assert!(equal > 300 && report.contains("\"not_compared\":0"), "{report}");
 }
@@ -99,52 +99,53 @@ fn an_interrupt_vents_at_once() {
     // It would be held for longer if the board had done it.
     assert!(terminal.machine.seconds() < interrupted_s + 0.5);
     run(&mut terminal, &mut drive.0, |_| {});
-    let (code, said) = ended(drive);
-    assert_eq!(code, Some(0), "{said}");
-    assert!(said.contains(", vented") && !said.contains("before the end"), "{said}");
+    let (code, messages) = ended(drive);
+    assert_eq!(code, Some(0), "{messages}");
+    assert!(messages.contains(", vented") && !messages.contains("before the end"), "{messages}");
 }
 
 #[test]
-fn a_board_that_restarts_is_driven_no_more() {
+fn a_drive_ends_when_the_board_restarts() {
     let (mut terminal, mut drive) = drive_and("drive restarted", |_| {});
     terminal.machine.press_reset();
     run(&mut terminal, &mut drive.0, |_| {});
-    let (code, said) = ended(drive);
-    assert_eq!(code, Some(2), "{said}");
-    assert!(said.contains("restarted") && is_vented(&terminal), "{said}");
+    let (code, messages) = ended(drive);
+    assert_eq!(code, Some(2), "{messages}");
+    assert!(messages.contains("restarted") && is_vented(&terminal), "{messages}");
 }
 
-/// Starts a drive on a board that must not be armed, and gives what it says of that.
+/// Starts a drive on a board that must not be armed; returns its messages.
 fn refused(name: &str, terminal: &mut Terminal, arguments: &[&str]) -> String {
     let folder = folder(name);
     let mut drive = start(&folder, terminal, arguments);
     run(terminal, &mut drive.0, |set_points| assert!(set_points.iter().all(|pressure_pa| *pressure_pa < 1.0)));
-    let (code, said) = ended(drive);
-    assert_eq!(code, Some(2), "{said}");
+    let (code, messages) = ended(drive);
+    assert_eq!(code, Some(2), "{messages}");
     assert!(!folder.join("drive.mcap").exists());
-    said
+    messages
 }
 
 #[test]
 fn a_board_with_another_table_is_not_armed() {
     let other = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tables/trunk-planar.toml").display().to_string();
-    let said = refused("drive table", &mut Terminal::new(), &["profile.csv", "--table", &other, "-o", "drive.mcap"]);
-    assert!(said.contains("the pressures stay vented") && said.contains("another table"), "{said}");
+    let messages =
+        refused("drive table", &mut Terminal::new(), &["profile.csv", "--table", &other, "-o", "drive.mcap"]);
+    assert!(messages.contains("the pressures stay vented") && messages.contains("another table"), "{messages}");
 }
 
 #[test]
 fn a_board_without_any_imu_is_not_armed() {
     let mut terminal = Terminal::new();
-    terminal.machine.world_mut().faults.sda = Some(Held::Forever);
-    let said = refused("drive blind", &mut terminal, &["profile.csv"]);
-    assert!(said.contains("no IMU reads well"), "{said}");
+    terminal.machine.world_mut().faults.sda = Some(HeldLow::UntilRemoved);
+    let messages = refused("drive blind", &mut terminal, &["profile.csv"]);
+    assert!(messages.contains("no IMU reads well"), "{messages}");
 }
 
 #[test]
-fn a_board_that_holds_the_pressures_back_is_driven_no_more() {
+fn a_drive_ends_when_the_board_holds_the_pressures_back() {
     let mut terminal = Terminal::new();
     terminal.machine.world_mut().faults.bend[2] = Some(Rail::High);
     terminal.machine.world_mut().faults.bend[3] = Some(Rail::Low);
-    let said = refused("drive held back", &mut terminal, &["--kpa", "80,0,80,0,80,0"]);
-    assert!(said.contains("the board keeps pressure 1 at 0.0 kPa"), "{said}");
+    let messages = refused("drive held back", &mut terminal, &["--kpa", "80,0,80,0,80,0"]);
+    assert!(messages.contains("the board keeps pressure 1 at 0.0 kPa"), "{messages}");
 }

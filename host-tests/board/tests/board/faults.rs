@@ -1,19 +1,19 @@
-//! What the board survives, and what it says of it afterwards.
+//! Faults that the board survives, and its reports afterwards.
 
 use board_tests::Board;
 use rig_twin::Scenario;
 use telemetry::{Command, Event, Outcome, ResetCause, SetPressures};
 use virtual_due::Rig;
-use virtual_due::rig::Held;
+use virtual_due::rig::HeldLow;
 
-/// The core's register that disables interrupts 0 to 31 (ARMv7-M, B3.4.5).
+/// Address of the core's register that disables interrupts 0 to 31 (ARMv7-M, B3.4.5).
 const NVIC_ICER0: u32 = 0xE000_E180;
 
 /// Interrupt of TC0's channel 0: the tick.
 const TC0: u32 = 27;
 
 fn ready() -> Board {
-    let mut board = Board::new(Rig::new(Scenario::One, 1));
+    let mut board = Board::new(Rig::new(Scenario::FreeSwing, 1));
     board.run_ms(1500);
     board
 }
@@ -21,14 +21,14 @@ fn ready() -> Board {
 #[test]
 fn the_watchdog_bites_a_stuck_task_and_the_arm_is_vented() {
     let mut board = ready();
-    assert_eq!(board.ask(Command::Arm), Outcome::Ack);
+    assert_eq!(board.request(Command::Arm), Outcome::Ack);
     let pressures = SetPressures { pressures_pa: [100_000; 6], valid_ms: 1000 };
-    assert_eq!(board.ask(Command::SetPressures(pressures)), Outcome::Ack);
+    assert_eq!(board.request(Command::SetPressures(pressures)), Outcome::Ack);
     assert!(board.machine.poke_core(NVIC_ICER0, 1 << TC0), "the tick is stuck");
     board.run_ms(250);
     assert!(board.is_vented());
     board.run_ms(100);
-    let hello = board.hellos().next_back().expect("a board greets");
+    let hello = board.hellos().next_back().expect("a board sends `Hello`");
     assert_eq!((hello.reset, hello.boot), (ResetCause::Watchdog, 2));
 }
 
@@ -37,26 +37,26 @@ fn a_reset_by_the_port_starts_over() {
     let mut board = ready();
     board.machine.press_reset();
     board.run_ms(100);
-    let hello = board.hellos().next_back().expect("a board greets");
+    let hello = board.hellos().next_back().expect("a board sends `Hello`");
     assert_eq!((hello.reset, hello.boot), (ResetCause::Pin, 2));
 }
 
 #[test]
 fn a_stuck_bus_costs_the_imus_and_no_tick() {
     let mut board = ready();
-    board.machine.world_mut().faults.sda = Some(Held::Forever);
+    board.machine.world_mut().faults.sda = Some(HeldLow::UntilRemoved);
     board.run_ms(1000);
     let sample = board.samples().next_back().expect("samples come");
     assert!(sample.imu.iter().all(Option::is_none) && sample.bend.iter().all(Option::is_some), "{sample:?}");
     let estimate = board.estimates().next_back().expect("estimates come");
-    assert!(estimate.segments.iter().all(Option::is_some), "the bend sensors go on");
+    assert!(estimate.segments.iter().all(Option::is_some), "the bend sensors are still used");
     assert_eq!(board.healths().next_back().expect("health comes").overruns, 0);
 }
 
 #[test]
 fn a_bus_that_a_unit_holds_is_clocked_free() {
     let mut board = ready();
-    board.machine.world_mut().faults.sda = Some(Held::Clocks(5));
+    board.machine.world_mut().faults.sda = Some(HeldLow::Clocks(5));
     board.run_ms(1500);
     assert!(board.events().any(|event| event == Event::BusRecovery));
     let sample = board.samples().next_back().expect("samples come");

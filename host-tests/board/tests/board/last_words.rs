@@ -1,4 +1,4 @@
-//! What the board says after a fault, a panic or a boot loop, and that the arm is vented before all else.
+//! Reports of the board after a fault, a panic or a boot loop; the arm is vented before all else.
 //!
 //! The firmware is the one that users flash. It is broken as hardware breaks: a debugger writes over its flash or its RAM
 //! while it runs.
@@ -11,10 +11,10 @@ use virtual_due::{CYCLES_PER_SECOND, Cycles, Rig};
 
 const PRESSURES: Command = Command::SetPressures(SetPressures { pressures_pa: [100_000; 6], valid_ms: 1000 });
 
-/// How finely a crash is looked at: the last words alone take longer to write.
+/// Time between two looks at a crashing board: shorter than writing the last words takes.
 const STEP: Cycles = CYCLES_PER_SECOND / 200_000;
 
-/// From the crash to the greeting after it.
+/// Longest time from the crash to the `Hello` after it, ms.
 const BACK_WITHIN_MS: u64 = 250;
 
 /// `udf #0`.
@@ -23,15 +23,15 @@ const UNDEFINED: [u8; 2] = [0x00, 0xDE];
 /// `b .`
 const STANDSTILL: [u8; 2] = [0xFE, 0xE7];
 
-/// `push {r0-r7}` for ever.
+/// `push {r0-r7}` in an endless loop.
 const RECURSION: [u8; 4] = [0xFF, 0xB4, 0xFD, 0xE7];
 
 /// A board whose arm is under pressure.
 fn under_pressure() -> Board {
-    let mut board = Board::new(Rig::new(Scenario::One, 1));
+    let mut board = Board::new(Rig::new(Scenario::FreeSwing, 1));
     board.run_ms(1500);
-    assert_eq!(board.ask(Command::Arm), Outcome::Ack);
-    assert_eq!(board.ask(PRESSURES), Outcome::Ack);
+    assert_eq!(board.request(Command::Arm), Outcome::Ack);
+    assert_eq!(board.request(PRESSURES), Outcome::Ack);
     assert!(!board.is_vented());
     board
 }
@@ -50,7 +50,7 @@ fn crash(board: &mut Board) {
     assert_eq!(board.machine.resets().len(), resets + 1);
 }
 
-/// Breaks the code of the tick, and mends it once the board has crashed. Gives the place that was broken.
+/// Breaks the code of the tick, and repairs it once the board has crashed. Returns the address of the broken code.
 fn break_the_tick(board: &mut Board, code: &[u8]) -> u32 {
     let tick = board.machine.symbol("TC0").expect("the tick is the timer's interrupt");
     let whole = board.machine.peek(tick, code.len()).expect("it is in flash");
@@ -60,7 +60,7 @@ fn break_the_tick(board: &mut Board, code: &[u8]) -> u32 {
     tick
 }
 
-/// Has a task find that it had returned, which no task does: all bytes of its state are 1.
+/// Makes a task's state that of a future that has returned, which no task does: all its bytes are 1.
 fn break_a_task(board: &mut Board) {
     let file = object::File::parse(firmware()).expect("cargo built an ELF");
     let named = |symbol: &Symbol| symbol.name().is_ok_and(|name| name.contains("__rtic_internal_commands_EXEC"));
@@ -68,14 +68,14 @@ fn break_a_task(board: &mut Board) {
     assert!(board.machine.poke(state.address() as u32, &vec![1; state.size() as usize]));
 }
 
-/// What the board says of itself after a crash.
+/// The board's `Hello` after a crash.
 fn hello_after(board: &mut Board) -> Hello {
     board.run_ms(BACK_WITHIN_MS);
-    let hello = board.hellos().next_back().expect("a board greets").clone();
+    let hello = board.hellos().next_back().expect("a board sends `Hello`").clone();
     let samples = board.samples().count();
     board.run_ms(1000);
-    assert!(board.samples().count() > samples + 90, "and goes on");
-    assert!(board.is_vented(), "nothing moves by itself");
+    assert!(board.samples().count() > samples + 90, "sampling continues");
+    assert!(board.is_vented(), "nothing moves without a request");
     hello
 }
 
@@ -84,7 +84,7 @@ fn last_words(hello: &Hello) -> &str {
 }
 
 #[test]
-fn a_fault_vents_the_arm_and_tells_where_it_was() {
+fn a_fault_vents_the_arm_and_reports_its_address() {
     let mut board = under_pressure();
     let pc = break_the_tick(&mut board, &UNDEFINED);
     let hello = hello_after(&mut board);
@@ -103,13 +103,13 @@ fn a_stack_that_overflows_is_a_fault_and_harms_nothing_else() {
 }
 
 #[test]
-fn a_panic_vents_the_arm_and_tells_its_message() {
+fn a_panic_vents_the_arm_and_reports_its_message() {
     let mut board = under_pressure();
     break_a_task(&mut board);
     crash(&mut board);
     let hello = hello_after(&mut board);
     assert_eq!((hello.reset, hello.boot), (ResetCause::Software, 2));
-    let place_and_message = last_words(&hello).split_once(": ").expect("both are told");
+    let place_and_message = last_words(&hello).split_once(": ").expect("place and message");
     assert!(place_and_message.0.contains(".rs:"), "{hello:?}");
     assert_eq!(place_and_message.1, "`async fn` resumed after completion");
 }
@@ -117,7 +117,7 @@ fn a_panic_vents_the_arm_and_tells_its_message() {
 #[test]
 fn a_task_that_stands_still_is_named_after_the_watchdogs_reset() {
     let mut board = under_pressure();
-    let dispatcher = board.machine.symbol("SSC").expect("RTIC runs the shape's task from it");
+    let dispatcher = board.machine.symbol("SSC").expect("RTIC runs the estimation task from it");
     let whole = board.machine.peek(dispatcher, STANDSTILL.len()).expect("it is in flash");
     assert!(board.machine.poke(dispatcher, &STANDSTILL));
     board.run_ms(BACK_WITHIN_MS);
@@ -133,14 +133,14 @@ fn the_arm_moves_after_a_crash_only_when_armed_again() {
     let mut board = under_pressure();
     break_the_tick(&mut board, &UNDEFINED);
     hello_after(&mut board);
-    assert_eq!(board.ask(PRESSURES), Outcome::Nack(Refusal::Disarmed));
-    assert_eq!(board.ask(Command::Arm), Outcome::Ack);
-    assert_eq!(board.ask(PRESSURES), Outcome::Ack);
+    assert_eq!(board.request(PRESSURES), Outcome::Nack(Refusal::Disarmed));
+    assert_eq!(board.request(Command::Arm), Outcome::Ack);
+    assert_eq!(board.request(PRESSURES), Outcome::Ack);
     assert!(!board.is_vented());
 }
 
 #[test]
-fn last_words_are_told_once() {
+fn last_words_are_reported_once() {
     let mut board = under_pressure();
     break_the_tick(&mut board, &UNDEFINED);
     board.run_ms(BACK_WITHIN_MS);
@@ -155,14 +155,14 @@ fn three_crashes_in_a_minute_leave_the_arm_vented_and_the_telemetry_alive() {
     for crashes in 1..=3 {
         break_the_tick(&mut board, &UNDEFINED);
         assert_eq!(hello_after(&mut board).boot, crashes + 1);
-        assert_eq!(board.ask(Command::Arm), Outcome::Ack);
-        assert_eq!(board.ask(PRESSURES), Outcome::Ack);
+        assert_eq!(board.request(Command::Arm), Outcome::Ack);
+        assert_eq!(board.request(PRESSURES), Outcome::Ack);
         assert_eq!(board.is_vented(), crashes == 3, "after {crashes} crashes");
     }
-    let said = |board: &Board| [board.samples().count(), board.estimates().count(), board.healths().count()];
-    let before = said(&board);
+    let counts = |board: &Board| [board.samples().count(), board.estimates().count(), board.healths().count()];
+    let before = counts(&board);
     board.run_ms(10_000);
-    for (before, after) in before.into_iter().zip(said(&board)) {
+    for (before, after) in before.into_iter().zip(counts(&board)) {
         assert!(after >= before + 49, "{before} messages, {after} after 10 s");
     }
     assert!(board.is_vented());

@@ -1,10 +1,10 @@
-//! The host's link on a serial port of the system: a board that is reset, and a cable that is pulled and comes back.
+//! The host's link on a serial port of the system: a board that is reset, and a cable that is unplugged and plugged in again.
 
 use std::os::unix::fs::symlink;
 use std::path::Path;
 use std::time::Duration;
 
-use proprio_link::{Baud, Link, PortSource, Subscription, What};
+use proprio_link::{Baud, EventKind, Link, PortSource, Subscription};
 
 use crate::terminal::Terminal;
 use crate::tools::folder;
@@ -20,7 +20,7 @@ fn run_until_received(terminal: &mut Terminal, link: &Link, frames: u32) {
 }
 
 #[test]
-fn a_reset_of_the_board_is_told_from_lost_frames() {
+fn a_reset_of_the_board_is_distinguished_from_lost_frames() {
     let mut terminal = Terminal::new();
     let (link, events) = open(terminal.port());
     run_until_received(&mut terminal, &link, 200);
@@ -29,11 +29,12 @@ fn a_reset_of_the_board_is_told_from_lost_frames() {
     let state = link.state();
     assert_eq!((state.restarts, state.counts.lost, state.reopened), (1, 0, 0));
     assert_eq!(state.hello.map(|hello| hello.boot), Some(2));
-    let told = std::iter::from_fn(|| events.next(Duration::ZERO)).filter(|event| matches!(event.what, What::Restarted));
+    let told =
+        std::iter::from_fn(|| events.next(Duration::ZERO)).filter(|event| matches!(event.kind, EventKind::Restarted));
     assert_eq!(told.count(), 1);
 }
 
-/// A port that goes and comes back by the same name, as udev's links do, with a board that has lost its power meanwhile:
+/// A port that vanishes and returns under the same name, as udev's links do, with a board that has lost its power meanwhile:
 /// its boots are numbered from 1 again.
 #[test]
 fn a_cable_that_comes_back_is_opened_again_and_nothing_counts_as_lost() {
@@ -46,8 +47,8 @@ fn a_cable_that_comes_back_is_opened_again_and_nothing_counts_as_lost() {
 
     std::fs::remove_file(&name).expect("it is there");
     drop(terminal);
-    let lost =
-        std::iter::from_fn(|| events.next(Duration::from_secs(20))).find(|event| matches!(event.what, What::Lost(_)));
+    let lost = std::iter::from_fn(|| events.next(Duration::from_secs(20)))
+        .find(|event| matches!(event.kind, EventKind::Lost(_)));
     assert!(lost.is_some(), "it is told that the line is gone");
     assert_eq!(link.state().port, None);
 
@@ -56,5 +57,5 @@ fn a_cable_that_comes_back_is_opened_again_and_nothing_counts_as_lost() {
     run_until_received(&mut terminal, &link, 400);
     let state = link.state();
     assert_eq!((state.reopened, state.restarts, state.counts.lost), (1, 1, 0));
-    assert!(state.greeted && state.port.is_some());
+    assert!(state.is_connected && state.port.is_some());
 }

@@ -1,4 +1,4 @@
-//! What users rely on of the firmware, on the emulated board.
+//! Behaviour of the firmware that users rely on, tested on the emulated board.
 
 mod boot;
 #[cfg(unix)]

@@ -1,4 +1,4 @@
-//! What noise on the firmware's own line does to the host's link: nothing but losses, counted to the frame.
+//! Noise on the firmware's own line costs the host's link frames, each of them counted, and nothing else.
 
 use std::cell::{Cell, RefCell};
 use std::collections::HashSet;
@@ -6,7 +6,7 @@ use std::process::Command;
 use std::rc::Rc;
 use std::time::Duration;
 
-use proprio_link::{Baud, Link, LinkState, PortSource, Subscription, What};
+use proprio_link::{Baud, EventKind, Link, LinkState, PortSource, Subscription};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 use telemetry::{Decoder, Message};
@@ -25,20 +25,20 @@ struct Noise {
     /// Bytes of the frame that the board is sending.
     frame: Vec<u8>,
     stretch: Vec<Vec<u8>>,
-    /// What the board has sent, frame by frame, and what came out of the line.
+    /// Frames that the board has sent, and bytes that came out of the line.
     sent: Vec<Vec<u8>>,
-    heard: Vec<u8>,
-    /// How often each kind of disturbance has happened.
+    received: Vec<u8>,
+    /// Number of disturbances of each kind.
     done: [usize; 3],
 }
 
 impl Noise {
     fn new(seed: u64, quiet: usize) -> Self {
         let (random, frame, stretch) = (ChaCha8Rng::seed_from_u64(seed), Vec::new(), Vec::new());
-        Self { random, quiet, frame, stretch, sent: Vec::new(), heard: Vec::new(), done: [0; 3] }
+        Self { random, quiet, frame, stretch, sent: Vec::new(), received: Vec::new(), done: [0; 3] }
     }
 
-    /// Takes bytes of the board; gives those that come out, a stretch at a time.
+    /// Disturbs bytes of the board; returns those that come out, a stretch at a time.
     fn disturb(&mut self, bytes: Vec<u8>, is_noisy: bool) -> Vec<u8> {
         let mut out = Vec::new();
         for byte in bytes {
@@ -50,7 +50,7 @@ impl Noise {
                 out.extend(self.stretch_out(is_noisy));
             }
         }
-        self.heard.extend(&out);
+        self.received.extend(&out);
         out
     }
 
@@ -84,11 +84,11 @@ impl Noise {
 
     /// Runs of bytes between zeros that came out of the line.
     fn blocks(&self) -> impl Iterator<Item = &[u8]> {
-        self.heard.split_inclusive(|byte| *byte == 0).filter(|block| *block != [0])
+        self.received.split_inclusive(|byte| *byte == 0).filter(|block| *block != [0])
     }
 }
 
-/// What the link says of ten seconds of noise.
+/// Messages and state of the link after ten seconds of noise.
 fn listen(noise: &Rc<RefCell<Noise>>) -> (Vec<Message>, LinkState) {
     let mut terminal = Terminal::new();
     let source = PortSource::new(Some(terminal.port().to_owned()), Baud::default());
@@ -100,10 +100,10 @@ fn listen(noise: &Rc<RefCell<Noise>>) -> (Vec<Message>, LinkState) {
     let mut messages = Vec::new();
     terminal.run_until(|machine| {
         is_noisy.set(machine.seconds() < 10.0);
-        // Frames behind the last disturbance show what it has destroyed.
+        // Frames after the last disturbance reveal the frames that it has destroyed.
         is_over.set(machine.seconds() > 10.5);
         take(&events, &mut messages);
-        is_over.get() && link.state().bytes == noise.borrow().heard.len() as u64
+        is_over.get() && link.state().bytes == noise.borrow().received.len() as u64
     });
     take(&events, &mut messages);
     (messages, link.state())
@@ -111,9 +111,9 @@ fn listen(noise: &Rc<RefCell<Noise>>) -> (Vec<Message>, LinkState) {
 
 fn take(events: &Subscription, messages: &mut Vec<Message>) {
     while let Some(event) = events.next(Duration::ZERO) {
-        match event.what {
-            What::Message(message) => messages.push(message),
-            What::Opened(_) | What::Bytes(_) | What::Undecoded(_) => {}
+        match event.kind {
+            EventKind::Message(message) => messages.push(message),
+            EventKind::Opened(_) | EventKind::Bytes(_) | EventKind::Undecoded(_) => {}
             other => panic!("one run of one board: {other:?}"),
         }
     }
@@ -121,23 +121,23 @@ fn take(events: &Subscription, messages: &mut Vec<Message>) {
 
 #[test]
 fn noise_on_the_firmwares_line_costs_frames_that_are_counted_and_no_bad_one_is_accepted() {
-    // The first frames have the greeting, where counting begins.
+    // The first frames contain the `Hello`, from which frames are counted.
     let noise = Rc::new(RefCell::new(Noise::new(6, 8)));
     let (accepted, state) = listen(&noise);
     let noise = noise.borrow();
     assert!(noise.done.iter().all(|times| *times > 40), "{:?}", noise.done);
 
-    // Judged by the bytes alone: a frame has come whole where its bytes stand between two zeros.
+    // Decided by the bytes alone: a frame has arrived whole where its bytes stand between two zeros.
     let sent: HashSet<&[u8]> = noise.sent.iter().map(Vec::as_slice).collect();
     assert_eq!(sent.len(), noise.sent.len(), "frames are numbered");
     let whole: Vec<&[u8]> = noise.blocks().filter(|block| sent.contains(block)).collect();
     let mut decoder = Decoder::new();
-    let said =
+    let decoded =
         |frame: &&[u8]| frame.iter().find_map(|byte| decoder.push(*byte)).expect("a frame").expect("it is whole");
-    assert_eq!(accepted, whole.iter().map(said).collect::<Vec<Message>>());
+    assert_eq!(accepted, whole.iter().map(decoded).collect::<Vec<Message>>());
 
-    let heard: HashSet<&[u8]> = whole.into_iter().collect();
-    let destroyed = sent.difference(&heard).count();
+    let arrived: HashSet<&[u8]> = whole.into_iter().collect();
+    let destroyed = sent.difference(&arrived).count();
     assert!(destroyed > 100, "{destroyed} frames");
     assert_eq!(state.counts.lost as usize, destroyed);
     assert_eq!(state.counts.damaged as usize, noise.blocks().filter(|block| !sent.contains(block)).count());
@@ -161,5 +161,5 @@ fn a_recording_over_a_noisy_line_replays_bit_for_bit_what_has_no_gap_before_it()
     assert!(report.contains("\"table_matches\":true"), "{report}");
     done(&folder, &["convert", "noisy.mcap", "noisy.bin"]);
     let recorded = std::fs::read(folder.join("noisy.bin")).expect("it was written");
-    assert!(noise.borrow().heard.starts_with(&recorded), "every byte is recorded as it came");
+    assert!(noise.borrow().received.starts_with(&recorded), "every byte is recorded as it came");
 }

@@ -1,4 +1,4 @@
-//! Pressures: only when armed, and never for longer than somebody asks for them.
+//! Pressures: only when armed, and only as long as a host renews them.
 
 use board_tests::Board;
 use estimator_core::Q;
@@ -10,7 +10,7 @@ use virtual_due::Rig;
 const RIGHT: SetPressures = SetPressures { pressures_pa: [100_000, 0, 100_000, 0, 100_000, 0], valid_ms: 200 };
 
 fn ready() -> Board {
-    let mut board = Board::new(Rig::new(Scenario::One, 1));
+    let mut board = Board::new(Rig::new(Scenario::FreeSwing, 1));
     board.run_ms(2500);
     board
 }
@@ -23,27 +23,27 @@ fn a_board_comes_up_vented() {
 #[test]
 fn pressures_move_only_when_armed() {
     let mut board = ready();
-    assert_eq!(board.ask(Command::SetPressures(RIGHT)), Outcome::Nack(Refusal::Disarmed));
+    assert_eq!(board.request(Command::SetPressures(RIGHT)), Outcome::Nack(Refusal::Disarmed));
     assert!(board.is_vented());
 }
 
 #[test]
 fn set_pressures_reach_the_regulators() {
     let mut board = ready();
-    assert_eq!(board.ask(Command::Arm), Outcome::Ack);
-    assert_eq!(board.ask(Command::SetPressures(RIGHT)), Outcome::Ack);
-    for (found, asked) in board.machine.world().set_points_pa().into_iter().zip(RIGHT.pressures_pa) {
+    assert_eq!(board.request(Command::Arm), Outcome::Ack);
+    assert_eq!(board.request(Command::SetPressures(RIGHT)), Outcome::Ack);
+    for (commanded, requested) in board.machine.world().set_points_pa().into_iter().zip(RIGHT.pressures_pa) {
         // A step of the PWM is 67 Pa.
-        assert!((found - f64::from(asked)).abs() <= 67.0, "{found} Pa of {asked}");
+        assert!((commanded - f64::from(requested)).abs() <= 67.0, "{commanded} Pa of {requested}");
     }
 }
 
 #[test]
 fn the_arm_moves_and_the_estimate_follows() {
     let mut board = ready();
-    assert_eq!(board.ask(Command::Arm), Outcome::Ack);
+    assert_eq!(board.request(Command::Arm), Outcome::Ack);
     for _ in 0..30 {
-        assert_eq!(board.ask(Command::SetPressures(RIGHT)), Outcome::Ack);
+        assert_eq!(board.request(Command::SetPressures(RIGHT)), Outcome::Ack);
     }
     let truth = board.machine.world().truth();
     let tip = truth[5];
@@ -57,7 +57,7 @@ fn the_arm_moves_and_the_estimate_follows() {
 #[test]
 fn silence_vents_the_arm_within_one_and_a_half_seconds() {
     let mut board = ready();
-    assert_eq!(board.ask(Command::Arm), Outcome::Ack);
+    assert_eq!(board.request(Command::Arm), Outcome::Ack);
     board.send(Command::SetPressures(RIGHT));
     board.run_ms(1500);
     assert!(board.is_vented());
@@ -69,18 +69,18 @@ fn silence_vents_the_arm_within_one_and_a_half_seconds() {
 #[test]
 fn vented_pressures_stay_until_armed_again() {
     let mut board = ready();
-    assert_eq!(board.ask(Command::Arm), Outcome::Ack);
+    assert_eq!(board.request(Command::Arm), Outcome::Ack);
     board.send(Command::SetPressures(RIGHT));
     board.run_ms(1600);
-    assert_eq!(board.ask(Command::SetPressures(RIGHT)), Outcome::Nack(Refusal::Disarmed));
+    assert_eq!(board.request(Command::SetPressures(RIGHT)), Outcome::Nack(Refusal::Disarmed));
     assert!(board.is_vented());
 }
 
 #[test]
 fn disarm_vents_at_once() {
     let mut board = ready();
-    assert_eq!(board.ask(Command::Arm), Outcome::Ack);
-    assert_eq!(board.ask(Command::SetPressures(RIGHT)), Outcome::Ack);
+    assert_eq!(board.request(Command::Arm), Outcome::Ack);
+    assert_eq!(board.request(Command::SetPressures(RIGHT)), Outcome::Ack);
     board.send(Command::Disarm);
     board.run_ms(30);
     assert!(board.is_vented());

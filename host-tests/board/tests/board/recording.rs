@@ -1,4 +1,4 @@
-//! The tools as they are used: `proprio` records and monitors the firmware on the virtual Due over a pseudo-terminal, and
+//! The tools as users run them: `proprio` records and monitors the firmware on the virtual Due over a pseudo-terminal, and
 //! over pipes.
 
 use std::fs;
@@ -16,22 +16,22 @@ use crate::tools::{Running, done, folder, proprio, replayed, table};
 /// Size of a recording of 20 s, bytes: at most 150 kB a second.
 const LONG: u64 = 2_400_000;
 
-/// Records from a port until the file has so many bytes, and for a while after; then comes SIGKILL, at whatever byte it is.
+/// Records from a port until the file has `bytes` bytes, and for `wait` after that; then kills the recorder, at any byte.
 fn record_and_kill(folder: &Path, port: &str, name: &str, bytes: u64, wait: Duration) {
     let child = proprio(folder, &["record", "--port", port, "-o", name, "--table", &table()]).spawn();
     let mut recorder = Running(child.expect("the tool starts"));
     let end = Instant::now() + Duration::from_mins(5);
     while fs::metadata(folder.join(name)).map_or(0, |file| file.len()) < bytes {
-        assert!(recorder.0.try_wait().expect("it can be asked").is_none(), "it has ended by itself");
+        assert!(recorder.0.try_wait().expect("its state is readable").is_none(), "the recorder has ended");
         assert!(Instant::now() < end, "20 s take over five minutes");
         std::thread::sleep(Duration::from_millis(3));
     }
     std::thread::sleep(wait);
     recorder.0.kill().expect("it runs");
-    assert_eq!(recorder.0.wait().expect("it ends").code(), None, "it had ended by itself");
+    assert_eq!(recorder.0.wait().expect("it ends").code(), None, "the recorder had ended before");
 }
 
-/// Recovers a cut file and replays it; gives how many estimates are, bit for bit, the board's, and the report.
+/// Recovers a cut file and replays it; returns the number of estimates equal to the board's, bit for bit, and the report.
 fn recovered(folder: &Path, name: &str) -> (u64, String) {
     let _ = fs::remove_file(folder.join("whole.mcap"));
     done(folder, &["recover", name, "-o", "whole.mcap"]);
@@ -83,7 +83,7 @@ fn the_virtual_due_is_recorded_over_pipes() {
 }
 
 #[test]
-fn status_says_how_the_virtual_due_is() {
+fn status_shows_the_state_of_the_virtual_due() {
     let folder = folder("status");
     let status = done(&folder, &["status", "--virtual", "--firmware", "firmware", "--table", &table()]);
     for line in ["arm           planar-6", "the one given", "bend sensors  12 of 12 ok", "IMUs          6 of 6 ok"] {

@@ -6,13 +6,13 @@ use telemetry::{Command, Message, Outcome, Rates, Refusal, Request, ResetCause, 
 use virtual_due::Rig;
 
 fn ready() -> Board {
-    let mut board = Board::new(Rig::new(Scenario::One, 1));
+    let mut board = Board::new(Rig::new(Scenario::FreeSwing, 1));
     board.run_ms(1500);
     board
 }
 
 #[test]
-fn a_ping_is_answered_with_a_greeting() {
+fn a_ping_is_answered_with_a_hello() {
     let mut board = ready();
     let before = board.hellos().count();
     board.send(Command::Ping);
@@ -23,7 +23,10 @@ fn a_ping_is_answered_with_a_greeting() {
 #[test]
 fn rates_slow_the_stream_down() {
     let mut board = ready();
-    assert_eq!(board.ask(Command::Rates(Rates { sample: 0, estimate: 10, health: 0, uncertainty: 0 })), Outcome::Ack);
+    assert_eq!(
+        board.request(Command::Rates(Rates { sample: 0, estimate: 10, health: 0, uncertainty: 0 })),
+        Outcome::Ack
+    );
     let before = (board.samples().count(), board.estimates().count(), board.healths().count());
     board.run_ms(1000);
     let after = (board.samples().count(), board.estimates().count(), board.healths().count());
@@ -47,17 +50,17 @@ fn a_repeated_request_acts_once_and_is_answered_again() {
 #[test]
 fn a_pressure_over_the_range_is_refused() {
     let mut board = ready();
-    assert_eq!(board.ask(Command::Arm), Outcome::Ack);
+    assert_eq!(board.request(Command::Arm), Outcome::Ack);
     let over = SetPressures { pressures_pa: [0, 0, 0, 280_001, 0, 0], valid_ms: 100 };
-    assert_eq!(board.ask(Command::SetPressures(over)), Outcome::Nack(Refusal::OverRange));
+    assert_eq!(board.request(Command::SetPressures(over)), Outcome::Nack(Refusal::OverRange));
 }
 
 #[test]
 fn a_reboot_is_answered_and_then_done() {
     let mut board = ready();
-    assert_eq!(board.ask(Command::Reboot), Outcome::Ack);
+    assert_eq!(board.request(Command::Reboot), Outcome::Ack);
     board.run_ms(200);
-    let hello = board.hellos().next_back().expect("a board greets");
+    let hello = board.hellos().next_back().expect("a board sends `Hello`");
     assert_eq!((hello.reset, hello.boot), (ResetCause::Software, 2));
 }
 
@@ -72,7 +75,7 @@ fn a_flood_of_noise_changes_nothing_but_a_count() {
     let health = board.healths().next_back().expect("health comes");
     assert!(health.damaged_frames > 10, "{health:?}");
     assert_eq!((health.overruns, health.dropped_frames), (0, 0));
-    assert_eq!(board.ask(Command::Ping), Outcome::Ack);
+    assert_eq!(board.request(Command::Ping), Outcome::Ack);
 }
 
 #[test]

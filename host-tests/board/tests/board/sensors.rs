@@ -10,7 +10,7 @@ use virtual_due::rig::{ImuFault, Rail};
 
 /// A board whose sensors have all come up.
 fn ready() -> Board {
-    let mut board = Board::new(Rig::new(Scenario::One, 1));
+    let mut board = Board::new(Rig::new(Scenario::FreeSwing, 1));
     board.run_ms(1500);
     board
 }
@@ -27,7 +27,7 @@ fn twelve_bend_sensors_and_six_imus_arrive_with_values_of_their_own() {
 #[test]
 fn the_counts_of_each_bend_sensor_are_those_of_its_strip() {
     let board = ready();
-    // The arm rests, so that the twin's strips read now what they read in the last tick, but for noise.
+    // The arm rests, so that the twin's strips read the same now as in the last tick, but for noise.
     let strips = board.machine.world().twin().clone().adc_counts();
     let sample = board.samples().next_back().expect("samples come");
     for (sensor, (counts, strip)) in sample.bend.iter().zip(strips).enumerate() {
@@ -81,7 +81,7 @@ fn an_unplugged_imu_is_lost_alone() {
 
 #[test]
 fn an_imu_that_is_absent_at_boot_leaves_the_others_running() {
-    let mut rig = Rig::new(Scenario::One, 1);
+    let mut rig = Rig::new(Scenario::FreeSwing, 1);
     rig.faults.imus[2] = ImuFault::Unplugged;
     let mut board = Board::new(rig);
     board.run_ms(4000);
@@ -97,7 +97,7 @@ fn an_imu_that_is_absent_at_boot_leaves_the_others_running() {
 
 #[test]
 fn an_imu_that_is_plugged_in_later_is_taken_in() {
-    let mut rig = Rig::new(Scenario::One, 1);
+    let mut rig = Rig::new(Scenario::FreeSwing, 1);
     rig.faults.imus[4] = ImuFault::Unplugged;
     let mut board = Board::new(rig);
     board.run_ms(1500);

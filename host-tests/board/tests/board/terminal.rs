@@ -1,4 +1,4 @@
-//! The board on a pseudo-terminal, at the pace of the wall clock, with the test's hands on both the rig and the line.
+//! The board on a pseudo-terminal in real time; the test has access to the rig and to the line.
 
 use std::collections::VecDeque;
 use std::io::{Read, Write};
@@ -9,10 +9,10 @@ use rig_twin::Scenario;
 use serialport::{SerialPort, TTYPort};
 use virtual_due::{CYCLES_PER_SECOND, Machine, Rig};
 
-/// How long the board runs at a stretch, ms.
+/// Time that the board runs between two transfers, ms.
 const SLICE_MS: u64 = 2;
 
-/// Bytes that wait for who reads; what comes beyond is lost, as the USB bridge loses it.
+/// Bytes that wait for a reader; further ones are lost, as in the USB bridge.
 const ROOM: usize = 1 << 16;
 
 /// The board, and our end of its line.
@@ -21,7 +21,7 @@ pub struct Terminal {
     pub machine: Machine<Rig>,
     line: TTYPort,
     port: String,
-    /// What the line does to the board's bytes.
+    /// Disturbance of the line: the bytes that arrive for those that the board sent.
     pub disturb: Box<dyn FnMut(Vec<u8>) -> Vec<u8>>,
     to_host: VecDeque<u8>,
 }
@@ -32,24 +32,25 @@ impl Terminal {
         let (mut line, theirs) = TTYPort::pair().expect("the system has pseudo-terminals");
         let port = theirs.name().expect("it has a name");
         line.set_timeout(Duration::from_millis(1)).expect("it is set");
-        let machine = Machine::new(firmware(), Rig::new(Scenario::One, 1)).expect("cargo built an ELF for the board");
+        let machine =
+            Machine::new(firmware(), Rig::new(Scenario::FreeSwing, 1)).expect("cargo built an ELF for the board");
         Self { machine, line, port, disturb: Box::new(|bytes| bytes), to_host: VecDeque::new() }
     }
 
-    /// Where programs find the other end.
+    /// Path of the other end, for programs.
     pub fn port(&self) -> &str {
         &self.port
     }
 
-    /// Waits for the first byte, then lets the board run until `is_done`, which is asked every two milliseconds.
+    /// Waits for the first byte, then lets the board run until `is_done`, which is called every two milliseconds.
     ///
     /// # Panics
     /// After five minutes.
     pub fn run_until(&mut self, mut is_done: impl FnMut(&mut Machine<Rig>) -> bool) {
-        let patience = Instant::now() + Duration::from_mins(5);
+        let deadline = Instant::now() + Duration::from_mins(5);
         let (mut begin, start) = (None, self.machine.now());
         while !is_done(&mut self.machine) {
-            assert!(Instant::now() < patience, "it is not done within five minutes");
+            assert!(Instant::now() < deadline, "it is not done within five minutes");
             let mut bytes = [0; 4096];
             let count = self.line.read(&mut bytes).unwrap_or(0);
             let now = self.machine.now();
@@ -69,7 +70,7 @@ impl Terminal {
     fn send(&mut self) {
         let sent = self.machine.world_mut().take_transmitted(UART).into_iter().map(|(_, byte)| byte).collect();
         self.to_host.extend((self.disturb)(sent));
-        // Nobody may be there.
+        // There may be no reader.
         let written = self.line.write(self.to_host.make_contiguous()).unwrap_or(0);
         self.to_host.drain(..written);
         self.to_host.truncate(ROOM);

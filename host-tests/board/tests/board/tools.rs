@@ -1,4 +1,4 @@
-//! The tools of this workspace, as they are used.
+//! The tools of this workspace, as users run them.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -23,11 +23,11 @@ pub fn proprio(folder: &Path, arguments: &[&str]) -> Command {
     command
 }
 
-/// Runs it to its end, which must be a good one, and gives what it printed.
+/// Runs it to its end, which must be a success; returns its output.
 pub fn done(folder: &Path, arguments: &[&str]) -> String {
     let output = proprio(folder, arguments).output().expect("the tool starts");
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{arguments:?}: {said}");
+    let errors = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{arguments:?}: {errors}");
     String::from_utf8(output.stdout).expect("the tool writes UTF-8")
 }
 
@@ -45,7 +45,7 @@ pub fn table() -> String {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../calibration-tables/planar-6.toml").display().to_string()
 }
 
-/// Replays a recording; every estimate that can be compared must be the board's. Gives their number and the report.
+/// Replays a recording; every estimate that can be compared must be the board's. Returns their number and the report.
 pub fn replayed(folder: &Path, name: &str) -> (u64, String) {
     let report = done(folder, &["replay", name, "--table", &table(), "--json"]);
     let count = |key: &str| {
@@ -53,7 +53,7 @@ pub fn replayed(folder: &Path, name: &str) -> (u64, String) {
         let digits: String = value.chars().take_while(char::is_ascii_digit).collect();
         digits.parse::<u64>().expect("a count")
     };
-    // What an earlier run of the board has left on the line has no begin.
+    // Estimates that an earlier run of the board left on the line lack their first sample.
     assert_eq!(count("equal"), count("estimates") - count("not_compared"), "{report}");
     assert!(report.contains("\"first_difference\":null"), "{report}");
     (count("equal"), report)

@@ -1,23 +1,23 @@
-//! What the board says of who touches the arm, and of how well it knows its shape.
+//! Contact events and uncertainties of the board.
 
 use board_tests::Board;
-use rig_twin::{Program, Push, Scenario};
+use rig_twin::{MotionProgram, Push, Scenario};
 use telemetry::{Command, Event, Message, Outcome, SEGMENTS, SegmentUncertainty};
 use virtual_due::{CYCLES_PER_SECOND, Rig};
 
 use crate::replay::assert_replays;
 
-/// What a push may take until it is found, s.
+/// Longest time from a push to its detection, s.
 const FOUND_S: f64 = 0.5;
-/// What its event may take from the sample to the host: a tick's work, and what waits before it on the line, s.
+/// Longest time of its event from the sample to the host, s: a tick's work, and bytes before it on the line.
 const LINE_S: f64 = 0.05;
 
-/// A board whose arm swings and is pushed by a stick, for some seconds.
+/// Runs a board whose arm swings and is pushed by a stick.
 fn pushed(seed: u64, seconds: u64) -> Board {
-    let program = Program::new(Scenario::Two, seed);
-    let mut board = Board::new(Rig::new(Scenario::Two, seed));
+    let program = MotionProgram::new(Scenario::Push, seed);
+    let mut board = Board::new(Rig::new(Scenario::Push, seed));
     board.run_ms(2000);
-    assert_eq!(board.ask(Command::Arm), Outcome::Ack);
+    assert_eq!(board.request(Command::Arm), Outcome::Ack);
     while board.machine.seconds() < seconds as f64 {
         board.set_pressures(program.duties(board.machine.seconds()));
         board.run_ms(50);
@@ -25,7 +25,7 @@ fn pushed(seed: u64, seconds: u64) -> Board {
     board
 }
 
-/// When the host had each event whole by which contact of a segment begins, s since power-on.
+/// Times at which the host had received each event of a contact's begin on a segment, s since power-on.
 fn begins_s(board: &Board, segment: usize) -> Vec<f64> {
     let mut was_touched = false;
     let begins = board.received().iter().filter_map(|received| match received.message {
@@ -40,22 +40,25 @@ fn begins_s(board: &Board, segment: usize) -> Vec<f64> {
 }
 
 #[test]
-fn a_push_is_told_within_half_a_second_and_what_the_line_takes() {
+fn a_push_is_reported_within_half_a_second_and_the_time_of_the_line() {
     let board = pushed(71, 90);
     let pushes = board.machine.world().twin().pushes();
     let strong = |push: &&Push| push.bend_rad.abs() > 10_f64.to_radians() && push.start_s + FOUND_S + LINE_S < 90.0;
     let strong: Vec<_> = pushes.iter().filter(strong).collect();
     assert!(strong.len() >= 5, "{pushes:?}");
     for push in strong {
-        let (in_time, told_s) = (push.start_s..=push.start_s + FOUND_S + LINE_S, begins_s(&board, push.segment));
-        assert!(told_s.iter().any(|told_s| in_time.contains(told_s)), "{push:?} was told of at {told_s:?}");
+        let (in_time, reported_s) = (push.start_s..=push.start_s + FOUND_S + LINE_S, begins_s(&board, push.segment));
+        assert!(
+            reported_s.iter().any(|reported_s| in_time.contains(reported_s)),
+            "{push:?} was reported at {reported_s:?}"
+        );
     }
     assert_replays(&board);
 }
 
 #[test]
 fn the_tips_ellipse_is_known_four_times_a_second_and_wider_than_the_bases() {
-    let mut board = Board::new(Rig::new(Scenario::One, 11));
+    let mut board = Board::new(Rig::new(Scenario::FreeSwing, 11));
     board.run_ms(5000);
     let known: Vec<_> = board.uncertainties().filter(|uncertainty| uncertainty.tick >= 300).collect();
     assert!((7..=8).contains(&known.len()), "{}", known.len());

@@ -8,7 +8,7 @@ use board_tests::browser::{Browser, MonitorRun};
 const LIVE: &str = "document.getElementById('link').dataset.state === 'ok' \
                     && document.getElementById('arm-values').textContent.startsWith('tip x')";
 
-/// Sum of what the canvas shows, which changes with the picture.
+/// Content of the canvas, which changes with the picture.
 const PICTURE: &str = "document.getElementById('arm-canvas').toDataURL()";
 
 fn opened(arguments: &[&str]) -> (MonitorRun, Browser) {
@@ -30,7 +30,7 @@ fn a_sensor_that_is_unplugged_turns_its_strip_red_within_a_second() {
     let (mut rig, mut browser) = opened(&[]);
     for (sensor, others) in [("imu3", "imu4"), ("bend2a", "bend2b")] {
         browser.wait_for(&format!("{} === 'ok'", look(sensor)));
-        rig.hand(&format!("unplug {sensor}"));
+        rig.inject_fault(&format!("unplug {sensor}"));
         let took = browser.wait_for(&format!("{} === 'bad'", look(sensor)));
         assert!(took < Duration::from_secs(1), "{sensor}: {took:?}");
         let strip = browser.text(&format!("strip-{sensor}"));
@@ -39,15 +39,15 @@ fn a_sensor_that_is_unplugged_turns_its_strip_red_within_a_second() {
         if sensor == "imu3" {
             browser.picture("unplugged.png");
         }
-        rig.hand(&format!("plug {sensor}"));
+        rig.inject_fault(&format!("plug {sensor}"));
         browser.wait_for(&format!("{} === 'ok'", look(sensor)));
     }
-    assert!(browser.complaints.is_empty(), "{:?}", browser.complaints);
+    assert!(browser.errors.is_empty(), "{:?}", browser.errors);
 }
 
 #[test]
 #[ignore = "needs Chromium: .ci/browser runs it"]
-fn who_has_the_token_arms_moves_and_vents_the_arm() {
+fn the_token_allows_to_arm_move_and_vent_the_arm() {
     let (_rig, mut browser) = opened(&["--allow-control"]);
     browser.wait_for("!document.getElementById('arm-pressures').disabled");
     assert_eq!(browser.value("location.hash"), "", "the token is taken out of the address");
@@ -61,14 +61,14 @@ fn who_has_the_token_arms_moves_and_vents_the_arm() {
     browser.press("Escape");
     browser.wait_for("document.getElementById('actuation').textContent === 'disarmed'");
     browser.wait_for("document.getElementById('regulator0').disabled");
-    assert!(browser.complaints.is_empty(), "{:?}", browser.complaints);
+    assert!(browser.errors.is_empty(), "{:?}", browser.errors);
 }
 
 #[test]
 #[ignore = "needs Chromium: .ci/browser runs it"]
 fn without_the_token_nothing_is_driven() {
     let (rig, mut browser) = opened(&["--allow-control"]);
-    // As one who knows the address alone.
+    // The state of a user who has only the address.
     browser.value("sessionStorage.clear()");
     let address = rig.origin().to_owned();
     browser.open(&address);
@@ -88,11 +88,11 @@ fn without_the_token_nothing_is_driven() {
 fn another_page_gets_neither_feed_nor_answers() {
     let (rig, mut browser) = opened(&["--allow-control"]);
     let address = rig.origin().replace("http:", "ws:");
-    // The page's own policy would keep it from asking: the request is made where there is none.
+    // The page's own policy would block the request: it is made from a page without a policy.
     browser.open("about:blank");
     let socket = format!(
-        "new Promise((told) => {{ const socket = new WebSocket('{address}/feed'); \
-         socket.onopen = () => told('open'); socket.onerror = () => told('refused'); }})"
+        "new Promise((settle) => {{ const socket = new WebSocket('{address}/feed'); \
+         socket.onopen = () => settle('open'); socket.onerror = () => settle('refused'); }})"
     );
     assert_eq!(browser.value(&socket), "refused");
     let post = format!(
@@ -150,5 +150,5 @@ fn a_marked_moment_is_gone_to_in_the_recording_that_is_opened() {
     browser.value("document.querySelector('#marks button').click()");
     browser.wait_for(&format!("document.getElementById('time').textContent === '{time}'"));
     browser.picture("marked.png");
-    assert!(browser.complaints.is_empty(), "{:?}", browser.complaints);
+    assert!(browser.errors.is_empty(), "{:?}", browser.errors);
 }

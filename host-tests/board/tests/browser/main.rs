@@ -1,10 +1,11 @@
 //! The live page in a browser: `proprio monitor` on the virtual Due, and headless Chromium.
 //!
-//! These tests are ignored by `cargo test`, as they need Chromium; `.ci/browser` runs them. What the page looked like is left
-//! in `target/browser`.
+//! These tests are ignored by `cargo test`, as they need Chromium; `.ci/browser` runs them. Pictures of the page are left in
+//! `target/browser`.
 #![cfg(unix)]
 
 mod live;
 mod modules;
 mod page;
+mod pictures;
 mod sessions;

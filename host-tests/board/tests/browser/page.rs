@@ -1,4 +1,4 @@
-//! The page's own hands: pause, axes, export; and how it looks.
+//! The page's controls: pause, axes, export; and its layout.
 
 use board_tests::browser::{Browser, MonitorRun};
 
@@ -19,7 +19,7 @@ fn time_s(browser: &mut Browser) -> f64 {
 
 #[test]
 #[ignore = "needs Chromium: .ci/browser runs it"]
-fn space_pauses_the_picture_while_samples_go_on_and_then_catches_up() {
+fn space_pauses_the_picture_while_samples_arrive_and_then_catches_up() {
     let (_rig, mut browser) = opened();
     let plot = "document.querySelector('#figures canvas').toDataURL()";
     let live = browser.value(plot).to_string();
@@ -30,7 +30,7 @@ fn space_pauses_the_picture_while_samples_go_on_and_then_catches_up() {
     let paused = browser.value(plot);
     browser.value("new Promise((done) => setTimeout(done, 1500))");
     assert_eq!(browser.value(plot), paused);
-    // Drawn anew it is the same: nothing that has come since creeps in.
+    // A redraw shows the same picture: samples received since then do not appear in it.
     browser.value("{ const segment = document.querySelector('#segments button'); segment.click(); segment.click() }");
     browser.value("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))");
     assert_eq!(browser.value(plot), paused);
@@ -71,7 +71,7 @@ fn what_is_seen_is_exported_as_csv_and_svg() {
     let quoted = serde_json::Value::from(svg).to_string();
     let is_good = parsed.replace("SVG", &quoted) + ".querySelectorAll('parsererror').length === 0";
     assert_eq!(browser.value(&is_good), true);
-    assert!(browser.complaints.is_empty(), "{:?}", browser.complaints);
+    assert!(browser.errors.is_empty(), "{:?}", browser.errors);
 }
 
 #[test]
@@ -88,7 +88,7 @@ fn plots_are_zoomed_and_moved_from_the_keyboard() {
         let before = serde_json::Value::to_string(&before);
         browser.wait_for(&format!("{plot} !== {before}"));
     }
-    // Zooming in value fixes the axes.
+    // Zooming the value axis fixes the axes.
     assert_eq!(browser.value("document.getElementById('fixed').checked"), true);
     browser.press("0");
     browser.wait_for("document.getElementById('pause').getAttribute('aria-pressed') === 'false'");
@@ -113,5 +113,5 @@ fn the_page_fits_screens_and_phones_light_and_dark() {
     let nameless = "[...document.querySelectorAll('button, input, select')].filter((one) => \
                     !(one.textContent.trim() || one.labels?.length || one.getAttribute('aria-label'))).length";
     assert_eq!(browser.value(nameless), 0);
-    assert!(browser.complaints.is_empty(), "{:?}", browser.complaints);
+    assert!(browser.errors.is_empty(), "{:?}", browser.errors);
 }

@@ -30,5 +30,5 @@ fn a_session_is_opened_scrubbed_and_played_with_its_truth() {
     assert_ne!(browser.text("arm-values"), values);
     browser.press(" ");
     browser.wait_for("document.getElementById('pause').textContent === 'Play'");
-    assert!(browser.complaints.is_empty(), "{:?}", browser.complaints);
+    assert!(browser.errors.is_empty(), "{:?}", browser.errors);
 }

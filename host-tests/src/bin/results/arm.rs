@@ -1,16 +1,16 @@
-//! Arms, and the tables that their own sweeps give.
+//! Arms, and their tables as calibrated on their own sweeps.
 
 use std::error::Error;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use calibration_tables::{ArmFile, DriftKeys, DriftKind};
+use calibration_tables::{ArmFile, DriftKind, DriftToml};
 use proprio_calibration::calibrate::{Calibration, CalibrationOptions, HysteresisMode, MapMode, calibrate};
-use proprio_session::{NamedTable, NoProgress, OutputFile};
+use proprio_session::{LoadedTable, NoProgress, OutputFile};
 use proprio_simulation::{ImuColumns, SessionWriter, Simulation};
 use rig_twin::{Motion, Scenario, Setup};
 
-/// Why a figure cannot be measured.
+/// Reason why a figure cannot be measured.
 pub type Problem = Box<dyn Error + Send + Sync>;
 
 /// Samples a second: the paper's.
@@ -22,7 +22,7 @@ pub const SESSION_S: f64 = 900.0;
 pub struct Tables {
     /// As `calibrate` makes it.
     pub own: ArmFile,
-    /// The same with the paper's quadratic maps and no memory.
+    /// The same with the paper's quadratic maps and without hysteresis compensation.
     pub quadratic: ArmFile,
     /// The paper's method: quadratic maps, the anchor, KF_orient and KF_coord.
     pub paper: ArmFile,
@@ -35,11 +35,11 @@ impl Tables {
     pub fn of_sweep(sweep: &Path, arm: &ArmFile) -> Result<Self, Problem> {
         let quadratic = CalibrationOptions { maps: MapMode::Quadratic, hysteresis: HysteresisMode::Never };
         let anchored =
-            ArmFile { drift: Some(DriftKeys { kind: DriftKind::Anchor, ..DriftKeys::kalman() }), ..arm.clone() };
+            ArmFile { drift: Some(DriftToml { kind: DriftKind::Anchor, ..DriftToml::kalman() }), ..arm.clone() };
         let table = |file: &ArmFile, options| -> Result<Calibration, Problem> {
             Ok(calibrate(
                 &[sweep.to_owned()],
-                &NamedTable { file: file.clone(), path: Path::new("planar-6.toml") },
+                &LoadedTable { file: file.clone(), path: Path::new("planar-6.toml") },
                 options,
                 &mut NoProgress,
             )?)
@@ -70,7 +70,7 @@ pub fn sweep(arm_seed: u64, folder: &Path) -> Result<PathBuf, Problem> {
     Ok(path)
 }
 
-/// The session of an arm in which it moves so.
+/// Set-up of a session of an arm with this motion.
 pub fn setup(arm_seed: u64, scenario: Scenario, motion: Motion) -> Setup {
     Setup { arm_seed, scenario, motion, seed: session_seed(arm_seed, scenario, motion) }
 }
@@ -79,9 +79,9 @@ pub fn setup(arm_seed: u64, scenario: Scenario, motion: Motion) -> Setup {
 pub fn session_seed(arm_seed: u64, scenario: Scenario, motion: Motion) -> u64 {
     let scenario = match scenario {
         Scenario::Sweep => 0,
-        Scenario::One => 1,
-        Scenario::Two => 2,
-        Scenario::Three => 3,
+        Scenario::FreeSwing => 1,
+        Scenario::Push => 2,
+        Scenario::Obstacle => 3,
     };
     let motion = match motion {
         Motion::Swings => 0,
@@ -96,12 +96,12 @@ pub fn session_seed(arm_seed: u64, scenario: Scenario, motion: Motion) -> u64 {
     100 * arm_seed + motion + scenario
 }
 
-/// The arm that all tables are made for.
+/// Description of the arm that all tables are made for.
 pub fn planar(root: &Path) -> Result<ArmFile, Problem> {
     Ok(ArmFile::load(&root.join("calibration-tables/arms/planar-6.toml"))?)
 }
 
-/// A file's text, or what there is to say of it.
+/// Reads a text file; an error names the file.
 pub fn read(path: &Path) -> Result<String, Problem> {
     fs::read_to_string(path).map_err(|error| format!("{}: {error}", path.display()).into())
 }

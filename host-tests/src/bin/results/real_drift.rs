@@ -13,7 +13,7 @@ use crate::evaluation::{Evaluation, Figures};
 use crate::family::{Family, SCENARIOS};
 
 const ARMS: [u64; 2] = [101, 102];
-/// Recordings of the file; IMUs 1 to 3 have them as they are, IMUs 4 to 6 mirrored.
+/// Recordings of the file; IMUs 1 to 3 use them as they are, IMUs 4 to 6 mirrored.
 const RECORDINGS: [&str; 3] = ["02", "05", "10"];
 /// The paper's drift over a session.
 const SCALED_DEG: f64 = 45.0;
@@ -28,7 +28,7 @@ impl RealDrift {
     pub fn measure(family: &Family, root: &Path) -> Result<Option<Self>, Problem> {
         let path = root.join("../shared/data/broad-heading-error.csv");
         if !path.exists() {
-            eprintln!("no ../shared/data/broad-heading-error.csv beside the checkout: its section stays empty");
+            eprintln!("no ../shared/data/broad-heading-error.csv next to the checkout: its section stays empty");
             return Ok(None);
         }
         let csv = read(&path)?;
@@ -47,7 +47,7 @@ impl RealDrift {
         Ok(Some(Self { rows: rows.into_iter().collect::<Result<_, _>>()? }))
     }
 
-    /// The table, or why there is none.
+    /// Writes the table, or why it is missing.
     pub fn write(drift: Option<&Self>, family: &Family, page: &mut String) -> fmt::Result {
         writeln!(page, "{DRIFT}")?;
         let Some(drift) = drift else {
@@ -88,7 +88,7 @@ fn drifts(csv: &str, scaled: bool) -> Result<[HeadingDrift; SEGMENTS], Problem> 
 const DRIFT: &str = "\
 ## The drift of a real IMU
 
-How the heading of a real IMU's 6-axis filter departs from optical truth (recordings 02, 05 and 10 of
+The heading error of a real IMU's 6-axis filter against optical truth (recordings 02, 05 and 10 of
 [BROAD](https://github.com/dlaidig/broad), D. Laidig et al., CC BY 4.0, computed with the VQF filter), added to the simulated headings of
 two test arms and their own drift: IMUs 1 to 3 have the recordings as they are, IMUs 4 to 6 mirrored; a recording of some 190 s repeats
 and continues where it ended. Scaled, each heading is off by 45° after 15 min, as in the paper.

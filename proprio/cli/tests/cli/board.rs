@@ -1,4 +1,4 @@
-//! A board that is none: the firmware's own estimator and frames, over what the twin's sensors read.
+//! A synthetic board: the firmware's estimator and frames, over the readings of the twin's sensors.
 
 use board_core::BoardEstimator;
 use calibration_tables::ArmFile;
@@ -29,11 +29,12 @@ impl SyntheticBoard {
     /// The boot number of a board that then runs for some seconds.
     pub fn new(boot: u32, seconds: f64) -> Self {
         let file = ArmFile::load(table().as_ref()).expect("the reference table");
-        let baked = Box::leak(Box::new(file.bake::<Q>(TICK_HZ).expect("it bakes")));
-        let checksum = baked.checksum();
-        let mut estimator = BoardEstimator::new(Box::leak(Box::new(baked.config())));
+        let compiled = Box::leak(Box::new(file.compile::<Q>(TICK_HZ).expect("it is a table")));
+        let checksum = compiled.checksum();
+        let mut estimator = BoardEstimator::new(Box::leak(Box::new(compiled.config())));
         estimator.start();
-        let simulation = Simulation::new(Scenario::One, 77 + u64::from(boot), seconds, TICK_HZ).expect("a valid run");
+        let simulation =
+            Simulation::new(Scenario::FreeSwing, 77 + u64::from(boot), seconds, TICK_HZ).expect("a valid run");
         Self { estimator, encoder: Encoder::new(), simulation, boot, tick: 0, table: checksum }
     }
 
@@ -91,7 +92,7 @@ impl SyntheticBoard {
         }
     }
 
-    /// All that it says.
+    /// All bytes that it sends.
     pub fn bytes(self) -> Vec<u8> {
         self.flat_map(|(frames, _)| frames.concat()).collect()
     }

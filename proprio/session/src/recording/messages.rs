@@ -1,4 +1,4 @@
-//! What the board says, as ROS 2 messages.
+//! The board's messages as ROS 2 messages.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -34,7 +34,7 @@ pub fn sample(stamp: HostNs, sample: &Sample) -> Vec<u8> {
     cdr.into_bytes()
 }
 
-/// Bit i is set where the i-th value is there.
+/// Bit mask of the values that are present.
 fn mask<T>(values: &[Option<T>]) -> u16 {
     values.iter().rev().fold(0, |mask, value| mask << 1 | u16::from(value.is_some()))
 }
@@ -90,7 +90,7 @@ pub fn contact(stamp: HostNs, touched: [bool; SEGMENTS]) -> Vec<u8> {
     cdr.into_bytes()
 }
 
-/// From the estimator's bits to rad or m.
+/// Converts the estimator's bits to rad or m.
 fn value(bits: i32) -> f64 {
     Q::from_bits(bits).to_f64()
 }
@@ -117,7 +117,7 @@ pub fn mark(text: &str) -> Vec<u8> {
     cdr.into_bytes()
 }
 
-/// The text of a `std_msgs/msg/String`; `None` where it is none.
+/// The text of a `std_msgs/msg/String`; `None` where it cannot be decoded.
 pub fn read_mark(message: &[u8]) -> Option<String> {
     CdrReader::new(message)?.string().map(str::to_owned)
 }
@@ -182,10 +182,10 @@ fn status(cdr: &mut CdrWriter, level: Level, name: &str, message: &str, chip: &s
 }
 
 /// `proprio_msgs/msg/SetPoints`.
-pub fn set_points(stamp: HostNs, asked: &SetPressures) -> Vec<u8> {
+pub fn set_points(stamp: HostNs, requested: &SetPressures) -> Vec<u8> {
     let mut cdr = header(stamp);
-    asked.pressures_pa.iter().for_each(|pressure_pa| cdr.u32(*pressure_pa));
-    cdr.u16(asked.valid_ms);
+    requested.pressures_pa.iter().for_each(|pressure_pa| cdr.u32(*pressure_pa));
+    cdr.u16(requested.valid_ms);
     cdr.into_bytes()
 }
 
@@ -200,7 +200,7 @@ pub fn truth(stamp: HostNs, ends: &[Option<Truth>]) -> Vec<u8> {
     cdr.into_bytes()
 }
 
-/// The ends in a `proprio_msgs/msg/Truth`; `None` where it is none.
+/// The ends in a `proprio_msgs/msg/Truth`; `None` where it cannot be decoded.
 pub fn read_truth(message: &[u8]) -> Option<Vec<Option<Truth>>> {
     let mut cdr = CdrReader::new(message)?;
     cdr.u32()?;
@@ -222,7 +222,7 @@ mod tests {
     use super::{HostNs, Truth, read_truth, truth};
 
     #[test]
-    fn truth_comes_back_to_the_bit() {
+    fn truth_is_read_back_to_the_bit() {
         let ends = [
             Some(Truth { x_m: 0.1, y_m: -0.2, heading_rad: Some(7.0) }),
             Some(Truth { x_m: 0.1, y_m: -0.2, heading_rad: None }),

@@ -8,7 +8,7 @@ const UNIT: f64 = 16384.0;
 /// Gravity in 0.01 m/s².
 const GRAVITY: f64 = 980.665;
 
-/// What a read finds in the data registers.
+/// Contents of the data registers.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Output {
     /// w, x, y, z in 1/16384.
@@ -19,13 +19,13 @@ pub struct Output {
     pub gravity: [i16; 3],
 }
 
-/// From which heading the fusion counts.
+/// Reference of the fusion's heading.
 #[derive(Debug, Clone, Copy, Default)]
 enum Heading {
     /// The twin's own, as at its power-up.
     #[default]
     Given,
-    /// Zero is what the next output shows.
+    /// The next output is zero.
     ZeroAtNext,
     /// The twin's, turned by these w and z.
     Turned(f64, f64),
@@ -39,14 +39,15 @@ pub struct Fusion {
 }
 
 impl Fusion {
-    /// The fusion has stopped. When it starts again its heading begins at zero, as IMUPLUS knows no north (data sheet 3.3.3.1).
+    /// Stops the fusion. When it starts again its heading begins at zero, as IMUPLUS has no reference to north (data sheet
+    /// 3.3.3.1).
     pub fn begin_again(&mut self) {
         if self.ran {
             self.heading = Heading::ZeroAtNext;
         }
     }
 
-    /// What it makes of the twin's orientation.
+    /// The fusion's output at an orientation of the twin.
     pub fn output(&mut self, orientation: [i16; 4]) -> Output {
         self.ran = true;
         let [w, x, y, z] = orientation.map(f64::from);

@@ -3,20 +3,20 @@
 mod fusion;
 mod registers;
 
-use crate::model::{CYCLES_PER_SECOND, Cycles};
 use fusion::{Fusion, gravity};
 use registers::Registers;
+use sam3x_models::model::{CYCLES_PER_SECOND, Cycles};
 
-/// From power to the first answer (data sheet table 0-2).
+/// Time from power to the first answer (data sheet table 0-2).
 const POWER_ON: Cycles = ms(400);
-/// From RST_SYS to the first answer (data sheet table 0-2).
+/// Time from RST_SYS to the first answer (data sheet table 0-2).
 const RESET: Cycles = ms(650);
 /// Mode switching (data sheet table 3-6).
 const TO_CONFIG: Cycles = ms(19);
 const FROM_CONFIG: Cycles = ms(7);
 /// From the mode's start to the first output of the fusion (assumed: a few of its periods).
 const FIRST_OUTPUT: Cycles = ms(50);
-/// It holds the clock low before it gives a byte whose data it has to fetch (assumed; the data sheet only says that it does).
+/// Time for which it holds the clock low before a byte whose data it has to fetch (assumed; the data sheet gives no time).
 const STRETCH: Cycles = CYCLES_PER_SECOND / 100_000;
 
 const CONFIG: u8 = 0x00;
@@ -30,19 +30,19 @@ const fn ms(count: u64) -> Cycles {
 /// One unit.
 #[derive(Debug, Clone)]
 pub struct Bno055 {
-    /// It does not answer before.
+    /// Time from which it answers.
     answers_from: Cycles,
     mode: u8,
-    /// The mode that was asked for, and when it begins.
+    /// The requested mode, and the time at which it begins.
     switching: Option<(u8, Cycles)>,
     mode_began: Cycles,
     registers: Registers,
     fusion: Fusion,
     /// The register that is read or written next.
     pointer: u8,
-    /// The next byte written is the register's address.
+    /// True if the next byte written is the register's address.
     expects_pointer: bool,
-    /// The clock is to be held low before the next byte.
+    /// True if the clock is to be held low before the next byte.
     fetches: bool,
 }
 
@@ -65,14 +65,14 @@ impl Bno055 {
         }
     }
 
-    /// Whether it acknowledges its address.
+    /// True if it acknowledges its address.
     pub fn answers(&self, now: Cycles) -> bool {
         now >= self.answers_from
     }
 
-    /// It was addressed; `orientation` is what its fusion makes of the mount now.
+    /// Handles its address; `orientation` is the present orientation of its mount.
     pub fn start(&mut self, read: bool, orientation: [i16; 4], now: Cycles) {
-        self.settle(now);
+        self.complete_switching(now);
         self.expects_pointer = !read;
         self.fetches = read;
         if read {
@@ -82,9 +82,9 @@ impl Bno055 {
         }
     }
 
-    /// A byte written to it: the register's address, then data for it and those that follow.
+    /// Receives a byte: the register's address, then data for it and those that follow.
     pub fn write(&mut self, byte: u8, now: Cycles) {
-        self.settle(now);
+        self.complete_switching(now);
         if self.expects_pointer {
             self.pointer = byte;
             self.expects_pointer = false;
@@ -105,12 +105,12 @@ impl Bno055 {
         value
     }
 
-    /// How long it holds the clock low before the next byte.
+    /// Time for which it holds the clock low before the next byte.
     pub fn stretch(&mut self) -> Cycles {
         if std::mem::take(&mut self.fetches) { STRETCH } else { 0 }
     }
 
-    /// The supply dips: it is in CONFIG again, with all its settings lost, and says nothing of it.
+    /// Simulates a dip of the supply: it is in CONFIG again, with all its settings lost, and reports nothing.
     pub fn brown_out(&mut self, now: Cycles) {
         self.restart(now);
     }
@@ -133,7 +133,8 @@ impl Bno055 {
         self.switching = Some((mode, now + duration));
     }
 
-    fn settle(&mut self, now: Cycles) {
+    /// Completes a change of the mode that is due.
+    fn complete_switching(&mut self, now: Cycles) {
         if let Some((mode, at)) = self.switching.take_if(|(_, at)| *at <= now) {
             if FUSION.contains(&self.mode) {
                 self.fusion.begin_again();

@@ -39,7 +39,7 @@ pub struct Registers {
 }
 
 impl Registers {
-    /// As power-on leaves them.
+    /// State after power-on.
     pub fn new() -> Self {
         let mut registers = Self { page: 0, pages: [[0; 128]; 2] };
         // Chip, accelerometer, magnetometer, gyroscope; software 3.17, boot loader 21.
@@ -97,8 +97,8 @@ impl Registers {
         }
     }
 
-    /// Fills the data registers for a read: all of one output, or zeros where there is none, but for the acceleration that is
-    /// read without fusion.
+    /// Fills the data registers for a read, all from one output. Without an output they are zero, except for the acceleration
+    /// of the modes without fusion.
     pub fn sample(&mut self, mode: u8, output: Option<Output>, acceleration: [i16; 3], runs: bool) {
         self.pages[0][usize::from(ACC_DATA)..=usize::from(CALIB_STAT)].fill(0);
         self.set(0, OPR_MODE, &[mode]);
@@ -120,7 +120,8 @@ impl Registers {
         }
     }
 
-    /// The arm moves slowly: acceleration is gravity. Units as UNIT_SEL says of angles.
+    /// Sets the registers of the fusion's output. The arm moves slowly: acceleration is gravity. UNIT_SEL selects the unit of
+    /// angles.
     fn set_output(&mut self, mode: u8, output: Output) {
         let in_radians = self.pages[0][usize::from(UNIT_SEL)] & (1 << 2) != 0;
         let steps_per_rad = if in_radians { 900.0 } else { 16.0 * 180.0 / PI };

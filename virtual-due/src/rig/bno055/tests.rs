@@ -1,5 +1,5 @@
 use super::{Bno055, CONFIG, ms};
-use crate::model::Cycles;
+use sam3x_models::model::Cycles;
 
 const TURNED: [i16; 4] = [13107, 0, 0, 9830];
 
@@ -32,7 +32,7 @@ fn quaternion(unit: &mut Bno055, now: Cycles) -> [i16; 4] {
 }
 
 #[test]
-fn answers_400_ms_after_power_on_and_says_who_it_is() {
+fn answers_400_ms_after_power_on_and_identifies_itself() {
     let mut unit = Bno055::powered(ms(10));
     assert!(!unit.answers(ms(410) - 1) && unit.answers(ms(410)));
     assert_eq!(read(&mut unit, 0, ms(410)), [0xA0, 0xFB, 0x32, 0x0F, 0x11, 0x03, 0x15, 0x00]);
@@ -98,7 +98,7 @@ fn system_reset_silences_it_for_650_ms_and_loses_the_settings() {
 }
 
 #[test]
-fn brown_out_falls_back_to_config_and_the_heading_begins_anew() {
+fn brown_out_falls_back_to_config_and_the_heading_begins_at_zero() {
     let mut unit = fusing();
     assert_eq!(quaternion(&mut unit, ms(1000)), TURNED);
     unit.brown_out(ms(1000));

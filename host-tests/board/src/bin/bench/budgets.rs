@@ -1,19 +1,19 @@
-//! The budgets' file, and what is out of its budget.
+//! The file of budgets, and the figures that exceed theirs.
 
 use toml_edit::{DocumentMut, Item};
 
-use crate::Figure;
+use crate::figure::Figure;
 
 const BUDGETS: &str = include_str!("../../../budgets.toml");
 
-/// Whether a figure keeps to a budget.
+/// True if a figure keeps to a budget.
 type Keeps = fn(f64, f64) -> bool;
 
-/// Which side of its budget a figure has to be on.
+/// Sides of its budget that a figure may have to be on.
 const SIDES: [(&str, Keeps); 2] =
     [("at_most", |value, budget| value <= budget), ("at_least", |value, budget| value >= budget)];
 
-/// Prints every figure beside its budget.
+/// Prints every figure with its budget.
 ///
 /// # Errors
 /// The names of the figures that are out of theirs, or of budgets without a figure.

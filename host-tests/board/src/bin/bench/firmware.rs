@@ -1,4 +1,4 @@
-//! What the whole firmware takes: time, memory, stack.
+//! Resources of the whole firmware: time, memory, stack.
 
 use std::time::Instant;
 
@@ -7,18 +7,19 @@ use object::{Object, ObjectSection};
 use rig_twin::Scenario;
 use virtual_due::{CYCLES_PER_SECOND, Rig};
 
-use crate::{Figure, trouble};
+use crate::fault_run;
+use crate::figure::Figure;
 
-/// In flash: what is there at a reset.
+/// Sections in flash, from which a reset starts.
 const FLASH: [&str; 4] = [".vector_table", ".text", ".rodata", ".data"];
-/// In RAM, without the stack.
+/// Sections in RAM, without the stack.
 const STATIC_RAM: [&str; 3] = [".data", ".bss", ".uninit"];
 /// Cycles of an instruction on the emulated board, the mean of Cortex-M3 code from the Due's flash.
 const CYCLES_PER_INSTRUCTION: f64 = 1.4;
-/// What cortex-m-rt's `paint-stack` fills the stack with before anything runs.
+/// Byte with which cortex-m-rt's `paint-stack` fills the stack before anything runs.
 const PAINT: u8 = 0xCC;
 
-/// Of the firmware, alone and in the rig.
+/// Figures of the firmware, alone and in the rig.
 ///
 /// # Panics
 /// If it does not run.
@@ -26,9 +27,9 @@ pub fn figures() -> Vec<Figure> {
     let mut figures = vec![
         Figure { name: "flash", value: size(&FLASH) },
         Figure { name: "static_ram", value: size(&STATIC_RAM) },
-        Figure { name: "stack", value: stack_in_trouble() },
+        Figure { name: "stack", value: deepest_stack() },
     ];
-    figures.extend(in_good_health());
+    figures.extend(without_faults());
     figures
 }
 
@@ -39,17 +40,17 @@ fn size(names: &[&str]) -> f64 {
     sections.map(|section| section.size()).sum::<u64>() as f64
 }
 
-/// A rig in which all works, and all messages at 100 Hz.
-fn in_good_health() -> [Figure; 3] {
+/// Figures of a rig without faults, with all messages at 100 Hz.
+fn without_faults() -> [Figure; 3] {
     const SECONDS: u32 = 60;
-    let mut board = Board::new(Rig::new(Scenario::One, 1));
+    let mut board = Board::new(Rig::new(Scenario::FreeSwing, 1));
     board.run_ms(2_000);
     let (instructions, started) = (board.machine.instructions(), Instant::now());
     board.run_ms(u64::from(SECONDS) * 1000);
     let wall = started.elapsed().as_secs_f64();
     let cycles = (board.machine.instructions() - instructions) as f64 * CYCLES_PER_INSTRUCTION;
     let available = f64::from(SECONDS) * CYCLES_PER_SECOND as f64;
-    let imu_round = board.healths().map(|health| health.longest_imu_read_us).max().expect("health is told");
+    let imu_round = board.healths().map(|health| health.longest_imu_read_us).max().expect("health is sent");
     [
         Figure { name: "load", value: cycles / available * 100.0 },
         Figure { name: "imu_round", value: imu_round.into() },
@@ -57,10 +58,11 @@ fn in_good_health() -> [Figure; 3] {
     ]
 }
 
-/// The deepest stack, bytes, in a run with all requests and many faults. A reset would paint it anew.
-fn stack_in_trouble() -> f64 {
-    let board = trouble::board(Board::run_ms);
-    let [end, start] = ["_stack_end", "_stack_start"].map(|name| board.machine.symbol(name).expect("the linker says"));
+/// The deepest stack, bytes, in a run with all requests and many faults. A reset would paint it again.
+fn deepest_stack() -> f64 {
+    let board = fault_run::board(Board::run_ms);
+    let [end, start] =
+        ["_stack_end", "_stack_start"].map(|name| board.machine.symbol(name).expect("the linker defines it"));
     let stack = board.machine.peek(end, (start - end) as usize).expect("it is in RAM");
     let untouched = stack.iter().take_while(|byte| **byte == PAINT).count();
     assert!(untouched > 0, "the stack is painted, and has not overflowed");

@@ -1,26 +1,26 @@
-//! When the bend sensors are sampled.
+//! Jitter of the instant at which the bend sensors are sampled.
 
 use board_tests::{UART, firmware};
 use rig_twin::Scenario;
 use virtual_due::model::{I2c, Pin, Reception, World};
 use virtual_due::{CYCLES_PER_SECOND, Cycles, Machine, Rig};
 
-/// The ADC channel that is looked at: A7's, the first of a scan.
+/// The ADC channel under observation: that of A7, the first of a scan.
 const CHANNEL: u8 = 0;
 
-/// A rig that notes when a channel is converted.
+/// A rig that records the times at which the channel is converted.
 struct Watched {
     rig: Rig,
     conversions: Vec<Cycles>,
 }
 
-/// By how much the time between two scans changes in 20 s, cycles. The first scan is left out: before it the ADC starts up,
+/// Largest minus smallest time between two scans in 20 s, cycles. The first scan is left out: before it the ADC starts up,
 /// once (datasheet 43.7.2, ADC_MR.STARTUP).
 ///
 /// # Panics
 /// If the firmware does not sample.
 pub fn cycles() -> f64 {
-    let world = Watched { rig: Rig::new(Scenario::One, 1), conversions: Vec::new() };
+    let world = Watched { rig: Rig::new(Scenario::FreeSwing, 1), conversions: Vec::new() };
     let mut machine = Machine::new(firmware(), world).expect("a firmware for the Due");
     for second in 0..20 {
         // Noise on the line, so that the processor's work is not the same every time.

@@ -1,21 +1,15 @@
-//! `cargo xtask bench`: what the firmware costs, against its budgets.
+//! `cargo xtask bench`: time, memory and instructions of the firmware, against their budgets.
 
 mod budgets;
+mod fault_run;
+mod figure;
 mod firmware;
 mod jitter;
 mod step;
 mod tasks;
-mod trouble;
 
+use figure::Figure;
 use std::process::ExitCode;
-
-/// Something that was measured.
-pub struct Figure {
-    /// Its name in the budgets' file.
-    pub name: &'static str,
-    /// In the unit that the file states.
-    pub value: f64,
-}
 
 fn main() -> ExitCode {
     let jitter = Figure { name: "trigger_jitter", value: jitter::cycles() };

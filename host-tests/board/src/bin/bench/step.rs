@@ -1,26 +1,26 @@
-//! Instructions of the estimator's step, on the firmware that is nothing else.
+//! Instructions of the estimator's step, in a firmware that runs nothing else.
 
 use board_tests::elf;
 use object::{Object, ObjectSymbol};
 use rig_twin::Scenario;
 use virtual_due::{CYCLES_PER_SECOND, Machine, Rig};
 
-use crate::Figure;
+use crate::figure::Figure;
 
-/// The arms that the firmware steps, in its order, and the samples of each.
+/// Segments of the arms that the firmware steps, in its order.
 const SEGMENTS: [u32; 4] = [1, 2, 6, 8];
 const STEPS: usize = 1_000;
-/// Samples at rest that follow where the bias filter runs.
+/// Further samples at rest of an arm with the bias filter.
 const REST: usize = 3_000;
-/// Of the samples, those of the tare.
+/// Samples of the tare, the first ones.
 const TARE: usize = 100;
 
-/// What of the compiler's and the core library's does not belong into the step: float arithmetic, float conversions,
-/// 64-bit division, panics.
+/// Names of routines of the compiler and the core library that do not belong into the step: float arithmetic, float
+/// conversions, 64-bit division, panics.
 const UNWANTED: [&str; 9] =
     ["__aeabi_f", "__aeabi_d", "__aeabi_i2", "__aeabi_ui2", "__aeabi_l2", "__aeabi_ul2", "divmod", "divdi", "panic"];
 
-/// The cheapest and the dearest step.
+/// Fewest and most instructions of a step.
 struct Range {
     least: u64,
     most: u64,
@@ -33,10 +33,10 @@ impl Range {
     }
 }
 
-/// Of the step.
+/// Figures of the step.
 ///
 /// # Panics
-/// If the firmware does not build, or does not run as it says.
+/// If the firmware does not build, or does not step the expected arms.
 pub fn figures() -> [Figure; 8] {
     let growth = arms("growth", &SEGMENTS);
     let [(_, tare, after)] = &arms("step", &[6])[..] else { panic!("the firmware steps one arm") };
@@ -53,10 +53,10 @@ pub fn figures() -> [Figure; 8] {
         Figure { name: "step_in_tare", value: tare.most as f64 },
         Figure { name: "step_spread", value: (after.most - after.least) as f64 / after.least as f64 * 100.0 },
         Figure { name: "step_growth", value: for_each(3) / for_each(2) },
-        Figure { name: "step_routines", value: unwanted(&elf("board-probe", "step")) as f64 },
+        Figure { name: "step_routines", value: unwanted(&elf("on-target-tests", "step")) as f64 },
         Figure { name: "bias_filter_instructions", value: bias_filter.most as f64 },
         Figure { name: "bias_filter_growth", value: of_eight.most as f64 / 8.0 / (bias_filter.most as f64 / 6.0) },
-        Figure { name: "bias_filter_routines", value: unwanted(&elf("board-probe", "bias_filter")) as f64 },
+        Figure { name: "bias_filter_routines", value: unwanted(&elf("on-target-tests", "bias_filter")) as f64 },
     ]
 }
 
@@ -67,8 +67,8 @@ fn arms(binary: &str, segments: &[u32]) -> Vec<(u32, Range, Range)> {
 
 /// The same for so many samples of each arm.
 fn arms_of(binary: &str, segments: &[u32], steps: usize) -> Vec<(u32, Range, Range)> {
-    let mut machine =
-        Machine::new(&elf("board-probe", binary), Rig::new(Scenario::One, 1)).expect("a firmware for the Due");
+    let mut machine = Machine::new(&elf("on-target-tests", binary), Rig::new(Scenario::FreeSwing, 1))
+        .expect("a firmware for the Due");
     println!("instructions of a step   in the tare          after it");
     let arm = |segments: &u32| {
         let counts = counts(&mut machine, steps);
@@ -101,7 +101,7 @@ fn counts(machine: &mut Machine<Rig>, steps: usize) -> Vec<u64> {
         .collect()
 }
 
-/// How many unwanted routines there are, each said.
+/// Number of unwanted routines, each of which is printed.
 fn unwanted(elf: &[u8]) -> usize {
     let file = object::File::parse(elf).expect("cargo built an ELF");
     let names = file.symbols().filter_map(|symbol| symbol.name().ok());

@@ -1,15 +1,16 @@
-//! How long each task of the firmware takes at the most.
+//! Longest run of each task of the firmware.
 
 use board_tests::firmware;
 use object::{Object, ObjectSection, ObjectSymbol};
 use virtual_due::{CYCLES_PER_SECOND, Cycles};
 
-use crate::{Figure, trouble};
+use crate::fault_run;
+use crate::figure::Figure;
 
 const CYCLES_PER_US: f64 = CYCLES_PER_SECOND as f64 / 1e6;
 const CYCLES_PER_MS: Cycles = CYCLES_PER_SECOND / 1000;
 
-/// A tick is over then: the next has not begun.
+/// Time after a tick at which its work is over and the next has not begun.
 const TICK: Cycles = CYCLES_PER_SECOND / 100 - CYCLES_PER_MS / 10;
 
 /// The interrupt's handler that runs a task: its first instruction and its last.
@@ -56,7 +57,7 @@ impl Handler {
 /// The longest run of a handler, cycles.
 fn longest(handler: &Handler) -> Cycles {
     let mut longest = 0;
-    trouble::board(|board, ms| {
+    fault_run::board(|board, ms| {
         let end = board.machine.now() + ms * CYCLES_PER_MS;
         while board.machine.run_to(handler.entry, end) {
             let begun = board.machine.now();
@@ -72,7 +73,7 @@ fn longest(handler: &Handler) -> Cycles {
 fn longest_tick() -> Cycles {
     let (tick, estimation) = (Handler::of("TC0"), Handler::of("SSC"));
     let mut longest = 0;
-    trouble::board(|board, ms| {
+    fault_run::board(|board, ms| {
         let end = board.machine.now() + ms * CYCLES_PER_MS;
         while board.machine.run_to(tick.entry, end) {
             let begun = board.machine.now();

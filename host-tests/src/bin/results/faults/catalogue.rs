@@ -1,4 +1,4 @@
-//! The faults that sessions are tried with.
+//! The faults that are put into sessions.
 
 use host_tests::faults::Spoiler;
 use rig_twin::{Motion, SEGMENTS, Scenario};
@@ -7,46 +7,46 @@ use rig_twin::{Motion, SEGMENTS, Scenario};
 pub const SLOW_HZ: f64 = 10.0;
 /// and of those with a fault that is shorter than a sample of these.
 pub const FAST_HZ: f64 = 100.0;
-/// When most faults come.
+/// Time of most faults, s.
 const AT_S: f64 = 300.0;
-/// The same in the shorter sessions at 100 Hz.
+/// Time of the faults in the shorter sessions at 100 Hz, s.
 const FAST_AT_S: f64 = 120.0;
-/// Length of a pause of the recording.
+/// Length of a pause of the recording, s.
 const MISSING_S: f64 = 300.0;
-/// Length of a rest.
+/// Length of a rest, s.
 pub const REST_S: f64 = 7_200.0;
 
 /// A fault, and the session that has it.
 #[derive(Debug, Clone, Copy)]
 pub struct Fault {
     pub name: &'static str,
-    /// When it comes; of one that ends at once, when it is over.
+    /// Time of the fault; of one that ends at once, its end.
     pub at_s: f64,
     pub rate_hz: f64,
     pub course: Course,
 }
 
-/// What differs from the session without the fault.
+/// Difference from the session without the fault.
 #[derive(Debug, Clone, Copy)]
 pub enum Course {
     /// The samples are spoiled.
     Spoiled(fn(&mut Spoiler)),
     /// The samples are spoiled from the first contact on that bends a segment by over 10° after `at_s`.
     SpoiledInContact(fn(&mut Spoiler)),
-    /// The arm moves otherwise.
+    /// The arm moves in another way.
     Moves(Motion),
-    /// The arm rests for two hours; judged is the rest.
+    /// The arm rests for two hours; the rest is evaluated.
     Rest,
-    /// The same; judged is the motion after it.
+    /// The same; the motion after it is evaluated.
     AfterRest,
 }
 
 impl Course {
-    /// Whether sessions of a scenario have it: the arm rests where nothing touches it, and is touched in the others.
+    /// True if sessions of a scenario have it: the arm rests where nothing touches it, and is touched in the others.
     pub fn is_in(self, scenario: Scenario) -> bool {
         match self {
-            Self::Rest | Self::AfterRest => scenario == Scenario::One,
-            Self::SpoiledInContact(_) => scenario != Scenario::One,
+            Self::Rest | Self::AfterRest => scenario == Scenario::FreeSwing,
+            Self::SpoiledInContact(_) => scenario != Scenario::FreeSwing,
             Self::Spoiled(_) | Self::Moves(_) => true,
         }
     }

@@ -41,7 +41,7 @@ pub struct FaultFigures {
     arm: u64,
     /// RMSE before the fault, mm.
     before_mm: Option<f64>,
-    /// RMSE of the session without the fault, in the time in which that with it is judged.
+    /// RMSE of the session without the fault, in the time in which that with it is evaluated.
     clean_mm: f64,
     first_mm: f64,
     after_mm: f64,
@@ -51,7 +51,7 @@ pub struct FaultFigures {
     flagged_s: Option<f64>,
 }
 
-/// How an estimate stands one minute after a fault.
+/// State of an estimate one minute after a fault.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Verdict {
     Recovered,
@@ -64,7 +64,7 @@ enum Verdict {
 /// All sessions with faults.
 pub struct Faults {
     sessions: Vec<FaultFigures>,
-    /// Of the sessions without a fault, share of time with a condition.
+    /// Share of time with a condition in the sessions without a fault.
     clean: Vec<(&'static str, u64, f64)>,
 }
 
@@ -126,14 +126,14 @@ impl Clean {
 /// A session with a fault.
 struct Spoiled {
     session: TwinSession,
-    /// From when on it is judged, and until when.
+    /// Time in which it is evaluated.
     judged_s: Range<f64>,
     /// The same moment of the session without the fault.
     clean_s: f64,
 }
 
 impl Spoiled {
-    /// `None` where the session has no such moment.
+    /// The session with the fault; `None` where the session has no moment for it.
     fn new(fault: &Fault, clean: &Clean, setup: &Setup) -> Result<Option<Self>, Problem> {
         let Fault { at_s, rate_hz, course, .. } = *fault;
         let simulated = |setup: &Setup| Simulation::of(setup, SESSION_S, rate_hz);

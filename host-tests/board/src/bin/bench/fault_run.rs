@@ -1,0 +1,50 @@
+//! A run with all requests and many faults, for worst cases: time of a task, depth of the stack.
+
+use board_tests::{Board, UART};
+use rig_twin::Scenario;
+use telemetry::{Command, SetPressures};
+use virtual_due::Rig;
+use virtual_due::rig::{HeldLow, ImuFault, MuxFault, Rail};
+
+/// Requests that the host sends in one burst, more than the line carries in a tick.
+const FLOOD: usize = 40;
+
+/// Runs a board through it, by a function that lets a number of milliseconds pass.
+///
+/// # Panics
+/// If the board resets.
+pub fn board(mut run_ms: impl FnMut(&mut Board, u64)) -> Board {
+    let mut board = Board::new(Rig::new(Scenario::FreeSwing, 1));
+    // The first tick comes late, as the board is still being set up.
+    board.run_ms(50);
+    run_ms(&mut board, 1_950);
+    for second in 2..20_u32 {
+        let faults = &mut board.machine.world_mut().faults;
+        match second {
+            3 => faults.imus[1] = ImuFault::Unplugged,
+            5 => faults.imus[1] = ImuFault::None,
+            7 => faults.sda = Some(HeldLow::Clocks(5)),
+            9 => faults.sda = Some(HeldLow::UntilMuxReset),
+            11 => faults.scl = Some(HeldLow::UntilRemoved),
+            13 => faults.scl = None,
+            14 => faults.mux = Some(MuxFault::Silent),
+            16 => faults.bend[0] = Some(Rail::High),
+            6 | 17 => (0..FLOOD).for_each(|_| {
+                board.send(Command::Tare);
+            }),
+            18 => {
+                let now = board.machine.now();
+                board.machine.world_mut().send(UART, &[0x55; 2_000], now);
+            }
+            _ => {}
+        }
+        let pressures_pa = [second * 10_000; 6];
+        let set = Command::SetPressures(SetPressures { pressures_pa, valid_ms: 500 });
+        for command in [Command::Arm, set, Command::Ping, Command::Tare] {
+            board.send(command);
+            run_ms(&mut board, 250);
+        }
+    }
+    assert_eq!(board.machine.resets(), [], "the firmware survives all of it");
+    board
+}
