@@ -35,7 +35,7 @@ fn main() {
 fn table(path: &Path) -> Result<String, String> {
     let file = ArmFile::load(path).map_err(|error| format!("PROPRIO_TABLE {}: {error}", path.display()))?;
     let compiled = file.compile::<Q>(RATE_HZ).map_err(|error| format!("PROPRIO_TABLE {}: {error}", path.display()))?;
-    // The room that board-core's Arm has.
+    // The capacity of board-core's BoardEstimator.
     Estimator::<Q, 6, 100>::new(&compiled.config())
         .map_err(|error| format!("PROPRIO_TABLE {}: {error}", path.display()))?;
     Ok(format!(

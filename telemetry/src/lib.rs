@@ -2,7 +2,7 @@
 //!
 //! The board sends [`Message`]s, the host sends [`Request`]s. Either way an [`Encoder`] makes a frame of each, and a
 //! [`Decoder`] finds frames in a stream of bytes, checks them and counts the missing ones. The crate is `no_std`,
-//! allocates nothing and does no input or output. `docs/PROTOCOL.md` in the repository has every byte.
+//! allocates nothing and does no input or output. `docs/reference/protocol.md` in the repository has every byte.
 //!
 //! | file | contents |
 //! |---|---|
