@@ -8,7 +8,7 @@ use sam3x_models::model::{CYCLES_PER_SECOND, Cycles, I2c, Pin, World};
 const SECOND: Cycles = CYCLES_PER_SECOND;
 const D6: Pin = Pin { port: PIOC, line: 24 };
 
-fn rig() -> Rig {
+fn rig() -> WiredRig {
     WiredRig::new(Scenario::FreeSwing, 7)
 }
 
