@@ -1,4 +1,4 @@
-"""Compares a recording, as the packages mcap and mcap-ros2-support read it, with what proprio makes of it."""
+"""Compares a recording, read with the packages mcap and mcap-ros2-support, with the output of proprio."""
 
 import csv
 import json
@@ -24,7 +24,7 @@ def number(cell):
 
 
 def same(found, expected, tolerance):
-    """Whether two numbers are the same, or both not known."""
+    """True if two numbers are the same, or both unknown."""
     return math.isnan(found) == math.isnan(expected) and not abs(found - expected) > tolerance
 
 

@@ -34,12 +34,12 @@ pub struct TuningToml {
     pub observer: IgnoredAny,
     /// Errors on the training part of the sessions, with the table from before.
     pub before: RmseToml,
-    /// The same with this table.
+    /// Errors on the training part, with this table.
     pub after: RmseToml,
     /// Errors on the validation part of the sessions, with the table from before.
     #[serde(alias = "held_back_before")]
     pub validation_before: RmseToml,
-    /// The same with this table.
+    /// Errors on the validation part, with this table.
     #[serde(alias = "held_back_after")]
     pub validation_after: RmseToml,
 }
@@ -50,15 +50,15 @@ pub struct TuningToml {
 pub struct DriftTuningToml {
     /// Runs of the estimator that were tried.
     pub runs: u64,
-    /// Of `[drift]`, as the others are.
+    /// Key of `[drift]`.
     pub rate_deg_per_s: [f64; 2],
-    /// Of `[drift]`.
+    /// Key of `[drift]`.
     pub rate_random_walk_deg_per_s_sqrt_s: [f64; 2],
-    /// Of `[drift]`.
+    /// Key of `[drift]`.
     pub angle_random_walk_deg_per_sqrt_s: [f64; 2],
-    /// Of `[drift]`.
+    /// Key of `[drift]`.
     pub offset_deg: [f64; 2],
-    /// Of `[drift]`.
+    /// Key of `[drift]`.
     pub offset_s: [f64; 2],
 }
 
@@ -66,11 +66,11 @@ pub struct DriftTuningToml {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RmseToml {
-    /// Of the ends of all segments.
+    /// RMSE of the ends of all segments.
     pub position_rmse_mm: f64,
-    /// Of the tip.
+    /// RMSE of the tip.
     pub tip_rmse_mm: f64,
-    /// Of the headings of all segments' ends.
+    /// RMSE of the headings of all segments' ends.
     pub heading_rmse_deg: f64,
 }
 

@@ -13,7 +13,6 @@ use crate::drift::share::{Share, ShareCounter};
 use crate::kinematics::forward::forward_kinematics;
 use crate::numeric::angle::Angle;
 use crate::numeric::fused::FusedOps;
-use crate::numeric::phase::Turns;
 use crate::numeric::q::Q;
 use crate::segment::SegmentState;
 use crate::sensing::heading::SegmentHeading;
@@ -40,8 +39,8 @@ pub struct Estimator<'t, S, const N: usize, const W: usize, T = ()> {
     contact: ContactMonitor<N>,
     /// Angles of the newest sample; a field, as a local variable would be copied.
     sensed: SensedArm<S, N>,
-    /// θ_c of each segment.
-    theta_c: [Option<Turns>; N],
+    /// Corrected angles of the newest sample; for a table without bend sensors all are unknown.
+    corrected: CorrectedArm<N>,
     fused: Shape<S, N>,
     uncertainty: ShapeUncertainty<N>,
 }
@@ -80,11 +79,16 @@ impl<const N: usize, const W: usize, T: BiasTrace<Q>> Drift<N, W, T> {
         self.has_bias_filter.then_some(&self.bias_filter)
     }
 
-    fn correct<S: FusedOps>(&mut self, config: &ArmConfig<S>, sensed: &SensedArm<S, N>) -> CorrectedArm<N> {
+    fn correct<S: FusedOps>(
+        &mut self,
+        config: &ArmConfig<S>,
+        sensed: &SensedArm<S, N>,
+        corrected: &mut CorrectedArm<N>,
+    ) {
         if self.has_bias_filter {
-            self.bias_filter.correct(config, sensed)
+            self.bias_filter.correct(config, sensed, corrected);
         } else {
-            self.moving_average.correct(config, sensed)
+            self.moving_average.correct(config, sensed, corrected);
         }
     }
 
@@ -122,7 +126,7 @@ impl<'t, S: FusedOps, const N: usize, const W: usize> Estimator<'t, S, N, W> {
 }
 
 impl<'t, S: FusedOps, const N: usize, const W: usize, T: BiasTrace<Q>> Estimator<'t, S, N, W, T> {
-    /// As [`Self::new`], with a trace of the bias filter's operations.
+    /// An estimator at the start of a session, with a trace of the bias filter's operations.
     ///
     /// # Errors
     /// As [`Self::new`].
@@ -141,7 +145,7 @@ impl<'t, S: FusedOps, const N: usize, const W: usize, T: BiasTrace<Q>> Estimator
             drift: Drift::new(trace),
             contact: ContactMonitor::new(),
             sensed: SensedArm::UNKNOWN,
-            theta_c: [None; N],
+            corrected: CorrectedArm::UNKNOWN,
             fused: Vec::new(),
             uncertainty: ShapeUncertainty::new(),
         }
@@ -162,7 +166,7 @@ impl<'t, S: FusedOps, const N: usize, const W: usize, T: BiasTrace<Q>> Estimator
         self.fused.clear();
         self.decimator = Decimator::new();
         self.contact.start();
-        self.theta_c = [None; N];
+        self.corrected = CorrectedArm::UNKNOWN;
         self.sensed = SensedArm::UNKNOWN;
         self.uncertainty = ShapeUncertainty::new();
         let window = config.anchor.window;
@@ -197,7 +201,7 @@ impl<'t, S: FusedOps, const N: usize, const W: usize, T: BiasTrace<Q>> Estimator
         let sensed = &self.sensed;
         let mut segments = Vec::new();
         let mut below = &SegmentHeading::BASE;
-        let angles = sensed.bend.iter().zip(&sensed.headings).zip(self.theta_c);
+        let angles = sensed.bend.iter().zip(&sensed.headings).zip(self.corrected.imu);
         for (segment, ((bend, heading), imu_c)) in self.segments.iter().zip(angles) {
             let [difference, zero] = heading.relative_to(below);
             below = heading;
@@ -210,12 +214,12 @@ impl<'t, S: FusedOps, const N: usize, const W: usize, T: BiasTrace<Q>> Estimator
     /// The stages, in the order of the data.
     fn process(&mut self, sample: &Sample<N>) {
         self.sense(sample);
-        let mut corrected = self.drift.correct(self.config, &self.sensed);
+        self.drift.correct(self.config, &self.sensed, &mut self.corrected);
         if !self.has_bend_sensors {
-            corrected = CorrectedArm::UNKNOWN;
+            self.corrected = CorrectedArm::UNKNOWN;
         }
-        self.fuse(&corrected);
-        self.detect_contact(&corrected);
+        self.fuse();
+        self.detect_contact();
         self.update_uncertainty();
         self.drift.finish(self.sensed.share, self.segments.len());
     }
@@ -237,16 +241,15 @@ impl<'t, S: FusedOps, const N: usize, const W: usize, T: BiasTrace<Q>> Estimator
     }
 
     /// Fusion, and forward kinematics of the fused links.
-    fn fuse(&mut self, corrected: &CorrectedArm<N>) {
+    fn fuse(&mut self) {
         let filters = !self.drift.has_bias_filter;
-        let angles = self.sensed.bend.iter().zip(&corrected.imu).zip(&corrected.fused).zip(&mut self.theta_c);
-        for (segment, (((bend, corrected), fused), theta_c)) in self.segments.iter_mut().zip(angles) {
+        let angles = self.sensed.bend.iter().zip(&self.corrected.imu).zip(&self.corrected.fused);
+        for (segment, ((bend, theta_c), fused)) in self.segments.iter_mut().zip(angles) {
             if filters {
-                segment.filter(*corrected, bend.mean);
+                segment.filter(*theta_c, bend.mean);
             } else {
                 segment.bend_to(*fused);
             }
-            *theta_c = *corrected;
         }
         let links = self.segments.iter().map(SegmentState::fused);
         for (shape, segment) in self.fused.iter_mut().zip(forward_kinematics(links)) {
@@ -254,9 +257,9 @@ impl<'t, S: FusedOps, const N: usize, const W: usize, T: BiasTrace<Q>> Estimator
         }
     }
 
-    fn detect_contact(&mut self, corrected: &CorrectedArm<N>) {
+    fn detect_contact(&mut self) {
         let Some(thresholds) = &self.config.contact else { return };
-        let Self { contact, drift, sensed, .. } = self;
+        let Self { contact, drift, sensed, corrected, .. } = self;
         let condition = |i| drift.bias_filter().map_or(Condition::default(), |filter| filter.condition(i));
         contact.update(self.config, thresholds, self.decimator, sensed.decimated, &corrected.measured, condition);
     }
@@ -331,10 +334,15 @@ impl<'t, S: FusedOps, const N: usize, const W: usize, T: BiasTrace<Q>> Estimator
     /// Propagates the covariance of the headings over segment `i`.
     fn propagate(&mut self, sources: &UncertaintyConfig, i: usize) {
         let (Some(shape), Some(config)) = (self.fused.get(i), self.config.segments.get(i)) else { return };
-        let mut headings = match self.drift.bias_filter() {
-            Some(filter) => filter.heading_covariance(i).map(|covariance| sources.bias_share * covariance),
-            None => self.anchored_covariance(sources, i),
-        };
+        let mut headings = [Q::from_bits(0); N];
+        match self.drift.bias_filter() {
+            Some(filter) => {
+                for (scaled, covariance) in headings.iter_mut().zip(filter.heading_covariances(i)) {
+                    *scaled = sources.bias_share * covariance;
+                }
+            }
+            None => headings = self.anchored_covariance(sources, i),
+        }
         if let Some(own) = headings.get_mut(i) {
             *own += self.absence_variance(i) + sources.heading;
         }
@@ -344,7 +352,7 @@ impl<'t, S: FusedOps, const N: usize, const W: usize, T: BiasTrace<Q>> Estimator
 
     fn is_measured(&self, i: usize) -> bool {
         let is_bend_read = || self.sensed.bend.get(i).is_some_and(|bend| bend.mean.is_some());
-        let measured = self.theta_c.get(i).is_some_and(Option::is_some) || is_bend_read();
+        let measured = self.corrected.imu.get(i).is_some_and(Option::is_some) || is_bend_read();
         self.drift.bias_filter().map_or(measured, BiasFilter::is_started)
     }
 
@@ -354,7 +362,7 @@ impl<'t, S: FusedOps, const N: usize, const W: usize, T: BiasTrace<Q>> Estimator
         let mask = self.contact_mask();
         let mut sums = [Q::from_f64(0.0); N];
         let mut sum = Q::from_f64(0.0);
-        for (j, (total, theta_c)) in sums.iter_mut().zip(&self.theta_c).enumerate() {
+        for (j, (total, theta_c)) in sums.iter_mut().zip(&self.corrected.imu).enumerate() {
             if j <= i {
                 sum += if theta_c.is_some() { sources.theta } else { sources.bend };
                 if mask >> j & 1 != 0 {

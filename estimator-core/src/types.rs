@@ -39,7 +39,7 @@ pub enum ImuReading {
 }
 
 impl ImuReading {
-    /// From a BNO055's quaternion registers w, x, y, z in units of 2⁻¹⁴ (datasheet 3.6.5.5). Exact.
+    /// Converts from a BNO055's quaternion registers w, x, y, z in units of 2⁻¹⁴ (datasheet 3.6.5.5). Exact.
     #[must_use]
     pub const fn from_bno055([w, x, y, z]: [i16; 4]) -> Self {
         Self::Quaternion([(w as i32) << 16, (x as i32) << 16, (y as i32) << 16, (z as i32) << 16])
@@ -78,13 +78,13 @@ impl Method {
 /// Estimate of one segment by every method.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SegmentEstimate<S> {
-    /// From the bend sensors that were read.
+    /// Estimate from the bend sensors that were read.
     pub bend: Option<Link<S>>,
     /// θ_imu,i from the raw IMUs; `None` until the tare is complete.
     pub imu_o: Option<Angle<S>>,
-    /// From the drift-corrected IMUs.
+    /// Estimate from the drift-corrected IMUs.
     pub imu_c: Option<Link<S>>,
-    /// From all sensors: θ_i of KF_orient and P_i of KF_coord, or of the bias filter; `None` before the first
+    /// Estimate from all sensors: θ_i of KF_orient and P_i of KF_coord, or of the bias filter; `None` before the first
     /// measurement.
     pub fusion: Option<Link<S>>,
     /// Number of the segment's bend sensors that were read.

@@ -32,12 +32,12 @@ impl Camera {
         Self { frames: 0, noise: Noise::of_session(Seeds { arm: 0, session: seed }, Source::Camera, 0) }
     }
 
-    /// When the next frame is taken, by the rig's clock: at a grid point, where the truth is of that moment.
+    /// Time of the next frame by the rig's clock, s: a grid point, at which the truth is exact.
     pub fn next_s(&self) -> f64 {
         (self.frames as f64 / (CAMERA_FRAMES_PER_S * GRID_S)).round() * GRID_S
     }
 
-    /// Takes that frame of the arm as it is then; `None`: the frame was dropped.
+    /// Takes the next frame of the arm; `None`: the frame was dropped.
     pub fn take(&mut self, truth: [EndPose; SEGMENTS]) -> Option<Frame> {
         let taken_s = self.next_s();
         self.frames += 1;

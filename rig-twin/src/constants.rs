@@ -115,7 +115,7 @@ pub(crate) const SLOW_PERIODS: f64 = 12.0;
 pub(crate) const FAST_PERIODS: f64 = 0.25;
 /// Pauses in a round, after which they repeat.
 pub(crate) const PAUSES: usize = 32;
-/// Time in which a pause comes, and in which it goes (assumed).
+/// Time of the transition to a pause, and of that back (assumed).
 pub(crate) const PAUSE_BLEND_S: f64 = 4.0;
 /// Range of the swings between two rests (assumed).
 pub(crate) const REST_SPELL_S: (f64, f64) = (20.0, 120.0);
@@ -146,7 +146,7 @@ pub(crate) const TOTAL_HEADING_RAD: f64 = 190.0 * DEGREE_RAD;
 pub(crate) const PUSH_PAUSE_S: (f64, f64) = (3.0, 10.0);
 /// Range of a push's duration (assumed).
 pub(crate) const PUSH_DURATION_S: (f64, f64) = (1.5, 6.0);
-/// Time in which a push comes, and in which it goes (assumed).
+/// Rise time of a push, and its fall time (assumed).
 pub(crate) const PUSH_RISE_S: f64 = 0.5;
 /// Range of the bend that a push adds to its segment (assumed).
 pub(crate) const PUSH_BEND_RAD: (f64, f64) = (8.0 * DEGREE_RAD, 25.0 * DEGREE_RAD);

@@ -25,7 +25,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     for message in stream.into_iter().filter_map(|byte| decoder.push(byte)) {
         match message {
             Ok(Message::Hello(hello)) => {
-                println!("firmware {}, arm {}, boot {}", hello.firmware, hello.arm, hello.boot)
+                println!("firmware {}, arm {}, boot {}", hello.firmware, hello.arm, hello.boot);
             }
             Ok(Message::Estimate(estimate)) => {
                 if let Some(tip) = estimate.segments.last().copied().flatten() {

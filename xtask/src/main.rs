@@ -7,6 +7,7 @@ mod commands;
 mod demo;
 mod pictures;
 mod results;
+mod style;
 mod tool;
 
 use std::process::ExitCode;
@@ -20,6 +21,7 @@ fn main() -> ExitCode {
         Some("verify") => board::verify(),
         Some("bench") => bench::run(),
         Some("results") => results::run(),
+        Some("style") => style::run(),
         Some("commands") => commands::run(),
         Some("pictures") => pictures::run(),
         _ => Err("usage: cargo xtask demo | verify | bench | results | commands | pictures | accept".to_owned()),

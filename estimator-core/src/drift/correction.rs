@@ -67,6 +67,6 @@ impl<const N: usize> CorrectedArm<N> {
 
 /// Removes the drift from the IMUs' bend angles.
 pub trait DriftCorrection<S, const N: usize> {
-    /// Corrects the angles of one sample.
-    fn correct(&mut self, config: &ArmConfig<S>, sensed: &SensedArm<S, N>) -> CorrectedArm<N>;
+    /// Corrects the angles of one sample, in place.
+    fn correct(&mut self, config: &ArmConfig<S>, sensed: &SensedArm<S, N>, corrected: &mut CorrectedArm<N>);
 }

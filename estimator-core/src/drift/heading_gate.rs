@@ -70,7 +70,7 @@ pub enum Verdict<S> {
     Accepted(Turns),
     /// The heading in {W} after an absence, in which the IMU may have restarted near its old zero.
     Returned(Turns),
-    /// The IMU has a new zero after an absence of so many µs: add the angle to its bias.
+    /// The IMU has a new zero: angle to add to its bias, and duration of the absence before it, µs.
     Restarted(Turns, u64),
     /// Not read, or not used.
     Absent,

@@ -133,8 +133,7 @@ impl<const N: usize, const W: usize> MovingAverage<N, W> {
 }
 
 impl<S: Scalar, const N: usize, const W: usize> DriftCorrection<S, N> for MovingAverage<N, W> {
-    fn correct(&mut self, config: &ArmConfig<S>, sensed: &SensedArm<S, N>) -> CorrectedArm<N> {
-        let mut corrected = CorrectedArm::UNKNOWN;
+    fn correct(&mut self, config: &ArmConfig<S>, sensed: &SensedArm<S, N>, corrected: &mut CorrectedArm<N>) {
         let mut below = &SegmentHeading::BASE;
         let angles = corrected.imu.iter_mut().zip(&mut corrected.measured);
         let segments = self.anchors.iter_mut().zip(&sensed.headings).zip(&sensed.bend).zip(angles);
@@ -143,10 +142,12 @@ impl<S: Scalar, const N: usize, const W: usize> DriftCorrection<S, N> for Moving
             below = heading;
             anchor.push(sensed.decimated, difference.zip(bend.mean).map(|(imu, bend)| imu - bend.to_turns()));
             *theta = difference.zip(zero).map(|(imu, zero)| imu - anchor.zero(&config.anchor, zero));
-            if let Some((imu, bend)) = theta.zip(bend.mean) {
-                *measured = MeasuredAngles { imu: Some(imu), steps: Turns::ZERO, bend: Some(bend.to_turns()) };
-            }
+            let both = theta.zip(bend.mean);
+            *measured = MeasuredAngles {
+                imu: both.map(|(imu, _)| imu),
+                steps: Turns::ZERO,
+                bend: both.map(|(_, bend)| bend.to_turns()),
+            };
         }
-        corrected
     }
 }

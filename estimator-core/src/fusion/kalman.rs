@@ -33,12 +33,12 @@ struct MeasurementWeights<S> {
 }
 
 impl<S: FusedOps> MeasurementWeights<S> {
-    fn both(noise: &KalmanParams<S>) -> Self {
+    fn both(params: &KalmanParams<S>) -> Self {
         const LARGEST: Constant = Constant::new(31.0);
         const SHARE: Constant = Constant::new(1.0 / COVARIANCE_LIMIT);
-        let h_squared = noise.h_imu * noise.h_imu * noise.r_bend + noise.h_bend * noise.h_bend * noise.r_imu;
-        let of = [noise.h_imu * noise.r_bend, noise.h_bend * noise.r_imu, -h_squared];
-        let weights = Self { r: noise.r_imu * noise.r_bend, h_squared, of };
+        let h_squared = params.h_imu * params.h_imu * params.r_bend + params.h_bend * params.h_bend * params.r_imu;
+        let of = [params.h_imu * params.r_bend, params.h_bend * params.r_imu, -h_squared];
+        let weights = Self { r: params.r_imu * params.r_bend, h_squared, of };
         // The common factor is arbitrary: halved, P⁻ h² + r is in range.
         let fits = h_squared < (S::constant(LARGEST) - weights.r) * S::constant(SHARE);
         if fits { weights } else { weights.halved() }
@@ -63,13 +63,13 @@ pub struct KalmanGains<S> {
 impl<S: FusedOps> KalmanGains<S> {
     /// Computes the terms from a table's parameters.
     #[must_use]
-    pub fn new(noise: &KalmanParams<S>) -> Self {
-        let KalmanParams { q, r_imu, r_bend, h_imu, h_bend } = *noise;
+    pub fn new(params: &KalmanParams<S>) -> Self {
+        let KalmanParams { q, r_imu, r_bend, h_imu, h_bend } = *params;
         let zero = S::zero();
         Self {
             q,
             p_limit: S::constant(LIMIT) - q,
-            both: MeasurementWeights::both(noise),
+            both: MeasurementWeights::both(params),
             imu: MeasurementWeights { r: r_imu, h_squared: h_imu * h_imu, of: [h_imu, zero, -(h_imu * h_imu)] },
             bend: MeasurementWeights { r: r_bend, h_squared: h_bend * h_bend, of: [zero, h_bend, -(h_bend * h_bend)] },
         }
@@ -107,10 +107,10 @@ impl<S: FusedOps> KalmanGains<S> {
 /// use nalgebra::SVector;
 ///
 /// let gains = KalmanGains::new(&KalmanParams { q: 1.0, r_imu: 1.0, r_bend: 1.0, h_imu: 1.0, h_bend: 1.0 });
-/// let mut block = KalmanFilter::<f64, 1>::new();
-/// block.step(&gains, Some(SVector::from([2.0])), None);
-/// block.step(&gains, Some(SVector::from([5.0])), None);
-/// let (state, covariance) = block.state().expect("it was measured");
+/// let mut filter = KalmanFilter::<f64, 1>::new();
+/// filter.step(&gains, Some(SVector::from([2.0])), None);
+/// filter.step(&gains, Some(SVector::from([5.0])), None);
+/// let (state, covariance) = filter.state().expect("it was measured");
 /// assert!((state.x - 4.0).abs() < 1e-12 && (covariance - 2.0 / 3.0).abs() < 1e-12);
 /// ```
 #[derive(Debug, Clone, Copy)]

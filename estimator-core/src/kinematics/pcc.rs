@@ -116,7 +116,7 @@ pub struct Pcc<S> {
 }
 
 impl<S: FusedOps> Pcc<S> {
-    /// From a segment's geometry.
+    /// Computes the terms from a segment's geometry.
     #[must_use]
     pub fn new(segment: &SegmentConfig<S>) -> Self {
         const LONGEST: Constant = Constant::new(0.7);

@@ -23,25 +23,25 @@ const TURN: f64 = 4_294_967_296.0;
 pub struct Phase(i32);
 
 impl Phase {
-    /// From units of 2⁻³² turns.
+    /// Converts from units of 2⁻³² turns.
     #[must_use]
     pub const fn from_bits(bits: i32) -> Self {
         Self(bits)
     }
 
-    /// In units of 2⁻³² turns.
+    /// Returns the angle in units of 2⁻³² turns.
     #[must_use]
     pub const fn bits(self) -> i32 {
         self.0
     }
 
-    /// From an angle in degrees; whole turns are dropped. For tables and recorded sessions.
+    /// Converts from an angle in degrees; whole turns are dropped. For tables and recorded sessions.
     #[must_use]
     pub fn from_degrees(degrees: f64) -> Self {
         Self(round_to_i64(degrees / 360.0 * TURN) as i32)
     }
 
-    /// From an angle in rad; whole turns are dropped. For tables and recorded sessions.
+    /// Converts from an angle in rad; whole turns are dropped. For tables and recorded sessions.
     #[must_use]
     pub fn from_rad(rad: f64) -> Self {
         Turns::from_rad(rad).phase()
@@ -134,19 +134,19 @@ impl Turns {
     /// Zero.
     pub const ZERO: Self = Self(0);
 
-    /// From units of 2⁻³² turns.
+    /// Converts from units of 2⁻³² turns.
     #[must_use]
     pub const fn from_bits(bits: i64) -> Self {
         Self(bits)
     }
 
-    /// In units of 2⁻³² turns.
+    /// Returns the angle in units of 2⁻³² turns.
     #[must_use]
     pub const fn bits(self) -> i64 {
         self.0
     }
 
-    /// From an angle in rad, rounded to nearest.
+    /// Converts from an angle in rad, rounded to nearest.
     #[must_use]
     pub fn from_rad(rad: f64) -> Self {
         Self(round_to_i64(rad * (TURN / TAU)))

@@ -31,13 +31,13 @@ impl Q {
     /// The smallest value, −32.
     pub const MIN: Self = Self(i32::MIN);
 
-    /// From units of 2⁻²⁶.
+    /// Converts from units of 2⁻²⁶.
     #[must_use]
     pub const fn from_bits(bits: i32) -> Self {
         Self(bits)
     }
 
-    /// In units of 2⁻²⁶.
+    /// Returns the value in units of 2⁻²⁶.
     #[must_use]
     pub const fn to_bits(self) -> i32 {
         self.0
@@ -110,7 +110,8 @@ impl Q {
         sums.iter().fold(0, |all, sum| all | Self::excess(*sum)) < Self::ROOM
     }
 
-    /// [`Self::rounded_dot`] out of range. Not inlined and by value, so that the fast path reserves no registers for it.
+    /// [`Self::rounded_dot`] out of range. Not inlined and by value, so that the fast path reserves no registers for
+    /// it.
     #[cold]
     #[inline(never)]
     fn saturated_dot<const K: usize>(a: [Self; K], b: [Self; K]) -> Self {

@@ -54,7 +54,7 @@ impl<S: FusedOps> BendMap<S> {
 }
 
 impl<S: FusedOps> QuadraticMap<S> {
-    /// From the table's `c2` (rad/V²), `c1` (rad/V), `c0` (rad) and the range `volts` [lo, hi] of the fit.
+    /// Converts from the table's `c2` (rad/V²), `c1` (rad/V), `c0` (rad) and the range `volts` [lo, hi] of the fit.
     #[must_use]
     pub fn from_volts(c2: f64, c1: f64, c0: f64, volts: [f64; 2]) -> Self {
         let [lo, hi] = volts.map(|v| v / VOLTS_PER_COUNT);
@@ -91,7 +91,8 @@ impl<S: FusedOps> QuadraticMap<S> {
 }
 
 impl<S: Scalar> CurveMap<S> {
-    /// From bend angles (rad) at voltages that are evenly spaced from `volts[0]` to `volts[1]`, two at least.
+    /// Samples a curve of bend angles (rad) at voltages that are evenly spaced from `volts[0]` to `volts[1]`, two at
+    /// least.
     ///
     /// At both ends the curve is extrapolated linearly, with the slope of its outer eighth, by a quarter of the range.
     /// Further out, and within ten counts of the ADC's ends, counts are no valid reading.

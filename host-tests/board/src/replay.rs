@@ -4,7 +4,7 @@ use std::path::Path;
 
 use calibration_tables::ArmFile;
 use estimator_core::{Estimator, Method, Q};
-use telemetry::{Estimate, Event, SEGMENTS, Sample, TICK_HZ, Uncertainty, touched};
+use telemetry::{Estimate, Event, SEGMENTS, Sample, TICK_HZ, Uncertainty, contact_flags};
 
 /// The reference arm's table, which the firmware has compiled in.
 ///
@@ -38,12 +38,12 @@ pub fn replay<'s>(samples: impl Iterator<Item = &'s Sample>) -> Vec<Replayed> {
     let (mut estimator, mut tare, mut touched_before) = (start(), 0, [false; SEGMENTS]);
     let mut replayed = Vec::new();
     for sample in samples {
-        if sample.tare != tare {
-            (estimator, tare) = (start(), sample.tare);
+        if sample.tare_epoch != tare {
+            (estimator, tare) = (start(), sample.tare_epoch);
         }
         let estimate = estimator.update_full(&sample.into());
         let (errors, contacts) = (estimator.uncertainties(), estimator.contacts());
-        let touched = touched(&contacts);
+        let touched = contact_flags(&contacts);
         replayed.push(Replayed {
             estimate: Estimate::of(sample.tick, &estimator.shape(&estimate, Method::Fusion)),
             uncertainty: Uncertainty::of(sample.tick, &errors, &contacts),

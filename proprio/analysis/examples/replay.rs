@@ -12,9 +12,9 @@ use std::error::Error;
 use std::path::{Path, PathBuf};
 
 use estimator_core::{Method, Q};
-use proprio_analysis::metrics::Score;
+use proprio_analysis::metrics::ErrorMetrics;
 use proprio_analysis::replay::replay;
-use proprio_session::{NamedTable, NoProgress};
+use proprio_session::{LoadedTable, NoProgress};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let repository = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
@@ -22,19 +22,19 @@ fn main() -> Result<(), Box<dyn Error>> {
     let session = arguments.next().unwrap_or_else(|| repository.join("host-tests/sessions/scenario-2.csv"));
     let table = arguments.next().unwrap_or_else(|| repository.join("calibration-tables/planar-6.toml"));
 
-    let table = NamedTable::load(&table)?;
-    let mut score = Score::new(table.file.length_mm());
+    let table = LoadedTable::load(&table)?;
+    let mut errors = ErrorMetrics::new(table.file.length_mm());
     let mut samples = 0;
     // `Q` is the board's fixed point; `f64` runs the float reference.
     replay::<Q>(&session, &table, &mut NoProgress, |row, outcome| {
-        score.add(row, outcome);
+        errors.add(row, outcome);
         samples += 1;
         Ok(())
     })?;
 
     println!("{samples} samples; tip error, RMSE in mm:");
-    for (method, figures) in Method::ALL.into_iter().zip(score.figures()) {
-        match figures.tip_rmse_mm {
+    for (method, metrics) in Method::ALL.into_iter().zip(errors.metrics()) {
+        match metrics.tip_rmse_mm {
             Some(rmse_mm) => println!("{:>8} {rmse_mm:6.2}", method.name()),
             None => println!("{:>8}      –", method.name()),
         }

@@ -6,7 +6,7 @@ use calibration_tables::DriftKind;
 use estimator_core::{Method, Q};
 use proprio_session::{BoardOutput, Row, is_version_0_1};
 use serde::Serialize;
-use telemetry::{Estimate, SegmentEstimate, Uncertainty, touched};
+use telemetry::{Estimate, SegmentEstimate, Uncertainty, contact_flags};
 
 use crate::Outcome;
 
@@ -121,7 +121,7 @@ impl Comparison {
             self.uncertainties.add(board.tick, *recorded == computed);
         }
         if let Some(recorded) = board.contact {
-            self.contacts.add(board.tick, recorded == touched(&outcome.contacts));
+            self.contacts.add(board.tick, recorded == contact_flags(&outcome.contacts));
         }
     }
 

@@ -50,9 +50,9 @@ pub struct ConsistencyMetrics {
     pub tip_nees: Option<f64>,
     /// Share of the true tips within their 95 % ellipse, %.
     pub tip_inside_percent: Option<f64>,
-    /// As for the tip, over the ends of all segments.
+    /// Mean normalised estimation error squared of the ends of all segments, for each coordinate.
     pub end_nees: Option<f64>,
-    /// As for the tip, over the ends of all segments.
+    /// Share of the true ends of all segments within their 95 % ellipses, %.
     pub end_inside_percent: Option<f64>,
     /// Mean normalised estimation error squared of the bend angles.
     pub theta_nees: Option<f64>,

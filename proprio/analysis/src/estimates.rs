@@ -43,7 +43,7 @@ impl EstimateWriter {
 /// Writes the header for an arm of `segments` segments.
 ///
 /// # Errors
-/// Those of `sink`.
+/// Errors of `sink`.
 pub fn write_header(sink: &mut impl Write, segments: usize, is_smoothed: bool) -> io::Result<()> {
     write!(sink, "time_s")?;
     for method in Method::ALL.map(Method::name).into_iter().chain(is_smoothed.then_some("smoothed")) {
@@ -57,7 +57,7 @@ pub fn write_header(sink: &mut impl Write, segments: usize, is_smoothed: bool) -
 /// Writes one row.
 ///
 /// # Errors
-/// Those of `sink`.
+/// Errors of `sink`.
 pub fn write_row<S: FusedOps>(sink: &mut impl Write, outcome: &Outcome<S>) -> io::Result<()> {
     write!(sink, "{}", outcome.estimate.time_us as f64 / 1e6)?;
     let smoothed = outcome.smoothed.as_ref().map(|smoothed| &smoothed.shape);

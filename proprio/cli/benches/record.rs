@@ -120,7 +120,7 @@ fn messages(tick: u32) -> impl Iterator<Item = Message> {
     let sample = Sample {
         tick,
         time_us: u64::from(tick) * 10_000,
-        tare: 1,
+        tare_epoch: 1,
         bend: [Some((1500 + tick % 1000) as u16); BEND_SENSORS],
         imu: [Some(quaternion); SEGMENTS],
     };

@@ -8,7 +8,9 @@ use clap::builder::Styles;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 
-pub use link::{Convert, Drive, Flash, LinkArgs, Monitor, Ports, Record, Recover, Status};
+pub use link::{
+    ConvertArgs, DriveArgs, FlashArgs, LinkArgs, MonitorArgs, PortsArgs, RecordArgs, RecoverArgs, StatusArgs,
+};
 
 /// Colours of help and errors; off where stderr is not a terminal or NO_COLOR is set.
 pub const STYLES: Styles = Styles::styled();
@@ -27,39 +29,39 @@ pub struct Cli {
 #[derive(Debug, Subcommand)]
 pub enum Command {
     /// Add the truth of a camera with its own clock to a session
-    Align(Align),
+    Align(AlignArgs),
     /// Make a table from sessions with camera truth
-    Calibrate(Calibrate),
+    Calibrate(CalibrateArgs),
     /// Tune a table's bias filter, or its Kalman filters, on sessions with truth; Ctrl-C keeps the best so far
-    Tune(Tune),
+    Tune(TuneArgs),
     /// Run sessions through the estimator and compare with truth
-    Replay(Replay),
+    Replay(ReplayArgs),
     /// Make a page of figures of sessions, and their numbers
-    Report(Report),
+    Report(ReportArgs),
     /// Record a session of the simulated arm
-    Simulate(Simulate),
+    Simulate(SimulateArgs),
     /// Build the firmware with a table, flash it and verify that it runs
-    Flash(Flash),
+    Flash(FlashArgs),
     /// List the serial ports and the Dues on them
-    Ports(Ports),
+    Ports(PortsArgs),
     /// Show the status of a board: versions, sensors, rates, losses
-    Status(Status),
+    Status(StatusArgs),
     /// Record a board's data to an MCAP file
-    Record(Record),
+    Record(RecordArgs),
     /// Drive the arm's pressures, and vent them at the end
-    Drive(Drive),
+    Drive(DriveArgs),
     /// Show a live arm, or a session, on a page in the browser
-    Monitor(Monitor),
+    Monitor(MonitorArgs),
     /// Convert a session to CSV, a recording or raw bytes
-    Convert(Convert),
+    Convert(ConvertArgs),
     /// Recover the complete part of a recording that was cut
-    Recover(Recover),
+    Recover(RecoverArgs),
     /// Print a completion script for a shell
-    Completions(Completions),
+    Completions(CompletionsArgs),
 }
 
 #[derive(Debug, Args)]
-pub struct Align {
+pub struct AlignArgs {
     /// Session without truth, as it was recorded
     pub session: PathBuf,
     /// Camera's file: poses of the markers, one row per frame
@@ -74,7 +76,7 @@ pub struct Align {
 }
 
 #[derive(Debug, Args)]
-pub struct Calibrate {
+pub struct CalibrateArgs {
     /// Sessions with truth: slow sweeps of every segment through its whole range, of one day or of several
     #[arg(required = true, value_name = "SESSION")]
     pub sessions: Vec<PathBuf>,
@@ -106,14 +108,14 @@ pub enum MapName {
 pub enum HysteresisName {
     /// For sensors and segments whose held-back error it lowers
     Auto,
-    /// Everywhere
+    /// For all
     Always,
-    /// Nowhere
+    /// For none
     Never,
 }
 
 #[derive(Debug, Args)]
-pub struct Tune {
+pub struct TuneArgs {
     /// Training sessions with truth, all of the same arm
     #[arg(required = true, value_name = "SESSION")]
     pub sessions: Vec<PathBuf>,
@@ -126,7 +128,7 @@ pub struct Tune {
 }
 
 #[derive(Debug, Args)]
-pub struct Replay {
+pub struct ReplayArgs {
     /// Sessions to replay, one after the other
     #[arg(required = true, value_name = "SESSION")]
     pub sessions: Vec<PathBuf>,
@@ -148,7 +150,7 @@ pub struct Replay {
 }
 
 #[derive(Debug, Args)]
-pub struct Report {
+pub struct ReportArgs {
     /// Sessions to show, with or without truth
     #[arg(required = true, value_name = "SESSION")]
     pub sessions: Vec<PathBuf>,
@@ -167,7 +169,7 @@ pub struct Report {
 }
 
 #[derive(Debug, Args)]
-pub struct Simulate {
+pub struct SimulateArgs {
     /// Scenario: contacts of the arm, and size of its swings
     #[arg(long, value_enum)]
     pub scenario: ScenarioName,
@@ -241,7 +243,7 @@ pub enum MotionName {
 }
 
 #[derive(Debug, Args)]
-pub struct Completions {
+pub struct CompletionsArgs {
     /// The shell
     pub shell: Shell,
 }

@@ -62,7 +62,7 @@ impl Requests {
         self.is_connected
     }
 
-    /// The bytes to send now, if any: a zero, which ends what is left of a damaged frame, and a frame.
+    /// The bytes to send now, if any: a zero, which ends the rest of a damaged frame, and a frame.
     pub fn due(&mut self, now: Instant) -> Option<Vec<u8>> {
         if self.current.as_ref().is_some_and(|current| current.sent >= TRIES && current.due <= now) {
             self.finish(Err(RequestError::NoAnswer));

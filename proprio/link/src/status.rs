@@ -59,7 +59,7 @@ impl From<&Uncertainty> for KnownShape {
         Self {
             theta_sd_deg: segments.map(|segment| segment.theta_rad2().map(|variance| variance.sqrt().to_degrees())),
             tip: tip.end_m2().map(Ellipse::of),
-            touched: segments.map(|segment| segment.is_touched),
+            touched: segments.map(|segment| segment.in_contact),
         }
     }
 }
@@ -170,7 +170,7 @@ impl Seen {
                 self.pass(health.tick);
             }
             Message::Sample(sample) => {
-                if sample.tare > 0 {
+                if sample.tare_epoch > 0 {
                     self.tared.get_or_insert(sample.tick);
                 }
                 self.samples += u32::from(self.ticks.is_some());

@@ -64,7 +64,7 @@ impl StreamDecoder {
             received: self.before.received.saturating_add(now.received),
             damaged: self.before.damaged.saturating_add(now.damaged),
             lost: self.before.lost.saturating_add(lost),
-            foreign: self.before.foreign.saturating_add(now.foreign),
+            wrong_version: self.before.wrong_version.saturating_add(now.wrong_version),
             unknown: self.before.unknown.saturating_add(now.unknown),
         }
     }

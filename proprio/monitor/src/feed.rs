@@ -166,7 +166,7 @@ impl From<&Health> for BoardHealth {
     fn from(health: &Health) -> Self {
         Self {
             load_percent: f64::from(health.load_permille) / 10.0,
-            longest_tick_ms: f64::from(health.longest_tick_us) / 1e3,
+            longest_tick_ms: f64::from(health.max_estimate_latency_us) / 1e3,
             overruns: health.overruns,
             dropped_frames: health.dropped_frames,
             bus_recoveries: health.bus_recoveries,
@@ -189,11 +189,11 @@ impl From<SensorHealth> for SensorStatus {
     fn from(SensorHealth { state, missed }: SensorHealth) -> Self {
         let reason = match state {
             SensorState::Ok => "reads well",
-            SensorState::Off => "does not answer, or reads at a rail",
+            SensorState::NoResponse => "does not answer, or reads at a rail",
             SensorState::Stuck => "repeats itself while others move",
-            SensorState::Garbage => "answers with invalid data",
-            SensorState::Wrong => "contradicts the others",
-            SensorState::Slow => "answers too late",
+            SensorState::Invalid => "answers with invalid data",
+            SensorState::Inconsistent => "contradicts the others",
+            SensorState::Timeout => "answers too late",
             SensorState::Intermittent => "comes and goes",
         };
         Self { state, reason, missed }

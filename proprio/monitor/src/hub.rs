@@ -88,7 +88,7 @@ impl<'t> Hub<'t> {
         if !batch.rows.is_empty() {
             let uncertainty = self.live.uncertainty.as_ref();
             batch.uncertainty = uncertainty.and_then(EndCovariances::of);
-            batch.contact = uncertainty.map(|of| of.segments.map(|segment| segment.is_touched));
+            batch.contact = uncertainty.map(|of| of.segments.map(|segment| segment.in_contact));
             self.shared.publish(&Feed::Rows(batch));
         }
     }

@@ -121,7 +121,7 @@ impl<'t> Live<'t> {
     /// Shortest time from a sample to its arrival, µs, which one-way time stamps cannot show: the latency that the board
     /// reports, and the time of the frame on the line.
     pub fn min_delay_us(&self) -> Option<u32> {
-        self.health.map(|health| health.longest_tick_us.saturating_add(SAMPLE_FRAME_US))
+        self.health.map(|health| health.max_estimate_latency_us.saturating_add(SAMPLE_FRAME_US))
     }
 
     /// The board's clock relative to the host's.
@@ -133,7 +133,7 @@ impl<'t> Live<'t> {
     /// Contact has begun or ended. The next uncertainty has the same, up to a quarter of a second later.
     fn contact(&mut self, touched: [bool; SEGMENTS]) {
         let segments = self.uncertainty.iter_mut().flat_map(|uncertainty| &mut uncertainty.segments);
-        segments.zip(touched).for_each(|(segment, touched)| segment.is_touched = touched);
+        segments.zip(touched).for_each(|(segment, touched)| segment.in_contact = touched);
     }
 
     /// The state of a sensor has changed: bend sensors first, then IMUs. The next health has the same, up to a fifth of a second
@@ -198,7 +198,7 @@ mod tests {
         /// Sends a tick; returns the drifts and innovations of its row that have a value.
         fn tick(&mut self, tick: u32) -> usize {
             let (bend, imu) = ([Some(2000); 2 * SEGMENTS], [Some([16_384, 0, 0, 0]); SEGMENTS]);
-            let sample = Sample { tick, time_us: u64::from(tick) * 10_000, tare: self.tare, bend, imu };
+            let sample = Sample { tick, time_us: u64::from(tick) * 10_000, tare_epoch: self.tare, bend, imu };
             assert!(self.message(tick, Message::Sample(sample)).is_none());
             let estimate = Estimate { tick, segments: [None; SEGMENTS] };
             let TimedRow { row, .. } = self.message(tick, Message::Estimate(estimate)).expect("its row");
@@ -241,7 +241,8 @@ mod tests {
     fn a_repeated_sample_makes_no_row() {
         let mut stream = Stream { live: Live::new(None), gaps: 0, tare: 0 };
         stream.ticks(0..5);
-        let sample = Sample { tick: 3, time_us: 30_000, tare: 0, bend: [None; 2 * SEGMENTS], imu: [None; SEGMENTS] };
+        let sample =
+            Sample { tick: 3, time_us: 30_000, tare_epoch: 0, bend: [None; 2 * SEGMENTS], imu: [None; SEGMENTS] };
         let estimate = Estimate { tick: 3, segments: [None; SEGMENTS] };
         assert!(stream.message(3, Message::Sample(sample)).is_none());
         assert!(stream.message(3, Message::Estimate(estimate)).is_none());

@@ -63,8 +63,8 @@ impl Plain {
         for (i, sensor) in self.live.sensors().iter().enumerate().filter(|(_, sensor)| sensor.state != SensorState::Ok)
         {
             let _ = match i.checked_sub(BEND_SENSORS) {
-                Some(imu) => write!(line, "  IMU {} {:?}", imu + 1, sensor.state),
-                None => write!(line, "  bend {}{} {:?}", i / 2 + 1, SENSOR_NAMES[i % 2], sensor.state),
+                Some(imu) => write!(line, "  IMU {} {}", imu + 1, sensor.state),
+                None => write!(line, "  bend {}{} {}", i / 2 + 1, SENSOR_NAMES[i % 2], sensor.state),
             };
         }
         line

@@ -36,7 +36,7 @@ pub(crate) struct SegmentColumns {
 pub(crate) struct TruthColumns {
     pub x: Column,
     pub y: Column,
-    /// Of all segments or of none.
+    /// Column of the heading, for all segments or for none.
     pub heading: Option<Column>,
 }
 

@@ -1,15 +1,12 @@
 //! Assembly of rows from the messages of a board, recorded or live.
 
 use calibration_tables::MAX_SEGMENTS;
-use telemetry::{Event, Hello, Message, SCHEMA, Sample};
+use telemetry::{Event, Hello, Message, Sample, TICK_US, is_same_layout};
 
 use crate::boot_tracker::{BootTracker, Continuity};
 use crate::clock::HostNs;
 use crate::recording::ReadError;
 use crate::row::{BoardOutput, Row, Truth};
-
-/// Time from one tick to the next, µs.
-const TICK_US: u64 = 10_000;
 
 /// Assembles the rows of a board: its readings, its estimates of them, and the starts of its estimator.
 ///
@@ -56,11 +53,11 @@ impl RowAssembler {
             Message::Hello(hello) => {
                 self.restarted |= self.boots.hello(hello.boot);
                 self.hello = Some(hello.clone());
-                if hello.schema != SCHEMA {
+                if !is_same_layout(hello.schema) {
                     return Err(ReadError::OtherForm(hello.firmware.as_str().to_owned()));
                 }
             }
-            _ if self.hello.as_ref().is_some_and(|hello| hello.schema != SCHEMA) => {}
+            _ if self.hello.as_ref().is_some_and(|hello| !is_same_layout(hello.schema)) => {}
             Message::Sample(sample) => {
                 let continuity = self.boots.sample(sample.tick);
                 self.restarted |= continuity == Continuity::Restarted;
@@ -119,7 +116,7 @@ impl RowAssembler {
                 let passed_us = (at.0.saturating_sub(last.at.0) / 1000).max(TICK_US);
                 self.base_us = (last.row_us + passed_us).saturating_sub(sample.time_us);
                 self.complete = sample.tick == 0;
-            } else if sample.tare != last.sample.tare {
+            } else if sample.tare_epoch != last.sample.tare_epoch {
                 self.complete = is_whole;
             } else {
                 starts = false;

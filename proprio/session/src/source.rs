@@ -99,7 +99,7 @@ impl SessionFile {
     }
 }
 
-/// Counts what is read.
+/// Counts the bytes that are read.
 pub(crate) struct Counted {
     bytes: Box<dyn Read>,
     position: Arc<AtomicU64>,

@@ -28,7 +28,7 @@ impl<W: Write> SessionWriter<W> {
     /// Begins a session with its header.
     ///
     /// # Errors
-    /// Those of `sink`.
+    /// Errors of `sink`.
     pub fn new(sink: W, imu: ImuColumns) -> io::Result<Self> {
         Self::begin(sink, imu, true)
     }
@@ -36,7 +36,7 @@ impl<W: Write> SessionWriter<W> {
     /// Begins a session without truth.
     ///
     /// # Errors
-    /// Those of `sink`.
+    /// Errors of `sink`.
     pub fn without_truth(sink: W, imu: ImuColumns) -> io::Result<Self> {
         Self::begin(sink, imu, false)
     }
@@ -64,7 +64,7 @@ impl<W: Write> SessionWriter<W> {
     /// Writes one sample.
     ///
     /// # Errors
-    /// Those of the sink.
+    /// Errors of the sink.
     pub fn write(&mut self, sample: &Recorded) -> io::Result<()> {
         write!(self.sink, "{}", sample.time_us as f64 / 1e6)?;
         for counts in sample.counts {
@@ -109,7 +109,7 @@ impl<W: Write> CameraWriter<W> {
     /// Begins the file with its header.
     ///
     /// # Errors
-    /// Those of `sink`.
+    /// Errors of `sink`.
     pub fn new(mut sink: W) -> io::Result<Self> {
         write!(sink, "time_s,base_x_mm,base_y_mm,base_heading_deg")?;
         for i in 1..=SEGMENTS {
@@ -122,7 +122,7 @@ impl<W: Write> CameraWriter<W> {
     /// Writes one frame; the cells of a marker that was not found stay empty.
     ///
     /// # Errors
-    /// Those of the sink.
+    /// Errors of the sink.
     pub fn write(&mut self, frame: &Frame) -> io::Result<()> {
         write!(self.sink, "{:.6}", frame.time_s)?;
         for pose in std::iter::once(&frame.base).chain(&frame.ends) {

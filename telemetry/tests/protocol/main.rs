@@ -1,4 +1,4 @@
-//! What board and host rely on.
+//! Properties of the protocol that board and host rely on.
 
 mod budget;
 mod counts;
@@ -15,7 +15,7 @@ fn encode(encoder: &mut Encoder, payload: &impl Payload) -> Vec<u8> {
     encoder.encode(payload, &mut [0; MAX_FRAME]).expect("MAX_FRAME bytes hold any message").to_vec()
 }
 
-/// What a decoder makes of these bytes.
+/// Results of decoding these bytes.
 fn decode<P: Payload>(decoder: &mut Decoder<P>, bytes: &[u8]) -> Vec<Result<P, DecodeError>> {
     bytes.iter().filter_map(|&byte| decoder.push(byte)).collect()
 }

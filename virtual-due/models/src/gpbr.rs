@@ -9,7 +9,7 @@ pub struct Gpbr {
 }
 
 impl Gpbr {
-    /// Zeros, as after power-on.
+    /// State after power-on: zeros.
     pub fn new() -> Self {
         Self::default()
     }

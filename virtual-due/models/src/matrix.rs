@@ -14,7 +14,7 @@ pub struct Matrix {
 }
 
 impl Matrix {
-    /// As after reset.
+    /// State after a reset.
     pub fn new() -> Self {
         Self { words: [0; 0x118 / 4], protection: WriteProtection::new(*b"MAT") }
     }

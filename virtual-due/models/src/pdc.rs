@@ -112,7 +112,7 @@ impl Default for Pdc {
 }
 
 impl Pdc {
-    /// As the chip's reset leaves it.
+    /// State after the chip's reset.
     pub fn new() -> Self {
         Self { receive: Channel::new(), transmit: Channel::new() }
     }

@@ -21,7 +21,7 @@ pub struct Rstc {
 }
 
 impl Rstc {
-    /// As power-on leaves it.
+    /// State after power-on.
     pub fn new() -> Self {
         Self { cause: Cause::General, user_reset: false, mode: URSTEN }
     }

@@ -72,7 +72,7 @@ pub struct Rtc {
 }
 
 impl Rtc {
-    /// Midnight of 1 January 2007, a Monday, as power-on leaves it (datasheet 15.6).
+    /// Midnight of 1 January 2007, a Monday, the state after power-on (datasheet 15.6).
     pub fn new() -> Self {
         let date = Date { year: 2007, month: 1, day: 1, weekday: 1 };
         Self {

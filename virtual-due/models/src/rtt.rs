@@ -24,7 +24,7 @@ pub struct Rtt {
 }
 
 impl Rtt {
-    /// As power-on leaves it: counting 32768 slow clocks each.
+    /// State after power-on: counting 32768 slow clocks each.
     pub fn new() -> Self {
         let ticks = Ticks { origin: 0, hz: SLOW_CLOCK_HZ, divisor: 0x8000 };
         Self { mode: 0x8000, alarm: u32::MAX, status: 0, ticks, seen: 0 }

@@ -95,7 +95,7 @@ pub struct Serial {
 }
 
 impl Serial {
-    /// The port that [`crate::model::World`] calls `port`, as the chip's reset leaves it.
+    /// The port that [`crate::model::World`] calls `port`, after the chip's reset.
     pub fn new(port: usize) -> Self {
         Self {
             port,

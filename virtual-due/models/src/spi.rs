@@ -26,7 +26,7 @@ pub struct Spi {
 }
 
 impl Spi {
-    /// As the chip's reset leaves it.
+    /// State after the chip's reset.
     pub fn new(name: &'static str) -> Self {
         Self { name, enabled: false, received: false }
     }

@@ -26,7 +26,7 @@ pub struct Supc {
 }
 
 impl Supc {
-    /// As power-on leaves it.
+    /// State after power-on.
     pub fn new() -> Self {
         Self { monitor: 0, mode: MR_RESET, wake_up: [0; 2], crystal: None }
     }

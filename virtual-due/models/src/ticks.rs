@@ -7,9 +7,9 @@ use crate::model::{CYCLES_PER_SECOND, Cycles};
 pub struct Ticks {
     /// Instant of tick 0.
     pub origin: Cycles,
-    /// Frequency of the source, Hz; zero: it stands still.
+    /// Frequency of the source, Hz; zero: it does not run.
     pub hz: u32,
-    /// Source periods in a tick; zero: it stands still.
+    /// Source periods in a tick; zero: it does not run.
     pub divisor: u32,
 }
 

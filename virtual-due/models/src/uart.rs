@@ -14,7 +14,7 @@ pub struct Uart {
 }
 
 impl Uart {
-    /// As the chip's reset leaves it; `port` is its number in [`crate::model::World`].
+    /// State after the chip's reset; `port` is its number in [`crate::model::World`].
     pub fn new(port: usize) -> Self {
         Self { serial: Serial::new(port), mode: 0, divisor: 0 }
     }

@@ -25,7 +25,7 @@ pub struct Uotghs {
 }
 
 impl Uotghs {
-    /// As after reset.
+    /// State after a reset.
     pub fn new() -> Self {
         let mut words = vec![0; 0x830 / 4];
         words[0] = DEVCTRL_RESET;

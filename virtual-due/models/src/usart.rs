@@ -39,7 +39,7 @@ pub struct Usart {
 }
 
 impl Usart {
-    /// USART0 … USART3 as the chip's reset leaves it, the world's serial ports 1 … 4.
+    /// USART0 … USART3 after the chip's reset, the world's serial ports 1 … 4.
     pub fn new(port: usize) -> Self {
         Self {
             serial: Serial::new(port),

@@ -27,7 +27,7 @@ pub struct Wdt {
 }
 
 impl Wdt {
-    /// As after reset, counting from time 0 until the signal of a reset.
+    /// State after a reset, counting from time 0 until the signal of a reset.
     pub fn new() -> Self {
         let ticks = Ticks { origin: 0, hz: SLOW_CLOCK_HZ, divisor: DIVIDER };
         Self { mode: MR_RESET, mode_written: false, status: 0, ticks }
@@ -45,7 +45,7 @@ impl Wdt {
         self.mode & WDDIS == 0
     }
 
-    fn bite(&mut self, flag: u32, context: &mut Context) {
+    fn expire(&mut self, flag: u32, context: &mut Context) {
         self.status |= flag;
         if self.mode & WDRSTEN != 0 {
             context.signals.push(Signal::Reset(Cause::Watchdog));
@@ -77,7 +77,7 @@ impl Peripheral for Wdt {
                 let left = self.value().saturating_sub(self.ticks.at(context.now));
                 // A restart above WDD is an error (datasheet 16.4).
                 if left > self.delta() {
-                    self.bite(WDERR, context);
+                    self.expire(WDERR, context);
                 }
                 self.ticks.origin = context.now;
             }
@@ -96,7 +96,7 @@ impl Peripheral for Wdt {
     fn advance(&mut self, context: &mut Context) {
         while let Some(end) = self.end().filter(|end| *end <= context.now) {
             self.ticks.origin = end;
-            self.bite(WDUNF, context);
+            self.expire(WDUNF, context);
         }
     }
 
@@ -126,7 +126,7 @@ mod tests {
     use crate::test_support::Bench;
 
     #[test]
-    fn it_bites_16_seconds_after_reset() {
+    fn it_expires_16_seconds_after_reset() {
         let mut bench = Bench::new(Wdt::new());
         bench.run(16 * CYCLES_PER_SECOND - 1);
         assert!(bench.signals.is_empty());
@@ -135,7 +135,7 @@ mod tests {
     }
 
     #[test]
-    fn fed_in_time_it_does_not_bite() {
+    fn restarted_in_time_it_does_not_expire() {
         let mut bench = Bench::new(Wdt::new());
         bench.write(MR, 0x0FFF_2000 + 25);
         for _ in 0..100 {

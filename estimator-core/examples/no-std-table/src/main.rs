@@ -20,7 +20,7 @@ const TEN_DEGREES: i32 = 119_304_647;
 
 /// Readings at sample `k`: after the tare each segment bends to 10°. The bend sensors are missing.
 fn sample(k: i32) -> Sample<6> {
-    let mut sample = Sample::missing(10_000 * k.unsigned_abs() as u64);
+    let mut sample = Sample::missing(10_000 * u64::from(k.unsigned_abs()));
     let bend = TEN_DEGREES / SAMPLES * (k - 100).max(0);
     let mut heading = 0;
     for imu in &mut sample.imu {

@@ -17,6 +17,7 @@ use crate::types::Condition;
 const ABSENT: Constant = variance_deg(0.5 * 8.0);
 /// Time for which a restart of an IMU and a step of a bend sensor are reported.
 const RECENT_US: u64 = 60_000_000;
+
 /// State of the bias filter for up to `N` segments, in the number type `F`.
 ///
 /// ```
@@ -86,9 +87,9 @@ impl<F: Scalar, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
         self.state.trace_mut()
     }
 
-    /// Covariance of heading `i` with all headings, [`VARIANCE_SCALE`](crate::VARIANCE_SCALE) times rad².
-    pub fn heading_covariance(&self, i: usize) -> [F; N] {
-        self.state.bias_covariance(i)
+    /// Covariances of heading `i` with all headings, [`VARIANCE_SCALE`](crate::VARIANCE_SCALE) times rad².
+    pub fn heading_covariances(&self, i: usize) -> impl Iterator<Item = F> {
+        self.state.bias_covariances(i)
     }
 
     /// Variance of heading `i` in addition to that of its bias: that of the bend sensors for an absent heading, else
@@ -122,8 +123,7 @@ impl<F: Scalar, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
     }
 
     /// θ of all segments, from their headings.
-    pub(super) fn angles<S>(&mut self, segments: &[SegmentConfig<S>]) -> CorrectedArm<N> {
-        let mut corrected = CorrectedArm::UNKNOWN;
+    pub(super) fn angles<S>(&mut self, segments: &[SegmentConfig<S>], corrected: &mut CorrectedArm<N>) {
         let (mut below, mut is_below_read, mut steps_below) = (Turns::ZERO, true, Turns::ZERO);
         let angles = corrected.fused.iter_mut().zip(&mut corrected.imu).zip(&mut corrected.measured);
         for (track, ((fused, imu), measured)) in self.segments.iter_mut().zip(angles).take(segments.len()) {
@@ -136,7 +136,6 @@ impl<F: Scalar, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
             *measured = MeasuredAngles { imu: imu.map(|theta| theta - steps), steps, bend };
             (below, is_below_read, steps_below) = (track.heading, track.is_heading_read, track.bias_steps);
         }
-        corrected
     }
 }
 

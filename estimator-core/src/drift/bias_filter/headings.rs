@@ -22,7 +22,7 @@ const UNSEEN_ZERO: Constant = variance_deg(15.0);
 const RETURNED: Constant = variance_deg(1.0);
 /// Time constant with which an absent heading follows its bend sensors, s.
 pub const ABSENT_TIME_S: f64 = 20.0;
-/// The same in time units.
+/// [`ABSENT_TIME_S`] in time units.
 const ABSENT_TIME: Constant = Constant::new(ABSENT_TIME_S / TIME_UNIT_S);
 /// An IMU is frozen if it does not change while the bend sensors move by this much, and by four of their standard
 /// deviations.

@@ -5,6 +5,7 @@ use crate::drift::bend_monitor::{BendMonitor, TrustedBend};
 use crate::drift::heading_gate::HeadingGate;
 use crate::numeric::phase::Turns;
 use crate::numeric::scalar::Scalar;
+use crate::sensing::bend_sensors::BendAngles;
 
 /// Largest factor on the measurement noise; beyond it a measurement is ignored.
 pub(super) const MAX_RATIO: i32 = 15;
@@ -104,6 +105,11 @@ impl<F: Scalar> SegmentTrack<F> {
     /// Returns `true` if the segment has two bend sensors.
     pub fn has_twins(&self) -> bool {
         self.sensors > 1
+    }
+
+    /// Angles of the bend sensors, corrected for steps.
+    pub fn sensor_angles<S: Scalar>(&self, bend: &BendAngles<S>) -> [Option<F>; SENSORS_PER_SEGMENT] {
+        self.monitor.corrected(bend.sensors.map(|theta| theta.map(|theta| F::from_q(theta.to_q()))))
     }
 
     /// Updates θ_bend and its motion from the angles of the bend sensors.

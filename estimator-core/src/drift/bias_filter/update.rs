@@ -1,7 +1,7 @@
 //! Updates of the bias filter: by bend sensors that have moved, one segment after the other, and by the drift of an arm
 //! at rest.
 
-use crate::config::{BendErrorConfig, BiasFilterConfig, SENSORS_PER_SEGMENT, SegmentConfig};
+use crate::config::{BendErrorConfig, BiasFilterConfig, SegmentConfig};
 use crate::drift::bend_monitor::TrustedBend;
 use crate::drift::bias_filter::filter::BiasFilter;
 use crate::drift::bias_filter::track::{MAX_RATIO, RestChange, SegmentTrack, bounded_ratio, since};
@@ -14,6 +14,7 @@ use crate::numeric::fused::FusedOps;
 use crate::numeric::phase::Turns;
 use crate::numeric::scalar::{Constant, Scalar};
 use crate::numeric::variance::{degrees, is_beyond, larger, magnitude, scaled_square, smaller, variance_deg};
+use crate::sensing::bend_sensors::BendAngles;
 
 /// Travel of the IMUs and of the bend sensors since the last update, below which there is no new information.
 const IMU_TRAVEL: Constant = degrees(1.0);
@@ -57,13 +58,12 @@ impl<F: FusedOps, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
         segments: &[SegmentConfig<S>],
         filter: &BiasFilterConfig,
         sensed: &SensedArm<S, N>,
-        angles: &[[Option<F>; SENSORS_PER_SEGMENT]; N],
     ) -> bool {
         let (i, time_us) = (self.next_segment, sensed.time_us);
-        let (Some(segment), Some(angles)) = (segments.get(i), angles.get(i)) else { return false };
+        let (Some(segment), Some(bend)) = (segments.get(i), sensed.bend.get(i)) else { return false };
         let Some(are_headings_read) = self.are_headings_read(i, time_us) else { return false };
         self.next_segment = following(i, segments);
-        self.check_bend(i, &segment.bend_error, *angles, are_headings_read, time_us);
+        self.check_bend(i, &segment.bend_error, bend, are_headings_read, time_us);
         if sensed.share == Share::Whole {
             self.inflate_offset_variance(i, &segment.bend_error);
             self.predict(i, filter, time_us);
@@ -154,15 +154,16 @@ impl<F: FusedOps, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
 
     /// Compares the bend sensors of segment `i` with the IMUs (steps, deviations, stuck sensors), and updates the
     /// detector of rest.
-    fn check_bend(
+    fn check_bend<S: Scalar>(
         &mut self,
         i: usize,
         error: &BendErrorConfig,
-        angles: [Option<F>; SENSORS_PER_SEGMENT],
+        bend: &BendAngles<S>,
         are_headings_read: bool,
         time_us: u64,
     ) {
         let Some(track) = self.segments.get_mut(i) else { return };
+        let angles = track.sensor_angles(bend);
         let dt = since(track.processed_at_us.replace(time_us).unwrap_or(time_us), time_us);
         track.mean_theta += smaller(dt / F::constant(CREEP_TIME), F::one()) * (track.theta - track.mean_theta);
         track.monitor.compare(angles, dt, time_us);

@@ -56,7 +56,7 @@ impl<S: Scalar, const N: usize> BiasState<S, N> {
 }
 
 impl<S: Scalar, const N: usize, T: BiasTrace<S>> BiasState<S, N, T> {
-    /// As [`Self::new`], with a trace.
+    /// States of `zero` without variance, with a trace.
     pub const fn with_trace(zero: S, trace: T) -> Self {
         Self {
             bias: [Turns::ZERO; N],
@@ -273,7 +273,8 @@ impl<S: Scalar, const N: usize, T: BiasTrace<S>> BiasState<S, N, T> {
     }
 
     /// P of bias `i` with all biases.
-    pub fn bias_covariance(&self, i: usize) -> [S; N] {
-        self.covariance.get(i).map_or([S::zero(); N], |[row, ..]| row.map(|[bias, ..]| bias))
+    pub fn bias_covariances(&self, i: usize) -> impl Iterator<Item = S> {
+        let row = self.covariance.get(i).map_or(&[][..], |[row, ..]| row);
+        row.iter().map(|[bias, ..]| *bias)
     }
 }

@@ -10,7 +10,8 @@ fn degrees(degrees: f64) -> Turns {
     Turns::from_rad(degrees.to_radians())
 }
 
-/// Headings and bend angles at 10 Hz as functions of the time in s, degrees; gives the windows of rest and when they end.
+/// Headings and bend angles at 10 Hz as functions of the time in s, degrees; returns the windows of rest and their end
+/// times.
 fn run(
     detector: &mut RestDetector<f64, 1>,
     seconds: core::ops::Range<u64>,

@@ -52,7 +52,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 /// Writes the stream since the first tare as a session, with the truth in further columns.
 fn record(board: &Board, path: &str) -> Result<(), Box<dyn Error>> {
     let mut session = SessionWriter::new(BufWriter::new(File::create(path)?), ImuColumns::Quaternion)?;
-    for sample in board.samples().filter(|sample| sample.tare > 0) {
+    for sample in board.samples().filter(|sample| sample.tare_epoch > 0) {
         let Some(truth) = board.truths().get(sample.tick as usize) else { continue };
         session.write(&Recorded {
             time_us: sample.time_us,

@@ -46,7 +46,7 @@ fn every_estimate_is_the_hosts_after_a_tare() {
     board.run_ms(2500);
     assert_eq!(board.request(Command::Tare), Outcome::Ack);
     board.swing(&MotionProgram::new(Scenario::FreeSwing, 6), 3);
-    assert_eq!(board.samples().next_back().expect("samples come").tare, 2);
+    assert_eq!(board.samples().next_back().expect("samples come").tare_epoch, 2);
     assert_replays(&board);
 }
 
@@ -55,7 +55,7 @@ fn the_stream_decodes_without_a_loss() {
     let mut board = Board::new(Rig::new(Scenario::FreeSwing, 7));
     board.run_ms(10_000);
     let counts = board.counts();
-    assert_eq!((counts.lost, counts.damaged, counts.foreign, counts.unknown), (0, 0, 0, 0));
+    assert_eq!((counts.lost, counts.damaged, counts.wrong_version, counts.unknown), (0, 0, 0, 0));
     let ticks: Vec<_> = board.samples().map(|sample| sample.tick).collect();
     assert!(ticks.windows(2).all(|pair| pair[1] == pair[0] + 1), "a tick is missing");
     assert!(ticks.len() >= 990);
@@ -85,6 +85,6 @@ fn ticks_are_ten_milliseconds_apart_to_the_microsecond() {
 fn an_estimate_is_made_within_six_milliseconds_of_its_tick() {
     let mut board = Board::new(Rig::new(Scenario::FreeSwing, 10));
     board.run_ms(3000);
-    let longest = board.healths().map(|health| health.longest_tick_us).max().expect("health comes");
+    let longest = board.healths().map(|health| health.max_estimate_latency_us).max().expect("health comes");
     assert!((1000..6000).contains(&longest), "{longest} µs");
 }

@@ -89,7 +89,7 @@ fn an_imu_that_is_absent_at_boot_leaves_the_others_running() {
     let read: Vec<_> = sample.imu.iter().map(Option::is_some).collect();
     assert_eq!(read, [true, true, false, true, true, true]);
     let health = board.healths().next_back().expect("health comes");
-    assert_eq!(health.imu[2].state, SensorState::Off);
+    assert_eq!(health.imu[2].state, SensorState::NoResponse);
     assert_eq!(health.overruns, 0);
     let estimate = board.estimates().next_back().expect("estimates come");
     assert!(estimate.segments.iter().all(Option::is_some), "{estimate:?}");

@@ -93,7 +93,7 @@ impl<'t> ReportBuilder<'t> {
     /// Replays a session in fixed point, and smooths it where the table has the bias filter.
     ///
     /// # Errors
-    /// As [`replay`].
+    /// Errors of [`replay`].
     pub fn add(&mut self, path: &Path, progress: &mut dyn Progress) -> Result<SessionSummary, Error> {
         let table = &self.table.file;
         let mut errors = ErrorMetrics::new(table.length_mm());

@@ -29,7 +29,7 @@ pub struct Shapes {
 #[derive(Debug, Clone)]
 struct Snapshot {
     time_s: f64,
-    /// Of the leading method.
+    /// Tip error of the leading method, m.
     error_m: Option<f64>,
     shapes: [Vec<Option<End>>; Method::ALL.len()],
     truth: [Option<Truth>; MAX_SEGMENTS],

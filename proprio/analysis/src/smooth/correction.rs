@@ -10,16 +10,16 @@ use super::step::{STATES, bias, offset, rate};
 pub struct RowCovariance {
     /// T P: of the biases at the time of the row, then of the offsets, with all states.
     with_states: DMatrix<f64>,
-    /// Of the biases, rad².
+    /// Covariance of the biases, rad².
     biases: DMatrix<f64>,
 }
 
 /// Smoothed less filtered states of a row, and the smoothed covariance.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Correction {
-    /// Of each IMU's bias, rad.
+    /// Correction of each IMU's bias, rad.
     pub biases: Vec<f64>,
-    /// Of each segment's offset, rad.
+    /// Correction of each segment's offset, rad.
     pub offsets: Vec<f64>,
     /// Smoothed covariance of the biases, rad².
     pub covariance: DMatrix<f64>,

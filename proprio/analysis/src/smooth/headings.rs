@@ -19,7 +19,7 @@ pub struct Present {
 /// θ_bend − o. The correction of such a heading follows the same rule, from that which it had when it was last read.
 #[derive(Debug, Clone)]
 pub struct HeadingCorrections {
-    /// Of θ_i, rad.
+    /// Corrections of θ_i, rad.
     angles: Vec<f64>,
 }
 

@@ -53,7 +53,7 @@ pub enum CalibrationError {
     SmallSweep {
         /// The segment, from 1.
         segment: usize,
-        /// From the smallest to the largest bend angle.
+        /// Range of the bend angle, degrees.
         range_deg: f64,
         /// Range needed.
         least_deg: f64,
@@ -63,7 +63,7 @@ pub enum CalibrationError {
     Dead {
         /// The sensor.
         name: String,
-        /// From the lowest to the highest reading.
+        /// Range of the readings, counts.
         range: u16,
     },
     /// A bend sensor at the end of its range.
@@ -134,7 +134,7 @@ pub enum Warning {
     NarrowSweep {
         /// The segment, from 1.
         segment: usize,
-        /// From the smallest to the largest bend angle.
+        /// Range of the bend angle, degrees.
         range_deg: f64,
     },
     /// A map that turns back at the edge of its data.

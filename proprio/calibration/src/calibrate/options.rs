@@ -18,11 +18,11 @@ impl Default for CalibrationOptions {
 /// V–Orient maps that a table gets.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MapMode {
-    /// For each sensor a curve where that lowers the held-back error
+    /// For each sensor a curve where that lowers the held-back error.
     Auto,
-    /// Monotone curves
+    /// Monotone curves.
     Curve,
-    /// The paper's quadratics
+    /// The paper's quadratics.
     Quadratic,
 }
 
@@ -38,10 +38,10 @@ pub enum MapKind {
 /// Compensation of hysteresis and creep.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum HysteresisMode {
-    /// Where it lowers the error on held-back data
+    /// Compensation of sensors and segments whose held-back error it lowers.
     Auto,
-    /// Everywhere
+    /// Compensation of all.
     Always,
-    /// Nowhere
+    /// No compensation.
     Never,
 }

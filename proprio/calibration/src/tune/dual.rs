@@ -69,7 +69,7 @@ impl Neg for Dual {
     }
 }
 
-/// By value: the estimator takes the same branches as with floats.
+/// Compares values alone: the estimator takes the same branches as with floats.
 impl PartialEq for Dual {
     fn eq(&self, other: &Self) -> bool {
         self.0.re == other.0.re

@@ -3,7 +3,7 @@
 /// An error that prevents the tuning of a table's filters on a session.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum TuningError {
-    /// Without a bend sensor there is no fusion.
+    /// The table has no bend sensor, and so no fusion.
     #[error("no segment has a bend sensor, expected at least one: without any there is no fusion to tune")]
     NoBendSensors,
     /// The truth does not move.

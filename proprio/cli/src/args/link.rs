@@ -33,7 +33,7 @@ pub struct LinkArgs {
 }
 
 #[derive(Debug, Args)]
-pub struct Flash {
+pub struct FlashArgs {
     /// Table of the arm
     #[arg(long, value_name = "TABLE.toml")]
     pub table: PathBuf,
@@ -49,14 +49,14 @@ pub struct Flash {
 }
 
 #[derive(Debug, Args)]
-pub struct Ports {
+pub struct PortsArgs {
     /// Print the list as JSON
     #[arg(long)]
     pub json: bool,
 }
 
 #[derive(Debug, Args)]
-pub struct Status {
+pub struct StatusArgs {
     #[command(flatten)]
     pub link: LinkArgs,
     /// Print it as JSON
@@ -65,7 +65,7 @@ pub struct Status {
 }
 
 #[derive(Debug, Args)]
-pub struct Record {
+pub struct RecordArgs {
     #[command(flatten)]
     pub link: LinkArgs,
     /// Recording to write
@@ -77,7 +77,7 @@ pub struct Record {
 }
 
 #[derive(Debug, Args)]
-pub struct Drive {
+pub struct DriveArgs {
     /// Profile: pressures over time, columns time_s and pressure1_kpa to pressure6_kpa
     #[arg(value_name = "PROFILE.csv", required_unless_present = "kpa", conflicts_with = "kpa")]
     pub profile: Option<PathBuf>,
@@ -104,7 +104,7 @@ fn pressures_kpa(text: &str) -> Result<[f64; REGULATORS], String> {
 }
 
 #[derive(Debug, Args)]
-pub struct Monitor {
+pub struct MonitorArgs {
     /// Session to show instead of a board; needs a table
     #[arg(conflicts_with_all = ["port", "emulated", "allow_control", "plain"])]
     pub session: Option<PathBuf>,
@@ -125,7 +125,7 @@ pub struct Monitor {
 }
 
 #[derive(Debug, Args)]
-pub struct Convert {
+pub struct ConvertArgs {
     /// Session: CSV, recording or raw bytes (.bin)
     pub input: PathBuf,
     /// File to write: .csv, .mcap or .bin
@@ -133,7 +133,7 @@ pub struct Convert {
 }
 
 #[derive(Debug, Args)]
-pub struct Recover {
+pub struct RecoverArgs {
     /// Recording that was cut
     pub input: PathBuf,
     /// Recording to write

@@ -3,12 +3,12 @@
 use proprio_calibration::align::{AlignmentReport, ComparedSensors, Written, align};
 use proprio_session::{LAST_LINE, LoadedTable, OutputFile};
 
-use crate::args::Align;
+use crate::args::AlignArgs;
 use crate::error::Error;
 use crate::progress_bar::Bar;
 use crate::terminal;
 
-pub fn run(args: &Align) -> Result<(), Error> {
+pub fn run(args: &AlignArgs) -> Result<(), Error> {
     let arm = LoadedTable::load(&args.arm)?;
     let mut file = OutputFile::create(&args.output, &[&args.session, &args.camera, &args.arm])?;
     let alignment = align(&args.session, &args.camera, &arm, &mut Bar::new())?;

@@ -11,7 +11,7 @@ use proprio_session::check_seconds;
 use telemetry::{Message, REGULATORS};
 
 use super::link;
-use crate::args::Drive;
+use crate::args::DriveArgs;
 use crate::error::Error;
 use crate::interrupt::ShutdownGuard;
 use crate::status_line::{StatusLine, time};
@@ -20,7 +20,7 @@ use crate::terminal;
 /// Longest step of the ramp: after a pause of this program the pressures do not jump.
 const LONGEST_STEP: Duration = PERIOD.saturating_mul(2);
 
-pub fn run(args: &Drive) -> Result<(), Error> {
+pub fn run(args: &DriveArgs) -> Result<(), Error> {
     // Check all arguments before the board is driven.
     let profile = profile(args)?;
     if args.ramp.is_nan() || args.ramp <= 0.0 {
@@ -51,7 +51,7 @@ pub fn run(args: &Drive) -> Result<(), Error> {
     Ok(())
 }
 
-fn profile(args: &Drive) -> Result<Profile, Error> {
+fn profile(args: &DriveArgs) -> Result<Profile, Error> {
     args.seconds.map_or(Ok(()), check_seconds)?;
     match (&args.profile, args.kpa) {
         (Some(path), _) => Ok(Profile::read(path)?),

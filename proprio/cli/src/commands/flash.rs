@@ -5,7 +5,7 @@ use proprio_link::{Baud, Link, LinkError, PortKind, PortSource, find_due, list};
 use proprio_session::LoadedTable;
 use telemetry::TICK_HZ;
 
-use crate::args::Flash;
+use crate::args::FlashArgs;
 use crate::error::Error;
 use crate::flash::{FlashError, Flashing, verify};
 use crate::interrupt::{ShutdownGuard, end};
@@ -14,7 +14,7 @@ use crate::terminal;
 /// File that bossac flashes.
 const IMAGE: &str = "firmware.bin";
 
-pub fn run(args: &Flash) -> Result<(), Error> {
+pub fn run(args: &FlashArgs) -> Result<(), Error> {
     let checksum = LoadedTable::load(&args.table)?.compile::<Q>(TICK_HZ)?.checksum();
     let port = args.port.clone().map_or_else(programming_port, Ok).map_err(FlashError::Port)?;
     if args.dry_run {
@@ -33,7 +33,7 @@ pub fn run(args: &Flash) -> Result<(), Error> {
 }
 
 /// Builds and flashes. Ctrl-C goes to the running command and ends this one after it, without temporary files.
-fn flash(args: &Flash, port: &str) -> Result<(), FlashError> {
+fn flash(args: &FlashArgs, port: &str) -> Result<(), FlashError> {
     let folder = tempfile::tempdir().map_err(FlashError::Temporary)?;
     let flashing = Flashing::plan(&args.source, &args.table, port, &folder.path().join(IMAGE))?;
     flashing.check()?;

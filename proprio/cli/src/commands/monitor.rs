@@ -17,7 +17,7 @@ const CHECK_PERIOD: Duration = Duration::from_millis(50);
 /// Period of the lines of `--plain`.
 const LINE: Duration = Duration::from_secs(1);
 
-pub fn run(args: &args::Monitor) -> Result<(), Error> {
+pub fn run(args: &args::MonitorArgs) -> Result<(), Error> {
     if args.session.is_some() {
         return show(args);
     }
@@ -41,7 +41,7 @@ pub fn run(args: &args::Monitor) -> Result<(), Error> {
 }
 
 /// A session without a board.
-fn show(args: &args::Monitor) -> Result<(), Error> {
+fn show(args: &args::MonitorArgs) -> Result<(), Error> {
     let table = args.link.table.as_deref().ok_or(Error::SessionWithoutTable)?;
     let table = LoadedTable::load(table)?;
     if let Some(session) = &args.session {
@@ -59,7 +59,7 @@ fn show(args: &args::Monitor) -> Result<(), Error> {
 
 /// Starts the server and prints its address.
 fn start(
-    args: &args::Monitor,
+    args: &args::MonitorArgs,
     live: Option<(Link, Subscription)>,
     table: Option<LoadedTable>,
 ) -> Result<Monitor, Error> {

@@ -7,7 +7,7 @@ use proprio_session::check_seconds;
 use telemetry::Counts;
 
 use super::link;
-use crate::args::Record;
+use crate::args::RecordArgs;
 use crate::error::Error;
 use crate::interrupt::ShutdownGuard;
 use crate::status_line::{StatusLine, time};
@@ -15,7 +15,7 @@ use crate::status_line::{StatusLine, time};
 /// Period of the status line.
 const STATUS_PERIOD: Duration = Duration::from_millis(500);
 
-pub fn run(args: &Record) -> Result<(), Error> {
+pub fn run(args: &RecordArgs) -> Result<(), Error> {
     args.seconds.map_or(Ok(()), check_seconds)?;
     let (table, link, events) = link::open(&args.link)?;
     let shutdown = ShutdownGuard::new();

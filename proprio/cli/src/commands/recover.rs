@@ -6,11 +6,11 @@ use std::io::BufReader;
 use proprio_session::recording::{RecoverError, Recovery, recover};
 use proprio_session::{OutputFile, SessionError, SessionProblem};
 
-use crate::args::Recover;
+use crate::args::RecoverArgs;
 use crate::error::Error;
 use crate::terminal;
 
-pub fn run(args: &Recover) -> Result<(), Error> {
+pub fn run(args: &RecoverArgs) -> Result<(), Error> {
     let fail = |problem| SessionError { path: args.input.clone(), line: None, column: None, problem };
     let source = File::open(&args.input).map_err(|error| fail(SessionProblem::Read(error)))?;
     let mut file = OutputFile::create(&args.output, &[&args.input])?;

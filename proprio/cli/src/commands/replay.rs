@@ -11,13 +11,13 @@ use proprio_analysis::session_metrics::{AllMetrics, ByMethod, SessionMetrics};
 use proprio_analysis::{Outcome, smooth};
 use proprio_session::{LAST_LINE, LoadedTable, OutputFile, Row};
 
-use crate::args::Replay;
+use crate::args::ReplayArgs;
 use crate::error::Error;
 use crate::progress_bar::Bar;
 use crate::terminal;
 use crate::text_tables;
 
-pub fn run(args: &Replay) -> Result<(), Error> {
+pub fn run(args: &ReplayArgs) -> Result<(), Error> {
     if args.out.is_some() && args.sessions.len() != 1 {
         return Err(Error::OneSession(args.sessions.len()));
     }
@@ -58,7 +58,7 @@ fn report_agreement(path: &Path, recorded: &Comparison, firmware: Option<&str>) 
 type Compare<S> = fn(&mut Comparison, &Row, &Outcome<S>);
 
 fn replay_all<S: FusedOps>(
-    args: &Replay,
+    args: &ReplayArgs,
     table: &LoadedTable,
     mut out: Option<&mut EstimateWriter>,
     compare: Option<Compare<S>>,

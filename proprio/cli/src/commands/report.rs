@@ -7,12 +7,12 @@ use estimator_core::saturations;
 use proprio_analysis::report::ReportBuilder;
 use proprio_session::{LAST_LINE, LoadedTable, OutputFile};
 
-use crate::args::Report;
+use crate::args::ReportArgs;
 use crate::error::Error;
 use crate::progress_bar::Bar;
 use crate::terminal;
 
-pub fn run(args: &Report) -> Result<(), Error> {
+pub fn run(args: &ReportArgs) -> Result<(), Error> {
     let table = LoadedTable::load(&args.table)?;
     let inputs: Vec<&Path> = args.sessions.iter().map(PathBuf::as_path).chain([table.path]).collect();
     let outputs = [Some(&args.output), args.json.as_ref(), args.csv.as_ref()].into_iter().flatten();

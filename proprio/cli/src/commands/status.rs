@@ -10,7 +10,7 @@ use crate::error::Error;
 use crate::terminal;
 use crate::{args, text_tables};
 
-pub fn run(args: &args::Status) -> Result<(), Error> {
+pub fn run(args: &args::StatusArgs) -> Result<(), Error> {
     let (table, link, events) = link::open(&args.link)?;
     let status = Status::of(&link, &events, table.is_some())?;
     terminal::print(&if args.json { terminal::json(&status) } else { screen(&status) })
@@ -47,7 +47,7 @@ fn screen(status: &Status) -> String {
             format!(
                 "{:.1} %, estimate {} µs and IMUs {} µs after the tick at most",
                 f64::from(health.load_permille) / 10.0,
-                health.longest_tick_us,
+                health.max_estimate_latency_us,
                 health.longest_imu_read_us
             ),
         ),
@@ -98,6 +98,6 @@ fn contact(shape: Option<&KnownShape>) -> String {
 fn sensors(sensors: &[SensorHealth], name: impl Fn(usize) -> String) -> String {
     let ok = sensors.iter().filter(|sensor| sensor.state == SensorState::Ok).count();
     let others = sensors.iter().enumerate().filter(|(_, sensor)| sensor.state != SensorState::Ok);
-    let others = others.map(|(i, sensor)| format!("{} {:?} ({} missed)", name(i), sensor.state, sensor.missed));
+    let others = others.map(|(i, sensor)| format!("{} {} ({} missed)", name(i), sensor.state, sensor.missed));
     [format!("{ok} of {} ok", sensors.len())].into_iter().chain(others).collect::<Vec<_>>().join(", ")
 }

@@ -7,14 +7,14 @@ use calibration_tables::{StopReason, TuningToml};
 use proprio_calibration::tune::{Tuner, Tuning};
 use proprio_session::{LAST_LINE, LoadedTable, OutputFile};
 
-use crate::args::Tune;
+use crate::args::TuneArgs;
 use crate::error::Error;
 use crate::interrupt::ShutdownGuard;
 use crate::progress_bar::Bar;
 use crate::terminal;
 use crate::text_tables;
 
-pub fn run(args: &Tune) -> Result<(), Error> {
+pub fn run(args: &TuneArgs) -> Result<(), Error> {
     let table = LoadedTable::load(&args.table)?;
     let inputs: Vec<&Path> = args.sessions.iter().map(PathBuf::as_path).chain([table.path]).collect();
     let mut file = OutputFile::create(&args.output, &inputs)?;

@@ -21,7 +21,7 @@ const LIBRARY_PATH: Option<&str> = if cfg!(target_os = "macos") {
 
 /// A command.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Step {
+pub struct FlashCommand {
     /// Environment variable of the command.
     variable: Option<(&'static str, String)>,
     program: String,
@@ -32,7 +32,7 @@ pub struct Step {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Flashing {
     source: PathBuf,
-    steps: Vec<Step>,
+    steps: Vec<FlashCommand>,
 }
 
 impl Flashing {
@@ -49,20 +49,20 @@ impl Flashing {
         // Cargo takes a relative path from the folder that it runs in.
         let target = env::var("CARGO_TARGET_DIR").unwrap_or_else(|_| "target".to_owned());
         let elf = format!("{target}/{TARGET}/firmware/firmware");
-        let build = Step {
+        let build = FlashCommand {
             variable: Some(("PROPRIO_TABLE", text(&absolute(table)))),
-            ..Step::new("cargo", &["build", "--profile", "firmware", "-p", "firmware", "--target", TARGET])
+            ..FlashCommand::new("cargo", &["build", "--profile", "firmware", "-p", "firmware", "--target", TARGET])
         };
         let mut steps = vec![build];
         if is_probe_found()? {
-            steps.push(Step::new("probe-rs", &["download", "--chip", CHIP, "--verify", &elf]));
-            steps.push(Step::new("probe-rs", &["reset", "--chip", CHIP]));
+            steps.push(FlashCommand::new("probe-rs", &["download", "--chip", CHIP, "--verify", &elf]));
+            steps.push(FlashCommand::new("probe-rs", &["reset", "--chip", CHIP]));
         } else {
             let image = text(image);
             // bossac adds the folder itself.
             let port = port.strip_prefix("/dev/").unwrap_or(port);
             steps.push(objcopy(&source, &elf, &image)?);
-            steps.push(Step::new("bossac", &["-a", "-p", port, "-U0", "-e", "-w", "-v", "-b", "-R", &image]));
+            steps.push(FlashCommand::new("bossac", &["-a", "-p", port, "-U0", "-e", "-w", "-v", "-b", "-R", &image]));
         }
         Ok(Self { source, steps })
     }
@@ -84,7 +84,7 @@ impl Flashing {
 
     /// The commands, in their order.
     #[must_use]
-    pub fn steps(&self) -> &[Step] {
+    pub fn steps(&self) -> &[FlashCommand] {
         &self.steps
     }
 
@@ -92,7 +92,7 @@ impl Flashing {
     ///
     /// # Errors
     /// [`FlashError::Start`] and [`FlashError::Failed`].
-    pub fn run(&self, step: &Step) -> Result<(), FlashError> {
+    pub fn run(&self, step: &FlashCommand) -> Result<(), FlashError> {
         let mut command = Command::new(&step.program);
         command.args(&step.arguments).envs(step.variable.clone()).current_dir(&self.source);
         command.stdin(Stdio::null()).stdout(io::stderr());
@@ -112,7 +112,7 @@ impl fmt::Display for Flashing {
     }
 }
 
-impl Step {
+impl FlashCommand {
     fn new(program: &str, arguments: &[&str]) -> Self {
         let arguments = arguments.iter().map(|argument| (*argument).to_owned()).collect();
         Self { variable: None, program: program.to_owned(), arguments }
@@ -120,7 +120,7 @@ impl Step {
 }
 
 /// In the syntax of a shell.
-impl fmt::Display for Step {
+impl fmt::Display for FlashCommand {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if let Some((name, value)) = &self.variable {
             write!(f, "{name}={} ", quoted(value))?;
@@ -163,7 +163,7 @@ fn output(program: &str, arguments: &[&str], folder: &Path) -> Result<String, Fl
     if output.status.success() {
         return Ok(String::from_utf8_lossy(&output.stdout).into_owned());
     }
-    let command = Step::new(program, arguments).to_string();
+    let command = FlashCommand::new(program, arguments).to_string();
     Err(FlashError::Failed { program: program.to_owned(), command, status: output.status })
 }
 
@@ -177,13 +177,13 @@ fn is_probe_found() -> Result<bool, FlashError> {
 }
 
 /// The objcopy of the pinned toolchain, which is that of the source's folder.
-fn objcopy(source: &Path, elf: &str, image: &str) -> Result<Step, FlashError> {
+fn objcopy(source: &Path, elf: &str, image: &str) -> Result<FlashCommand, FlashError> {
     let printed = |what| output("rustc", &["--print", what], source).map(|line| line.trim().to_owned());
     let (sysroot, host) = (printed("sysroot")?, printed("host-tuple")?);
     let program = format!("{sysroot}/lib/rustlib/{host}/bin/rust-objcopy{}", env::consts::EXE_SUFFIX);
     // By default it does not search the folder of the toolchain's LLVM.
     let variable = LIBRARY_PATH.map(|name| (name, format!("{sysroot}/lib")));
-    Ok(Step { variable, ..Step::new(&program, &["-O", "binary", elf, image]) })
+    Ok(FlashCommand { variable, ..FlashCommand::new(&program, &["-O", "binary", elf, image]) })
 }
 
 fn is_on_path(program: &str) -> bool {

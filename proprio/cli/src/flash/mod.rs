@@ -10,6 +10,6 @@ mod commands;
 mod error;
 mod verify;
 
-pub use commands::{Flashing, Step};
+pub use commands::{FlashCommand, Flashing};
 pub use error::FlashError;
 pub use verify::verify;

@@ -15,7 +15,7 @@ impl Help for LinkError {
             Self::SeveralDues(_) => "name one with --port; `proprio ports` lists them",
             Self::Gone => "plug it in again",
             Self::Open { source, .. } => open_remedy(source),
-            Self::NoVirtualDue => "build it: cargo build --ignore-rust-version -p virtual-due",
+            Self::NoVirtualDue => "build it: cargo virtual-due --version",
             Self::NoFirmware(_) => {
                 "build it: cargo build --profile firmware -p firmware --target thumbv7m-none-eabi, or name one with --firmware"
             }

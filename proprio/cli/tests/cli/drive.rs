@@ -1,4 +1,4 @@
-//! What `proprio drive` refuses before it looks for a board.
+//! Arguments that `proprio drive` refuses before it looks for a board.
 
 use super::common::Folder;
 

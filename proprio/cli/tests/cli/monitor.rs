@@ -39,7 +39,7 @@ fn what_makes_no_sense_together_is_refused() {
 }
 
 #[test]
-fn the_page_of_a_session_is_where_the_command_says() {
+fn the_page_of_a_session_is_at_the_printed_address() {
     let folder = Folder::new();
     let mut command = folder.command(&["monitor", SESSION, "--table", table(), "--listen", "0"]);
     let mut monitor = command.stdout(Stdio::piped()).spawn().expect("the tool starts");

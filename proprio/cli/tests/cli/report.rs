@@ -1,4 +1,4 @@
-//! The page of `report`: whole, self-contained, with every figure, whatever the sessions lack, and no file where it fails.
+//! The page of `report`: complete, self-contained, with every figure for all kinds of sessions, and no file where it fails.
 
 use super::common::{Csv, Folder, arm, json, session, table};
 

@@ -60,7 +60,7 @@ fn a_sweep_in_which_the_board_restarted_gives_the_same_maps() {
 }
 
 /// A board that restarts vents the arm, which is straight again when it tares. Errors of two such runs are between those of
-/// each by itself, but for the maps, which are those of both.
+/// each alone, but for the maps, which are those of both.
 #[test]
 fn sweeps_one_after_the_other_with_a_restart_between_have_the_errors_of_both() {
     let other = simulate("--scenario sweep --seconds 600 --seed 42");
@@ -85,7 +85,7 @@ fn sweeps_one_after_the_other_with_a_restart_between_have_the_errors_of_both() {
     }
 }
 
-/// A sensor's memory starts where a run starts, wherever the arm is.
+/// A sensor's memory starts where a run starts, at any pose of the arm.
 #[test]
 fn the_hysteresis_of_a_sweep_in_which_the_board_restarted_is_corrected_as_well() {
     let bend = |session: &Csv| {

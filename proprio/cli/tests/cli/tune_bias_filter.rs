@@ -104,9 +104,9 @@ fn the_bias_filter_before_and_after_is_printed() {
     assert!(stdout.contains("runs of the estimator") && stdout.contains("variances are "), "{stdout}");
 }
 
-/// On what is held back, the truth is what the table from before estimates: anything better before it is worse there.
+/// In the validation part the truth is the estimate of the original table: a filter that is better before it is worse there.
 #[test]
-fn a_bias_filter_that_is_worse_on_what_is_held_back_is_not_kept() {
+fn a_bias_filter_with_a_worse_validation_error_is_not_kept() {
     let mut session = simulate("--scenario 1 --seconds 300 --seed 55");
     let before = with_bias_filter(timid(), None);
     let folder = Folder::with("session.csv", session.to_string());
@@ -125,13 +125,13 @@ fn a_table_with_the_anchor_has_no_more_than_its_filters_tuned() {
     assert!(!folder.read("tuned.toml").contains("drift"));
 }
 
-/// `replay` on the part that is not held back finds the factor.
+/// `replay` on the training part gives the factor.
 #[test]
 fn variances_that_are_too_small_grow_by_one_factor_to_what_the_errors_are() {
     let small = deviations(0.1);
     let mut session = training();
     let (folder, mut file, record) = tuned(&session, with_bias_filter(DriftToml::kalman(), Some(small.clone())));
-    let factor = record.covariance_inflation.expect("the table says what errors come from");
+    let factor = record.covariance_inflation.expect("the table has error sources");
     let grown = file.uncertainty.replace(small.clone()).expect("it still does");
     assert!(factor > 1.0, "{factor}");
     for (before, after, by) in [

@@ -36,7 +36,7 @@ fn run_until_heeded(folder: &Folder) -> Run {
 }
 
 #[test]
-fn an_interrupted_tuning_leaves_the_best_table_so_far_and_says_so() {
+fn an_interrupted_tuning_writes_the_best_table_so_far_and_reports_it() {
     let folder = Folder::with("session.csv", simulate("--scenario 1 --seconds 600 --seed 54").to_string());
     folder.write("table.toml", spoiled());
     let run = run_until_heeded(&folder);

@@ -1,4 +1,4 @@
-//! What filters cannot be tuned on: each refused by the name of the file, with what was expected, and no table written.
+//! Sessions and tables that cannot be tuned: each is refused with the file's name and the expected value, without a table.
 
 use calibration_tables::ArmFile;
 

@@ -12,7 +12,7 @@ fn here(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../host-tests").join(name)
 }
 
-/// What `replay --json` reports of the recorded estimates, and what it prints on stderr.
+/// Report of `replay --json` about the recorded estimates, and its output on stderr.
 fn replayed(recording: &str, table: &str) -> (Value, String) {
     let (recording, table) = (here("recordings").join(recording), here("tables").join(table));
     let run = Folder::new().done(&["replay", text(&recording), "--table", text(&table), "--json"]);
@@ -42,7 +42,7 @@ fn estimates_behind_a_full_window_and_contacts_are_reproduced_bit_for_bit() {
 }
 
 #[test]
-fn estimates_of_the_drift_observer_are_not_compared_and_replay_says_so_in_one_sentence() {
+fn estimates_of_the_drift_observer_are_not_compared_and_replay_reports_that_in_one_sentence() {
     let (recorded, stderr) = replayed("version-0.1-observer.mcap", "version-0.1.toml");
     assert_eq!((&recorded["estimates"], &recorded["not_compared"]), (&240.into(), &240.into()));
     assert_eq!((&recorded["first_difference"], &recorded["table_matches"]), (&Value::Null, &Value::Null));

@@ -1,4 +1,4 @@
-//! What noise on the line does: nothing but losses, and those are counted.
+//! Noise on the line causes losses alone, which are counted.
 
 use proprio_link::{Received, StreamDecoder};
 use rand_chacha::ChaCha8Rng;
@@ -10,7 +10,7 @@ use super::line::{hello, sample};
 const SAMPLES: u32 = 400;
 const SEEDS: u64 = 200;
 
-/// A Hello, and samples with a Hello now and then; each frame by itself.
+/// A Hello, and samples with a Hello now and then, frame by frame.
 fn frames() -> (Vec<Message>, Vec<Vec<u8>>) {
     let mut messages = vec![Message::Hello(hello(1))];
     for tick in 0..SAMPLES {
@@ -35,22 +35,22 @@ fn encoded(messages: Vec<Message>) -> (Vec<Message>, Vec<Vec<u8>>) {
     (messages, frames)
 }
 
-struct Heard {
+struct Decoded {
     messages: Vec<Message>,
     decoder: StreamDecoder,
 }
 
-fn hear(bytes: &[u8]) -> Heard {
+fn decode(bytes: &[u8]) -> Decoded {
     let (mut decoder, mut messages) = (StreamDecoder::new(None), Vec::new());
     decoder.open();
     for byte in bytes {
-        decoder.push(*byte, |taken| match taken {
+        decoder.push(*byte, |part| match part {
             Received::Message(message) => messages.push(message),
             Received::Undecoded(_) => {}
             other => panic!("one run of one board: {other:?}"),
         });
     }
-    Heard { messages, decoder }
+    Decoded { messages, decoder }
 }
 
 fn below(random: &mut ChaCha8Rng, end: usize) -> usize {
@@ -83,11 +83,11 @@ fn disturb(frames: &[Vec<u8>], random: &mut ChaCha8Rng, kinds: usize) -> Vec<u8>
 fn no_frame_is_accepted_that_was_not_sent() {
     let (messages, frames) = frames();
     for seed in 0..SEEDS {
-        let heard = hear(&disturb(&frames, &mut ChaCha8Rng::seed_from_u64(seed), 3));
-        for message in &heard.messages {
+        let decoded = decode(&disturb(&frames, &mut ChaCha8Rng::seed_from_u64(seed), 3));
+        for message in &decoded.messages {
             assert!(messages.contains(message), "seed {seed}: {message:?}");
         }
-        assert!(heard.messages.len() > messages.len() / 2, "seed {seed}: most is heard");
+        assert!(decoded.messages.len() > messages.len() / 2, "seed {seed}: most is decoded");
     }
 }
 
@@ -95,10 +95,10 @@ fn no_frame_is_accepted_that_was_not_sent() {
 fn what_flips_and_cuts_destroy_is_counted_to_the_frame() {
     let (messages, frames) = frames();
     for seed in 0..SEEDS {
-        let heard = hear(&disturb(&frames, &mut ChaCha8Rng::seed_from_u64(seed), 2));
-        let lost = messages.len() - heard.messages.len();
-        assert_eq!(heard.decoder.counts().lost as usize, lost, "seed {seed}");
-        assert_eq!(heard.decoder.restarts(), 0);
+        let decoded = decode(&disturb(&frames, &mut ChaCha8Rng::seed_from_u64(seed), 2));
+        let lost = messages.len() - decoded.messages.len();
+        assert_eq!(decoded.decoder.counts().lost as usize, lost, "seed {seed}");
+        assert_eq!(decoded.decoder.restarts(), 0);
     }
 }
 
@@ -106,14 +106,14 @@ fn what_flips_and_cuts_destroy_is_counted_to_the_frame() {
 fn pieces_that_come_twice_are_no_loss_and_hide_none() {
     let (messages, frames) = distinct_frames();
     for seed in 0..SEEDS {
-        let heard = hear(&disturb(&frames, &mut ChaCha8Rng::seed_from_u64(seed), 3));
-        let lost = messages.iter().filter(|message| !heard.messages.contains(message)).count();
-        assert_eq!(heard.decoder.counts().lost as usize, lost, "seed {seed}");
+        let decoded = decode(&disturb(&frames, &mut ChaCha8Rng::seed_from_u64(seed), 3));
+        let lost = messages.iter().filter(|message| !decoded.messages.contains(message)).count();
+        assert_eq!(decoded.decoder.counts().lost as usize, lost, "seed {seed}");
     }
 }
 
 #[test]
-fn a_restart_is_told_and_is_no_loss() {
+fn a_restart_is_reported_and_is_no_loss() {
     let (_, frames) = frames();
     let mut encoder = Encoder::new();
     let mut buffer = [0; MAX_FRAME];
@@ -127,14 +127,14 @@ fn a_restart_is_told_and_is_no_loss() {
     let (mut decoder, mut restarts) = (StreamDecoder::new(None), 0);
     decoder.open();
     for byte in bytes {
-        decoder.push(byte, |taken| restarts += u32::from(taken == Received::Restarted));
+        decoder.push(byte, |part| restarts += u32::from(part == Received::Restarted));
     }
     assert_eq!((restarts, decoder.restarts(), decoder.counts().lost, decoder.counts().damaged), (1, 1, 0, 1));
 }
 
 /// After a power cut boots are numbered from 1 again.
 #[test]
-fn a_restart_is_told_by_its_ticks_where_the_boot_has_the_same_number() {
+fn a_restart_with_the_same_boot_number_is_detected_by_its_ticks() {
     let (_, frames) = frames();
     let mut encoder = Encoder::new();
     let mut buffer = [0; MAX_FRAME];
@@ -145,7 +145,7 @@ fn a_restart_is_told_by_its_ticks_where_the_boot_has_the_same_number() {
     decoder.open();
     let mut take = |decoder: &mut StreamDecoder, bytes: &[u8]| {
         for byte in bytes {
-            decoder.push(*byte, |taken| restarts += u32::from(taken == Received::Restarted));
+            decoder.push(*byte, |part| restarts += u32::from(part == Received::Restarted));
         }
     };
     take(&mut decoder, &first);

@@ -18,7 +18,7 @@ fn a_line_that_comes_back_is_opened_again_under_its_new_name() {
     let (link, events) = Link::start(Box::new(line.clone()), None).expect("memory opens");
     assert_eq!(wait_for(&events, opened), "line 1");
     line.board().restart(1);
-    (0..50).for_each(|tick| line.board().say(&Message::Sample(sample(tick))));
+    (0..50).for_each(|tick| line.board().send(&Message::Sample(sample(tick))));
     wait_for(&events, |what| {
         matches!(what, EventKind::Message(Message::Sample(last)) if last.tick == 49).then_some(())
     });
@@ -52,7 +52,7 @@ fn a_board_that_lost_its_power_with_the_cable_has_restarted_however_short_it_ran
     let line = Line::new();
     let (link, events) = Link::start(Box::new(line.clone()), None).expect("memory opens");
     line.board().restart(1);
-    (0..20).for_each(|tick| line.board().say(&Message::Sample(sample(tick))));
+    (0..20).for_each(|tick| line.board().send(&Message::Sample(sample(tick))));
     wait_for(&events, |what| {
         matches!(what, EventKind::Message(Message::Sample(last)) if last.tick == 19).then_some(())
     });
@@ -60,7 +60,7 @@ fn a_board_that_lost_its_power_with_the_cable_has_restarted_however_short_it_ran
     wait_for(&events, |what| matches!(what, EventKind::Lost(_)).then_some(()));
 
     line.board().restart(1);
-    (0..5).for_each(|tick| line.board().say(&Message::Sample(sample(tick))));
+    (0..5).for_each(|tick| line.board().send(&Message::Sample(sample(tick))));
     line.board().unplugged = false;
     wait_for(&events, |what| matches!(what, EventKind::Restarted).then_some(()));
     wait_for(&events, |what| matches!(what, EventKind::Message(Message::Sample(last)) if last.tick == 4).then_some(()));

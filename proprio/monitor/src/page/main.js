@@ -206,8 +206,7 @@ function reset() {
   plots.forEach(({ range }) => range.reset());
   app.fix(false);
   app.view.span = Number($('span').value) || 0;
-  if (app.session) app.view.end = app.session.store.last;
-  else app.view.follow();
+  if (app.session) app.view.end = app.session.store.last; else app.view.follow();
   app.changed();
 }
 
@@ -244,8 +243,7 @@ function armSpec() {
   const row = store?.count ? store.rowAt(app.view.cursor ?? store.last) : 0;
   const geometry = (app.session ? app.session.arm : app.arm)?.geometry;
   const isNow = !app.session && app.view.isFollowing;
-  const ellipseSigmas = app.arm?.ellipse_sigmas;
-  return { store, row, geometry, colours: palette, uncertainty: isNow && app.uncertainty, ellipseSigmas, contact: isNow && app.contact };
+  return { store, row, geometry, colours: palette, ellipseSigmas: app.arm?.ellipse_sigmas, uncertainty: isNow && app.uncertainty, contact: isNow && app.contact };
 }
 
 function plotSpec({ prefix, range, canvas }) {

@@ -41,7 +41,7 @@ impl<'p> Samples<'p> {
         for (place, reading) in imu.iter_mut().zip(row.sample.imu) {
             *place = reading.map(|reading| self.quaternion(reading));
         }
-        let sample = Sample { tick: self.tick, time_us: row.sample.time_us, tare: self.tare, bend, imu };
+        let sample = Sample { tick: self.tick, time_us: row.sample.time_us, tare_epoch: self.tare, bend, imu };
         self.tick += 1;
         let mut buffer = [0; MAX_FRAME];
         let frame = self.encoder.encode(&Message::Sample(sample), &mut buffer).expect("every sample fits a frame");

@@ -26,7 +26,7 @@ pub fn sample(stamp: HostNs, sample: &Sample) -> Vec<u8> {
     let mut cdr = header(stamp);
     cdr.u32(sample.tick);
     cdr.u64(sample.time_us);
-    cdr.u8(sample.tare);
+    cdr.u8(sample.tare_epoch);
     cdr.u16(mask(&sample.bend));
     cdr.u8(mask(&sample.imu) as u8);
     sample.bend.iter().for_each(|counts| cdr.u16(counts.unwrap_or_default()));
@@ -77,7 +77,7 @@ pub fn uncertainty(stamp: HostNs, of: &Uncertainty) -> Vec<u8> {
         cdr.floats(&segment.end_m2().unwrap_or([f64::NAN; 3]));
     }
     of.segments.iter().for_each(|segment| cdr.u8(segment.contact_percent));
-    of.segments.iter().for_each(|segment| cdr.u8(segment.is_touched.into()));
+    of.segments.iter().for_each(|segment| cdr.u8(segment.in_contact.into()));
     cdr.into_bytes()
 }
 
@@ -90,7 +90,7 @@ pub fn contact(stamp: HostNs, touched: [bool; SEGMENTS]) -> Vec<u8> {
     cdr.into_bytes()
 }
 
-/// From the estimator's bits to rad or m.
+/// Converts the estimator's bits to rad or m.
 fn value(bits: i32) -> f64 {
     Q::from_bits(bits).to_f64()
 }
@@ -130,7 +130,7 @@ pub fn chip_number(chip: &[u8; 16]) -> String {
 fn board(cdr: &mut CdrWriter, health: &Health, hello: Option<&Hello>, chip: &str) {
     let mut values = vec![
         ("tick", health.tick.to_string()),
-        ("longest_tick_us", health.longest_tick_us.to_string()),
+        ("longest_tick_us", health.max_estimate_latency_us.to_string()),
         ("longest_imu_read_us", health.longest_imu_read_us.to_string()),
         ("load_percent", (f64::from(health.load_permille) / 10.0).to_string()),
         ("overruns", health.overruns.to_string()),
@@ -155,10 +155,10 @@ fn board(cdr: &mut CdrWriter, health: &Health, hello: Option<&Hello>, chip: &str
 fn sensor_status(cdr: &mut CdrWriter, name: &str, sensor: SensorHealth, chip: &str) {
     let level = match sensor.state {
         SensorState::Ok => Level::Ok,
-        SensorState::Slow | SensorState::Intermittent => Level::Warn,
+        SensorState::Timeout | SensorState::Intermittent => Level::Warn,
         _ => Level::Error,
     };
-    status(cdr, level, name, &format!("{:?}", sensor.state), chip, &[("missed", sensor.missed.to_string())]);
+    status(cdr, level, name, &sensor.state.to_string(), chip, &[("missed", sensor.missed.to_string())]);
 }
 
 /// `diagnostic_msgs/msg/DiagnosticStatus`'s levels.

@@ -55,7 +55,7 @@ impl<W: Write> Recorder<W> {
     /// Begins a recording of the line of this name at `at`.
     ///
     /// # Errors
-    /// Those of `sink`.
+    /// Errors of `sink`.
     pub fn new(sink: W, at: HostNs, line: &str) -> io::Result<Self> {
         // Chunks are put together in memory, so that the file only grows. Compression would need a C compiler.
         let options = WriteOptions::new()
@@ -102,7 +102,7 @@ impl<W: Write> Recorder<W> {
     /// Attaches the board's table, as TOML.
     ///
     /// # Errors
-    /// Those of the sink.
+    /// Errors of the sink.
     pub fn attach_table(&mut self, at: HostNs, toml: &[u8]) -> io::Result<()> {
         self.attach(at, "table.toml", "application/toml", toml)
     }
@@ -122,7 +122,7 @@ impl<W: Write> Recorder<W> {
     /// Writes received bytes.
     ///
     /// # Errors
-    /// Those of the sink.
+    /// Errors of the sink.
     pub fn bytes(&mut self, at: HostNs, bytes: &[u8]) -> io::Result<()> {
         self.flush_if_due(at)?;
         self.raw_messages = self.raw_messages.wrapping_add(1);
@@ -132,7 +132,7 @@ impl<W: Write> Recorder<W> {
     /// Writes a message that was decoded from them.
     ///
     /// # Errors
-    /// Those of the sink.
+    /// Errors of the sink.
     pub fn message(&mut self, at: HostNs, message: &Message) -> io::Result<()> {
         match message {
             Message::Hello(hello) => self.attach_hello(at, hello),
@@ -161,7 +161,7 @@ impl<W: Write> Recorder<W> {
     /// Writes the truth of the sample with this tick, which was written before.
     ///
     /// # Errors
-    /// Those of the sink.
+    /// Errors of the sink.
     pub fn truth(&mut self, at: HostNs, tick: u32, ends: &[Option<Truth>]) -> io::Result<()> {
         let channel = channel_once(&mut self.channels.truth, &mut self.mcap, TRUTH, &schema::TRUTH)?;
         let stamp = self.stamp(tick, at);
@@ -171,7 +171,7 @@ impl<W: Write> Recorder<W> {
     /// Writes the pressures that the host has requested.
     ///
     /// # Errors
-    /// Those of the sink.
+    /// Errors of the sink.
     pub fn set_points(&mut self, at: HostNs, requested: &SetPressures) -> io::Result<()> {
         let channel = channel_once(&mut self.channels.set_points, &mut self.mcap, SET_POINTS, &schema::SET_POINTS)?;
         self.requested = self.requested.wrapping_add(1);
@@ -181,7 +181,7 @@ impl<W: Write> Recorder<W> {
     /// Writes a mark that a person has set.
     ///
     /// # Errors
-    /// Those of the sink.
+    /// Errors of the sink.
     pub fn mark(&mut self, at: HostNs, text: &str) -> io::Result<()> {
         let channel = channel_once(&mut self.channels.marks, &mut self.mcap, MARKS, &schema::STRING)?;
         self.marks = self.marks.wrapping_add(1);
@@ -191,7 +191,7 @@ impl<W: Write> Recorder<W> {
     /// Writes buffered data that has waited long enough.
     ///
     /// # Errors
-    /// Those of the sink.
+    /// Errors of the sink.
     pub fn flush_if_due(&mut self, now: HostNs) -> io::Result<()> {
         if now.0.saturating_sub(self.flushed.0) < FLUSH_NS {
             return Ok(());
@@ -203,7 +203,7 @@ impl<W: Write> Recorder<W> {
     /// Completes the recording with its index and returns the sink.
     ///
     /// # Errors
-    /// Those of the sink.
+    /// Errors of the sink.
     pub fn finish(mut self) -> io::Result<W> {
         self.mcap.finish().map_err(io_error)?;
         let mut sink = self.mcap.into_inner().into_inner();

@@ -44,7 +44,7 @@ impl Default for Adc {
 }
 
 impl Adc {
-    /// As the chip's reset leaves it.
+    /// State after the chip's reset.
     pub fn new() -> Self {
         Self {
             mode: 0,

@@ -71,7 +71,7 @@ pub struct Pio {
 }
 
 impl Pio {
-    /// As after reset: all pins are inputs of the controller with pull-ups.
+    /// State after a reset: all pins are inputs of the controller with pull-ups.
     pub fn new(port: u8) -> Self {
         Self {
             port,

@@ -86,7 +86,7 @@ pub struct Pmc {
 }
 
 impl Pmc {
-    /// As after reset: the chip runs from the fast RC oscillator.
+    /// State after a reset: the chip runs from the fast RC oscillator.
     pub fn new() -> Self {
         Self {
             system_clocks: 1,

@@ -58,7 +58,7 @@ impl Default for Pwm {
 }
 
 impl Pwm {
-    /// As the chip's reset leaves it.
+    /// State after the chip's reset.
     pub fn new() -> Self {
         Self {
             clock: 0,

@@ -73,7 +73,7 @@ pub struct Channel {
 }
 
 impl Channel {
-    /// As the chip's reset leaves it.
+    /// State after the chip's reset.
     pub fn new(triggers: bool) -> Self {
         Self {
             mode: Mode(0),

@@ -53,7 +53,7 @@ pub struct Tc {
 }
 
 impl Tc {
-    /// TC0, TC1 or TC2 as the chip's reset leaves it.
+    /// TC0, TC1 or TC2 after the chip's reset.
     pub fn new(block: usize) -> Self {
         Self {
             block,

@@ -69,7 +69,7 @@ pub struct Master {
 }
 
 impl Master {
-    /// As the chip's reset leaves it.
+    /// State after the chip's reset.
     pub fn new(index: usize) -> Self {
         Self {
             index,

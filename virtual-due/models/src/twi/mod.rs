@@ -44,7 +44,7 @@ pub struct Twi {
 }
 
 impl Twi {
-    /// TWI0 or TWI1 as the chip's reset leaves it.
+    /// TWI0 or TWI1 after the chip's reset.
     pub fn new(index: usize) -> Self {
         Self { index, master: Master::new(index), slave_mode: 0, interrupt_mask: 0, pdc: Pdc::new() }
     }

@@ -39,7 +39,7 @@ pub struct Registers {
 }
 
 impl Registers {
-    /// As power-on leaves them.
+    /// State after power-on.
     pub fn new() -> Self {
         let mut registers = Self { page: 0, pages: [[0; 128]; 2] };
         // Chip, accelerometer, magnetometer, gyroscope; software 3.17, boot loader 21.

@@ -27,9 +27,9 @@ pub fn figures() -> Vec<Figure> {
     let mut figures = vec![
         Figure { name: "flash", value: size(&FLASH) },
         Figure { name: "static_ram", value: size(&STATIC_RAM) },
-        Figure { name: "stack", value: stack_in_trouble() },
+        Figure { name: "stack", value: deepest_stack() },
     ];
-    figures.extend(in_good_health());
+    figures.extend(without_faults());
     figures
 }
 
@@ -41,7 +41,7 @@ fn size(names: &[&str]) -> f64 {
 }
 
 /// Figures of a rig without faults, with all messages at 100 Hz.
-fn in_good_health() -> [Figure; 3] {
+fn without_faults() -> [Figure; 3] {
     const SECONDS: u32 = 60;
     let mut board = Board::new(Rig::new(Scenario::FreeSwing, 1));
     board.run_ms(2_000);
@@ -59,7 +59,7 @@ fn in_good_health() -> [Figure; 3] {
 }
 
 /// The deepest stack, bytes, in a run with all requests and many faults. A reset would paint it again.
-fn stack_in_trouble() -> f64 {
+fn deepest_stack() -> f64 {
     let board = fault_run::board(Board::run_ms);
     let [end, start] =
         ["_stack_end", "_stack_start"].map(|name| board.machine.symbol(name).expect("the linker defines it"));

@@ -1,4 +1,4 @@
-//! Who the board is, and how it came up.
+//! Identity of the board and its firmware, for the `Hello`.
 
 use atsam3x8e_hal::crash;
 use atsam3x8e_hal::reset::Cause;
@@ -6,7 +6,7 @@ use telemetry::{Hello, PROTOCOL_VERSION, ResetCause, SCHEMA, Text};
 
 use crate::table;
 
-/// The message that says so.
+/// The board's `Hello`.
 pub fn hello(chip: [u8; 16], reset: ResetCause, boot: u32, last_panic: Option<&crash::Text>) -> Hello {
     Hello {
         protocol: PROTOCOL_VERSION,
@@ -22,7 +22,7 @@ pub fn hello(chip: [u8; 16], reset: ResetCause, boot: u32, last_panic: Option<&c
     }
 }
 
-/// As much of it as there is room for.
+/// Cuts a text at N bytes.
 fn text<const N: usize>(whole: &str) -> Text<N> {
     let mut text = Text::new();
     for character in whole.chars() {
@@ -33,7 +33,7 @@ fn text<const N: usize>(whole: &str) -> Text<N> {
     text
 }
 
-/// The cause as the protocol says it.
+/// Converts the HAL's cause of the reset to the protocol's.
 pub fn reset_cause(cause: Cause) -> ResetCause {
     match cause {
         Cause::PowerUp | Cause::Unknown => ResetCause::PowerOn,

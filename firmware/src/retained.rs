@@ -1,10 +1,10 @@
-//! The words that [`Boots`] keeps over resets, in the chip's backup registers.
+//! The words that [`BootCounter`] retains over resets, in the chip's backup registers.
 
 use atsam3x8e_hal::backup::Backup;
-use board_core::{Boots, WORDS};
+use board_core::{BootCounter, RETAINED_WORDS};
 
-/// What the last boot left.
-pub fn read(backup: &Backup) -> [u32; WORDS] {
+/// Reads the words of the last boot.
+pub fn read(backup: &Backup) -> [u32; RETAINED_WORDS] {
     [
         backup.read::<0>(),
         backup.read::<1>(),
@@ -16,9 +16,9 @@ pub fn read(backup: &Backup) -> [u32; WORDS] {
     ]
 }
 
-/// Leaves this boot's words for the next.
-pub fn write(backup: &mut Backup, boots: &Boots) {
-    let [a, b, c, d, e, f, g] = boots.words();
+/// Writes the words of this boot.
+pub fn write(backup: &mut Backup, boots: &BootCounter) {
+    let [a, b, c, d, e, f, g] = boots.retained();
     backup.write::<0>(a);
     backup.write::<1>(b);
     backup.write::<2>(c);
@@ -28,7 +28,7 @@ pub fn write(backup: &mut Backup, boots: &Boots) {
     backup.write::<6>(g);
 }
 
-/// Brings the uptime up to date.
+/// Writes the uptime, ticks.
 pub fn write_uptime(backup: &mut Backup, ticks: u32) {
     backup.write::<{ board_core::UPTIME_WORD }>(ticks);
 }

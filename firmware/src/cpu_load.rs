@@ -1,4 +1,4 @@
-//! How busy the processor is.
+//! CPU load, from the time asleep.
 
 use atsam3x8e_hal::tc::Mono;
 use core::sync::atomic::{AtomicU32, Ordering};
@@ -6,7 +6,7 @@ use core::sync::atomic::{AtomicU32, Ordering};
 /// Time asleep since boot, in ticks of [`Mono`]; wraps.
 static ASLEEP: AtomicU32 = AtomicU32::new(0);
 
-/// Sleeps until an interrupt is pending, and counts how long. The interrupt is served after it.
+/// Sleeps until an interrupt is pending and counts the time. The interrupt is served after it.
 pub fn sleep() {
     cortex_m::interrupt::free(|_| {
         let before = Mono::now_ticks();
@@ -16,19 +16,19 @@ pub fn sleep() {
     });
 }
 
-/// The processor's load between two looks.
-pub struct Load {
+/// CPU load from one call of [`permille`](Self::permille) to the next.
+pub struct CpuLoad {
     asleep: u32,
     at: u64,
 }
 
-impl Load {
-    /// From now on.
+impl CpuLoad {
+    /// Starts to measure now.
     pub fn new() -> Self {
         Self { asleep: ASLEEP.load(Ordering::Relaxed), at: Mono::now_ticks() }
     }
 
-    /// Share of the time since the last look that was not slept, 0.1 %.
+    /// Share of the time since the last call that the processor was not asleep, 0.1 %.
     pub fn permille(&mut self) -> u16 {
         let now = Self::new();
         let slept = now.asleep.wrapping_sub(self.asleep);

@@ -2,7 +2,7 @@
 
 #![allow(dead_code, reason = "each test program uses its own part")]
 
-use board_core::imus::{BusRecovery, BusStuck, Imus, Judged};
+use board_core::imus::{BusRecovery, BusStuck, ImuReadings, Imus};
 use board_core::tca9548a::{self, Tca9548a};
 use embedded_hal::digital::{self, OutputPin};
 use embedded_hal::i2c::{ErrorKind, NoAcknowledgeSource, Operation};
@@ -38,7 +38,7 @@ pub struct Chip {
     pub page: u8,
     pub answers_from: u32,
     pub quaternion: [i16; 4],
-    /// What QUA_DATA reads, whatever the chip measures.
+    /// Value of QUA_DATA in place of the measured one.
     pub forced: Option<[i16; 4]>,
     /// Its transactions never end.
     pub stretches: bool,
@@ -74,7 +74,7 @@ impl Chip {
     }
 }
 
-/// Who holds SDA low.
+/// Device that holds SDA low.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Holder {
     /// The IMU on this channel, while that is connected; clocks free it.
@@ -112,7 +112,7 @@ impl Wiring {
         }
     }
 
-    /// What the transaction comes to; `None`: it never ends.
+    /// Result of the transaction; `None`: it never ends.
     fn transact(&mut self, address: u8, operations: &mut [Operation<'_>]) -> Option<Result<(), ErrorKind>> {
         let bytes = operations.iter().map(|operation| match operation {
             Operation::Read(bytes) => 1 + bytes.len(),
@@ -219,14 +219,14 @@ impl OutputPin for ResetPin {
 }
 
 /// The IMUs as the firmware reads them, and the bus as it is.
-pub struct Arm {
+pub struct ImuRig {
     pub imus: Imus<Controller, ResetPin>,
     wiring: Rc<RefCell<Wiring>>,
     /// Transactions of the last tick: address, and how many bits were on the wire.
     pub log: Vec<(u8, u32)>,
 }
 
-impl Arm {
+impl ImuRig {
     /// IMUs that have just come out of their reset, at headings 10°, 20° … 60°.
     pub fn powered_up() -> Self {
         let chips = std::array::from_fn(|k| Chip {
@@ -256,10 +256,10 @@ impl Arm {
 
     /// IMUs that have been read for a while.
     pub fn running() -> Self {
-        let mut arm = Self::powered_up();
-        arm.ticks(10);
-        assert!(arm.tick().imu.iter().all(Option::is_some));
-        arm
+        let mut rig = Self::powered_up();
+        rig.ticks(10);
+        assert!(rig.tick().imu.iter().all(Option::is_some));
+        rig
     }
 
     pub fn wiring(&self) -> std::cell::RefMut<'_, Wiring> {
@@ -267,17 +267,17 @@ impl Arm {
     }
 
     /// One tick. A transaction that does not end is cut off.
-    pub fn tick(&mut self) -> Judged {
+    pub fn tick(&mut self) -> ImuReadings {
         let tick = self.wiring().tick;
         {
             let reading = pin!(self.imus.read(tick));
             let _ = reading.poll(&mut Context::from_waker(Waker::noop()));
         }
-        let judged = self.imus.judge();
+        let readings = self.imus.validate();
         let mut wiring = self.wiring.borrow_mut();
         wiring.tick += 1;
         self.log = std::mem::take(&mut wiring.log);
-        judged
+        readings
     }
 
     pub fn ticks(&mut self, count: u32) {
@@ -286,7 +286,7 @@ impl Arm {
         }
     }
 
-    /// How long the last tick's transactions took at 400 kHz, µs.
+    /// Time of the last tick's transactions at 400 kHz, µs.
     pub fn wire_us(&self) -> f64 {
         self.log.iter().map(|(_, bits)| f64::from(*bits) * 2.5).sum()
     }
