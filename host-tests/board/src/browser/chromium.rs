@@ -163,6 +163,14 @@ impl Browser {
         self.capture(name, &json!({"format": "png", "captureBeyondViewport": true}));
     }
 
+    /// Leaves a picture of the visible part of the page in `target/browser`.
+    ///
+    /// # Panics
+    /// If it cannot be written.
+    pub fn picture_of_screen(&mut self, name: &str) {
+        self.capture(name, &json!({"format": "png"}));
+    }
+
     /// Leaves a picture of one element, which an expression of JavaScript selects, in `target/browser`.
     ///
     /// # Panics
