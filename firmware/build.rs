@@ -1,4 +1,4 @@
-//! Bakes the arm's table into the firmware, and finds out which revision of the source this is.
+//! Compiles the arm's table into the firmware, and determines the revision of the source.
 //!
 //! `PROPRIO_TABLE` names the table's TOML file, from the workspace's folder; without it, it is the reference arm's.
 
@@ -34,15 +34,15 @@ fn main() {
 /// The table's source, with the arm's name and the checksum that `Hello` carries.
 fn table(path: &Path) -> Result<String, String> {
     let file = ArmFile::load(path).map_err(|error| format!("PROPRIO_TABLE {}: {error}", path.display()))?;
-    let baked = file.bake::<Q>(RATE_HZ).map_err(|error| format!("PROPRIO_TABLE {}: {error}", path.display()))?;
+    let compiled = file.compile::<Q>(RATE_HZ).map_err(|error| format!("PROPRIO_TABLE {}: {error}", path.display()))?;
     // The room that board-core's Arm has.
-    Estimator::<Q, 6, 100>::new(&baked.config())
+    Estimator::<Q, 6, 100>::new(&compiled.config())
         .map_err(|error| format!("PROPRIO_TABLE {}: {error}", path.display()))?;
     Ok(format!(
         "{}\n/// Name of the arm.\npub const ARM: &str = {:?};\n\n/// Checksum of the table.\npub const CHECKSUM: u32 = {:#010x};\n",
-        baked.to_rust(),
+        compiled.to_rust(),
         file.arm,
-        baked.checksum()
+        compiled.checksum()
     ))
 }
 

@@ -1,8 +1,8 @@
 //! ADC: a set of channels, scanned at each edge of a timer, without the processor.
 //!
 //! A timer's TIOA starts the conversion of all enabled channels in ascending order (datasheet 43.6.5); the PDC stores
-//! the results, each with its channel's number in the top four bits (TAG, datasheet 43.6.11). [`Adc::take_scan`] gives
-//! a scan out only if every word carries the number that belongs there.
+//! the results, each with its channel's number in the top four bits (TAG, datasheet 43.6.11). [`Adc::take_scan`] returns
+//! a scan only if every word has the number of its position.
 //!
 //! ```no_run
 //! use atsam3x8e_hal::{adc, clock, pac};
@@ -41,14 +41,14 @@ const MR_PRESCAL: u32 = 2 << 8;
 const MR_STARTUP: u32 = 10 << 16;
 /// SETTLING 3: 17 clocks. Used only where gain or offset differ between channels (datasheet 43.6.10), which they do not.
 const MR_SETTLING: u32 = 3 << 20;
-/// TRACKTIM 0 and TRANSFER 1, as the datasheet asks for sources of up to 16 kΩ at 14 MHz (45.7.2.1).
+/// TRACKTIM 0 and TRANSFER 1, as the datasheet requires for sources of up to 16 kΩ at 14 MHz (45.7.2.1).
 const MR_TRACKTIM_TRANSFER: u32 = 1 << 28;
 const EMR_TAG: u32 = 1 << 24;
 const ISR_GOVRE: u32 = 1 << 25;
 const PTCR_RXTEN: u32 = 1;
 const PTCR_RXTDIS: u32 = 1 << 1;
 
-/// What starts a scan (TRGSEL, datasheet chapter 43, ADC_MR).
+/// Trigger of a scan (TRGSEL, datasheet chapter 43, ADC_MR).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Trigger {
     /// Rising edge of TIOA of timer block 0, channel 0: [`crate::tc::Trigger`].
@@ -59,24 +59,24 @@ pub enum Trigger {
     Tc0Channel2,
 }
 
-/// Why there is no scan.
+/// Errors of a scan.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum Error {
     /// The set of channels and the buffer differ in size.
     #[error("the buffer must hold one word for each enabled channel")]
     ChannelCount,
-    /// The scan is not complete: no trigger came, or the ADC stands still. It was set up again.
+    /// The scan is not complete: there was no trigger, or the ADC stopped. It was set up again.
     #[error("the scan has {received} of its words: is the trigger running, and was it given time?")]
     Stalled {
         /// Words that were stored.
         received: usize,
     },
-    /// A word carries another channel's number than its place says. The ADC was set up again.
+    /// A word has the number of another channel. The ADC was set up again.
     #[error("word {position} of the scan is of channel {found}, not {expected}")]
     WrongTag {
-        /// Place in the scan.
+        /// Position in the scan.
         position: usize,
-        /// Channel number that belongs there.
+        /// Channel number of that position.
         expected: u8,
         /// Channel number found.
         found: u8,
@@ -147,7 +147,7 @@ impl<const N: usize> Adc<N> {
         scan
     }
 
-    /// Resets the ADC, in whatever state it is, and sets it up.
+    /// Resets the ADC, in any state, and sets it up.
     fn set_up(&mut self) {
         let adc = &self.registers;
         reg::set(&adc.ptcr, PTCR_RXTDIS);
@@ -160,7 +160,7 @@ impl<const N: usize> Adc<N> {
         let mode = MR_PRESCAL | MR_STARTUP | MR_SETTLING | MR_TRACKTIM_TRANSFER;
         reg::set(&adc.emr, EMR_TAG);
         reg::set(&adc.cher, u32::from(self.channels));
-        // What a conversion before the reset left.
+        // Results of a conversion before the reset.
         let _stale = (adc.lcdr.read(), adc.isr.read());
         self.grant();
         reg::set(&self.registers.mr, mode | trigger << 1 | MR_TRGEN);
@@ -171,7 +171,7 @@ impl<const N: usize> Adc<N> {
         let adc = &self.registers;
         fence(Ordering::SeqCst);
         // SAFETY: the PDC may write the N words of the buffer, which is never freed, and which the program reads only in
-        // `words`, after the counter has come to 0.
+        // `words`, after the counter has reached 0.
         unsafe { adc.rpr.write_with_zero(|w| w.bits(self.buffer.as_ptr() as u32)) };
         // SAFETY: as above; one scan and no next buffer, so that a trigger too many overruns instead of overwriting.
         unsafe { adc.rncr.write_with_zero(|w| w.bits(0)) };
@@ -183,12 +183,12 @@ impl<const N: usize> Adc<N> {
     /// The words of a complete scan.
     fn words(&self) -> [u16; N] {
         fence(Ordering::SeqCst);
-        // SAFETY: the buffer is valid for ever, and the PDC does not write to it, since its counter is 0.
+        // SAFETY: the buffer is static, and the PDC does not write to it, since its counter is 0.
         unsafe { self.buffer.as_ptr().read_volatile() }
     }
 }
 
-/// Checks the channel number of each word and takes it off.
+/// Checks the channel number of each word and removes it.
 fn untag<const N: usize>(words: [u16; N], channels: u16) -> Result<[u16; N], Error> {
     let mut counts = [0; N];
     let expected_channels = (0..16).filter(|channel| channels >> channel & 1 == 1);

@@ -1,4 +1,4 @@
-//! Eight words that survive every reset while the backup supply lasts, for counters of boots and crashes.
+//! Backup registers: eight words that are retained over resets while their supply lasts, for counters of boots and crashes.
 //!
 //! ```no_run
 //! use atsam3x8e_hal::{backup::Backup, pac};
@@ -15,7 +15,7 @@ use crate::{pac, reg};
 pub struct Backup(pac::GPBR);
 
 impl Backup {
-    /// Takes the registers; their content stays.
+    /// Takes the registers; their content is unchanged.
     pub fn new(gpbr: pac::GPBR) -> Self {
         Self(gpbr)
     }

@@ -43,7 +43,7 @@ const MCKR_PRES_2: u32 = 1 << 4;
 /// Flash wait states at 84 MHz: FWS 4 (datasheet chapter 45, embedded flash).
 const FLASH_WAIT_STATES: u32 = 4 << 8;
 
-/// Which step of the clock set-up did not finish. The chip then still runs, on the clock of the step before.
+/// Step of the clock set-up that did not finish. The chip then still runs, on the clock of the previous step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum Error {
     /// The crystal did not start.
@@ -73,7 +73,7 @@ pub struct Clocks(());
 /// Brings the chip to 84 MHz. Takes about 5 ms.
 ///
 /// The flash wait states come first, since the flash must never run too fast (datasheet chapter 18, EEFC_FMR); PRES and CSS are
-/// written one at a time with a wait between, as the datasheet asks (chapter 28, PMC_MCKR).
+/// written one at a time with a wait between, as the datasheet requires (chapter 28, PMC_MCKR).
 ///
 /// # Errors
 ///

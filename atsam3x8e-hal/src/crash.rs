@@ -1,7 +1,7 @@
-//! Last words that survive a reset, and the HardFault handler that speaks them.
+//! Message of a crash that is retained over the reset, and the HardFault handler that records one.
 //!
-//! A text with a checksum lies in RAM that no start-up code clears (`.uninit` of cortex-m-rt). It survives any reset that
-//! keeps the RAM's supply.
+//! A text with a checksum is in RAM that start-up does not initialise (`.uninit` of cortex-m-rt). It is retained over any
+//! reset without a loss of the RAM's supply.
 //!
 //! ```no_run
 //! use atsam3x8e_hal::{crash, pwm};
@@ -17,9 +17,9 @@
 //! crash::die(info, pwm::disable_all_outputs);
 //! ```
 //!
-//! With the feature `rt`, a HardFault (which also stands for every other fault, as none has a handler of its own) calls the
-//! hook of [`on_fault`], records "HardFault pc=… cfsr=…" and resets. Where the stack has overflowed it does so on a fresh
-//! one.
+//! With the feature `rt`, a HardFault (to which every other fault escalates, as none has a handler) calls the
+//! hook of [`on_fault`], records "HardFault pc=… cfsr=…" and resets. After a stack overflow it does so on an
+//! empty stack.
 
 use core::cell::{Cell, UnsafeCell};
 use core::fmt::{self, Write};
@@ -35,7 +35,7 @@ use crate::reset;
 #[cfg(all(feature = "rt", target_arch = "arm"))]
 mod fault;
 
-/// Bytes of a text; what is longer is cut.
+/// Capacity of a text, bytes; a longer one is cut.
 pub const CAPACITY: usize = 96;
 
 /// A recorded text.
@@ -66,7 +66,7 @@ impl Text {
     }
 }
 
-/// Appends what fits and ignores the rest, so that formatting never fails.
+/// Appends up to the capacity and ignores the rest, so that formatting never fails.
 impl Write for Text {
     fn write_str(&mut self, text: &str) -> fmt::Result {
         let length = self.length as usize;
@@ -94,13 +94,13 @@ unsafe impl Sync for Uninit {}
 #[cfg_attr(target_os = "none", unsafe(link_section = ".uninit.atsam3x8e_hal_crash"))]
 static RECORD: Uninit = Uninit(UnsafeCell::new(MaybeUninit::uninit()));
 
-/// Brings the outputs to a safe state, without waiting for anything.
+/// Function that brings the outputs to a safe state without waiting.
 type SafeState = fn();
 
-/// Called first by the HardFault handler.
+/// The function that the HardFault handler calls first.
 static SAFE_STATE: Mutex<Cell<Option<SafeState>>> = Mutex::new(Cell::new(None));
 
-/// Registers what the HardFault handler calls first, to bring the outputs to a safe state. It must not wait for anything.
+/// Registers the function that the HardFault handler calls first, to bring the outputs to a safe state. It must not wait.
 pub fn on_fault(safe_state: fn()) {
     critical_section::with(|token| SAFE_STATE.borrow(token).set(Some(safe_state)));
 }
@@ -108,12 +108,12 @@ pub fn on_fault(safe_state: fn()) {
 /// Records a text for [`take`], in place of an earlier one.
 pub fn record(text: fmt::Arguments) {
     let mut recorded = Text::EMPTY;
-    // `Text` never fails; a `Display` that does leaves what came before.
+    // `Text` never fails; after a `Display` that fails, the text until then is recorded.
     let _ = recorded.write_fmt(text);
     store(Record { checksum: recorded.checksum(), text: recorded });
 }
 
-/// The text recorded before the reset, if there is one; it is forgotten.
+/// Takes the text that was recorded before the reset, if any, and clears it.
 pub fn take() -> Option<Text> {
     let Record { text, checksum } = load();
     if text.length as usize > CAPACITY || text.checksum() != checksum {
@@ -125,7 +125,7 @@ pub fn take() -> Option<Text> {
 
 fn store(record: Record) {
     critical_section::with(|_| {
-        // SAFETY: the address is valid for ever, and the critical section makes this the only access. Volatile, since
+        // SAFETY: the address is that of a static, and the critical section makes this the only access. Volatile, since
         // nothing in this run of the program reads it.
         unsafe { ptr::write_volatile(RECORD.0.get(), MaybeUninit::new(record)) };
     });
@@ -135,14 +135,14 @@ fn store(record: Record) {
 fn load() -> Record {
     critical_section::with(|_| {
         let record: *const MaybeUninit<Record> = RECORD.0.get();
-        // SAFETY: as in `store`; a volatile read of memory that an earlier run wrote, or that holds what the RAM came up
-        // with. Any bits are a valid `Record`, which is integers without padding.
+        // SAFETY: as in `store`; a volatile read of memory that an earlier boot wrote, or with the RAM's random
+        // content. Any bits are a valid `Record`, which is integers without padding.
         unsafe { ptr::read_volatile(record).assume_init() }
     })
 }
 
-/// Ends the program after a panic: brings the outputs to a safe state, records where and why, then stops if a debugger is
-/// attached, or else resets.
+/// Ends the program after a panic: brings the outputs to a safe state, records location and message, then stops if a
+/// debugger is attached, or else resets.
 ///
 /// The text is the panic's location and message, cut at [`CAPACITY`] bytes.
 pub fn die(info: &PanicInfo, safe_state: fn()) -> ! {
@@ -158,7 +158,7 @@ pub fn die(info: &PanicInfo, safe_state: fn()) -> ! {
     })
 }
 
-/// Last part of a path, which tells more in few bytes.
+/// File name of a path, which is shorter.
 fn file_name(path: &str) -> &str {
     path.rsplit(['/', '\\']).next().unwrap_or(path)
 }

@@ -1,4 +1,4 @@
-//! The processor's cycle counter, for measuring how long code takes.
+//! Cycle counter of the processor, for measurements of execution time.
 //!
 //! ```no_run
 //! use atsam3x8e_hal::cycles;

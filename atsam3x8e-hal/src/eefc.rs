@@ -1,7 +1,7 @@
 //! Flash as storage, lock bits, unique identifier and boot selection (EEFC).
 //!
-//! [`Flash`] gives a region of the flash out as `embedded_storage::Storage`: any offset, any length. Each touched page of 256
-//! bytes is read, changed, erased and written in one command (EWP), so that a power cut spoils at most the page in work: keep
+//! [`Flash`] makes a region of the flash available as `embedded_storage::Storage`: any offset, any length. Each touched page of 256
+//! bytes is read, changed, erased and written in one command (EWP), so that a loss of power damages at most that page: keep
 //! two copies with a checksum.
 //!
 //! ```no_run
@@ -23,7 +23,7 @@
 //! # Interrupts
 //!
 //! A bank cannot be read while it is programmed (datasheet chapter 18). Every command therefore runs from RAM with interrupts off:
-//! a page takes some milliseconds (datasheet chapter 45, embedded flash), in which nothing else happens. Write while nothing depends on time.
+//! a page takes some milliseconds (datasheet chapter 45, embedded flash), in which nothing else runs. Write while nothing depends on time.
 
 use core::ops::Range;
 
@@ -32,43 +32,18 @@ use embedded_storage::{ReadStorage, Storage};
 use crate::{pac, reg};
 
 mod command;
+mod error;
+mod layout;
+
+pub use error::Error;
+pub use layout::{BANKS, LOCK_REGION_SIZE, PAGE_SIZE};
 
 use command::{Command, execute, read_unique_id};
 
-/// Bytes of a page, the unit of programming (datasheet chapter 18).
-pub const PAGE_SIZE: u32 = 256;
-/// Bytes of a lock region: 64 pages.
-pub const LOCK_REGION_SIZE: u32 = 64 * PAGE_SIZE;
-/// Addresses of the two banks, EFC0's and EFC1's, with GPNVM2 as delivered (datasheet chapter 7).
-pub const BANKS: [Range<u32>; 2] = [0x0008_0000..0x000C_0000, 0x000C_0000..0x0010_0000];
-
-/// FWS 6 while programming, whatever the clock (datasheet errata, flash programming).
+/// FWS 6 while programming, at any clock (datasheet errata, flash programming).
 const FMR_PROGRAMMING: u32 = 6 << 8;
-/// SCOD besides: no prefetch while the array shows something else than the program (datasheet chapter 18, EEFC_FMR).
+/// The same with SCOD: no prefetch while the array shows the identifier instead of the program (datasheet chapter 18, EEFC_FMR).
 const FMR_READING_ID: u32 = 6 << 8 | 1 << 16;
-
-/// Why an operation on the flash failed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
-pub enum Error {
-    /// The region is empty, not of whole pages, or outside the flash.
-    #[error("a region is of whole pages of 256 bytes within 0x80000..0x100000")]
-    Region,
-    /// The region overlaps the running program.
-    #[error("the region overlaps the program: choose a higher one")]
-    Program,
-    /// Offset and length are not within the region.
-    #[error("offset and length are not within the region")]
-    OutOfBounds,
-    /// The page's lock bit is set.
-    #[error("the page is locked: unlock its lock region")]
-    Locked,
-    /// The controller refused the command.
-    #[error("the flash controller refused the command")]
-    Command,
-    /// The controller did not become ready.
-    #[error("the flash controller did not become ready")]
-    Timeout,
-}
 
 /// A region of the flash, and the two controllers.
 #[derive(Debug)]
@@ -96,7 +71,7 @@ impl Flash {
         Ok(Self { efc0, efc1, region })
     }
 
-    /// Whether the lock region of an address is locked.
+    /// Returns whether the lock region of an address is locked.
     ///
     /// # Errors
     ///
@@ -127,7 +102,7 @@ impl Flash {
         self.command(bank, Command::ClearLockBit, page).map(|_| ())
     }
 
-    /// Whether the chip boots from flash (GPNVM1), rather than into the boot loader in ROM (datasheet chapter 7, boot strategies).
+    /// Returns whether the chip boots from flash (GPNVM1) and not into the boot loader in ROM (datasheet chapter 7, boot strategies).
     ///
     /// # Errors
     ///

@@ -1,8 +1,8 @@
 //! Hardware abstraction layer for the ATSAM3X8E, the chip of the Arduino Due.
 //!
-//! One module a peripheral, over the register definitions of [`atsam3x`] (re-exported as [`pac`]). A driver consumes its
+//! One module per peripheral, over the register definitions of [`atsam3x`] (re-exported as [`pac`]). A driver consumes its
 //! peripheral and its pins, so that the compiler refuses a second user; pins carry their mode in their type. Where
-//! embedded-hal 1.0 has a trait, the driver implements it, and the asynchronous one where it waits.
+//! embedded-hal 1.0 has a trait, the driver implements it, the asynchronous one if the driver waits.
 //!
 //! "Datasheet" in this crate is Atmel-11057C, SAM3X / SAM3A Series, 23 March 2015; registers are cited by chapter and name.
 //!
@@ -17,8 +17,8 @@
 //! | [`uart`] | UART with PDC |
 //! | [`watchdog`] | WDT |
 //! | [`reset`] | RSTC: cause of the last reset, software reset |
-//! | [`backup`] | GPBR: words that survive a reset |
-//! | [`crash`] | last words that survive a reset, HardFault handler |
+//! | [`backup`] | GPBR: words that are retained over a reset |
+//! | [`crash`] | message of a crash that is retained over the reset, HardFault handler |
 //! | [`eefc`] | EEFC: flash as storage, unique identifier |
 //! | [`cycles`] | DWT: cycle counter |
 //!

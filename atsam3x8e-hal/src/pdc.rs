@@ -1,8 +1,8 @@
 //! Memory that the peripheral DMA controller (PDC) shares with the program.
 //!
-//! A [`Ring`] owns a caller's buffer for ever and keeps only a pointer to it, so that no Rust reference ever covers bytes
-//! that the hardware may change. It knows which bytes are the hardware's, and describes them to the PDC as at most two runs:
-//! the current and the next pointer and counter of a channel (datasheet 26.4.2, 26.4.3).
+//! A [`Ring`] is a ring buffer. It owns a caller's static memory and has only a pointer to it, so that no Rust reference ever
+//! covers bytes that the hardware may change. The hardware's bytes are at most two runs: the current and the next pointer and
+//! counter of a PDC channel (datasheet 26.4.2, 26.4.3).
 
 use core::ptr::NonNull;
 use core::sync::atomic::{Ordering, fence};
@@ -10,10 +10,10 @@ use core::sync::atomic::{Ordering, fence};
 /// The largest buffer: PDC counters have 16 bits (datasheet 26.4.3).
 pub(crate) const MAX_CAPACITY: usize = 0xFFFF;
 
-/// A ring of bytes between the program and one direction of a PDC channel.
+/// Ring buffer of bytes between the program and one direction of a PDC channel.
 ///
-/// The bytes `[start, start + length)`, modulo the capacity, are queued: the producer put them there and the consumer has
-/// not taken them.
+/// The bytes `[start, start + length)`, modulo the capacity, are queued: written by the producer and not yet taken by the
+/// consumer.
 #[derive(Debug)]
 pub(crate) struct Ring {
     memory: NonNull<u8>,
@@ -40,7 +40,7 @@ fn runs(capacity: usize, offset: usize, length: usize) -> Runs {
 }
 
 impl Ring {
-    /// Takes a buffer; what exceeds [`MAX_CAPACITY`] is not used.
+    /// Takes a buffer; bytes beyond [`MAX_CAPACITY`] are not used.
     pub(crate) fn new(memory: &'static mut [u8]) -> Self {
         let capacity = memory.len().min(MAX_CAPACITY);
         let memory = NonNull::from(memory).cast();
@@ -109,7 +109,7 @@ impl Ring {
 
     /// Takes the oldest queued bytes, at most as many as `bytes` holds.
     pub(crate) fn read(&mut self, bytes: &mut [u8]) -> usize {
-        // What the hardware counted as done is in memory; the program must not have read it before.
+        // The bytes that the hardware counted are in memory; the program must not read them before.
         fence(Ordering::SeqCst);
         let count = bytes.len().min(self.length);
         let Runs { offset, first, second } = runs(self.capacity, self.start, count);

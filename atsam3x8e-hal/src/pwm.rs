@@ -101,7 +101,7 @@ pub enum Polarity {
     ActiveLow,
 }
 
-/// Why a call had no effect.
+/// Errors; the call had no effect.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum Error {
     /// The period has no counts.
@@ -112,10 +112,10 @@ pub enum Error {
     DutyOverPeriod {
         /// Index in the array of outputs.
         output: usize,
-        /// The duty that was asked for.
+        /// The duty, counts.
         duty: u16,
     },
-    /// The duties before these have not yet taken effect.
+    /// The previous duties have not yet taken effect.
     #[error("the last duties wait for the end of their period: set duties at most once a period")]
     UpdatePending,
 }

@@ -13,7 +13,7 @@ pub(crate) fn set<R: Writable + RegisterSpec<Ux = u32>>(register: &Reg<R>, value
     unsafe { register.write_with_zero(|w| w.bits(value)) }
 }
 
-/// Polls until `ready`, at most `polls` times. Says whether it became ready.
+/// Polls until `ready`, at most `polls` times. Returns whether it became ready.
 pub(crate) fn wait(polls: u32, mut ready: impl FnMut() -> bool) -> bool {
     (0..polls).any(|_| ready())
 }

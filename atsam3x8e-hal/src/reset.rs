@@ -1,4 +1,4 @@
-//! Why the chip was reset, and resetting it.
+//! Cause of the last reset, and software reset.
 //!
 //! ```no_run
 //! use atsam3x8e_hal::{pac, reset};
@@ -11,16 +11,16 @@
 
 use crate::{pac, reg};
 
-/// What caused the last reset (RSTTYP, datasheet chapter 12, RSTC_SR).
+/// Cause of a reset (RSTTYP, datasheet chapter 12, RSTC_SR).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Cause {
     /// First power-up.
     PowerUp,
-    /// Return from backup mode, or a brown-out that the supply controller noticed.
+    /// Return from backup mode, or a brown-out that the supply controller detected.
     Backup,
     /// The watchdog was not fed.
     Watchdog,
-    /// Software asked for it.
+    /// Software reset.
     Software,
     /// The NRST pin was pulled low: the reset button, or on the Due a host that opens the programming port.
     Pin,
@@ -28,7 +28,7 @@ pub enum Cause {
     Unknown,
 }
 
-/// What caused the last reset.
+/// Returns the cause of the last reset.
 pub fn cause(rstc: &pac::RSTC) -> Cause {
     decode(rstc.sr.read().bits())
 }
@@ -50,9 +50,9 @@ fn decode(status: u32) -> Cause {
 pub fn reset() -> ! {
     /// Both bits together, with the key (datasheet chapter 12, RSTC_CR).
     const KEY_PERRST_PROCRST: u32 = 0xA5 << 24 | 1 << 2 | 1;
-    // SAFETY: the reset controller is always there; writing its control register ends the program, whoever owns it.
+    // SAFETY: the reset controller is always there; writing its control register ends the program, so that its owner does not matter.
     let rstc = unsafe { &*pac::RSTC::ptr() };
-    // What was written last, for example a crash's record, reaches memory before the reset.
+    // The latest writes, for example a crash's record, reach memory before the reset.
     core::sync::atomic::fence(core::sync::atomic::Ordering::SeqCst);
     loop {
         reg::set(&rstc.cr, KEY_PERRST_PROCRST);

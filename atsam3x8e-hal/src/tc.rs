@@ -21,24 +21,26 @@
 //! # Ok::<(), tc::Error>(())
 //! ```
 
-use core::sync::atomic::{AtomicU32, Ordering};
-
-use crate::clock::{Clocks, MCK_HZ};
+use crate::clock::Clocks;
 use crate::{pac, reg};
 
+mod half_periods;
+#[cfg(feature = "rtic")]
+mod monotonic;
 #[cfg(feature = "rtic")]
 mod rtic;
 
-/// What a program that uses [`Mono`] as a monotonic imports.
+pub use half_periods::TICK_HZ;
+
+use half_periods::{COVFS, CPAS, CPCS, block, now_ticks};
+
+/// Imports of a program that uses [`Mono`] as a monotonic.
 #[cfg(feature = "rtic")]
 pub mod prelude {
     pub use super::Mono;
     pub use rtic_time::fugit::{self, ExtU64, ExtU64Ceil};
     pub use rtic_time::{Monotonic, Timebase};
 }
-
-/// Ticks of both channels a second: TIMER_CLOCK1 is MCK/2 (datasheet 36.6.3).
-pub const TICK_HZ: u32 = MCK_HZ / 2;
 
 /// TCCLKS: TIMER_CLOCK1.
 const TIMER_CLOCK1: u32 = 0;
@@ -49,11 +51,6 @@ const WAVE: u32 = 1 << 15;
 const ACPA_CLEAR: u32 = 0b10 << 16;
 const ACPC_SET: u32 = 0b01 << 18;
 const ASWTRG_SET: u32 = 0b01 << 22;
-
-/// Status and interrupt bits (datasheet chapter 36, TC_SR); reading the status clears them all.
-const COVFS: u32 = 1 << 0;
-const CPAS: u32 = 1 << 2;
-const CPCS: u32 = 1 << 4;
 
 /// CLKEN and SWTRG: the counter starts from 0 (datasheet chapter 36, TC_CCR).
 const CCR_START: u32 = 1 << 0 | 1 << 2;
@@ -82,13 +79,7 @@ pub fn split(_tc0: pac::TC0, clocks: Clocks) -> Channels {
     Channels { channel0: Channel0(()), channel1: Channel1(()) }
 }
 
-fn block() -> &'static pac::tc0::RegisterBlock {
-    // SAFETY: the block is always there; `split` consumed it, and the owners of the two channels each use their own
-    // channel's registers.
-    unsafe { &*pac::TC0::ptr() }
-}
-
-/// Why a trigger was not started.
+/// Errors of the start of a trigger.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum Error {
     /// 42 MHz is not a multiple of the frequency, so that the period would not be exact.
@@ -129,7 +120,7 @@ impl Trigger {
         Ok(Self(channel))
     }
 
-    /// To be called by the handler of interrupt TC0: takes the interrupt back. False if it was not due.
+    /// Clears the interrupt; called by the handler of interrupt TC0. False if it was not due.
     pub fn on_interrupt(&mut self) -> bool {
         block().sr0.read().bits() & CPAS != 0
     }
@@ -148,13 +139,11 @@ fn periods(frequency_hz: u32, interrupt_delay_us: u32) -> Result<(u32, u32), Err
 /// 64-bit time since [`Mono::start`], in ticks of 1/42 µs. It does not wrap within 13 900 years.
 ///
 /// A 32-bit counter wraps every 102 s. Software counts its half periods: the RA compare interrupt comes at 2³¹, the
-/// overflow interrupt at 0. One bit of that count overlaps the counter's top bit, which tells whether the interrupt of the
-/// newest half period was already counted. So the time is right at any instant and at any priority, as long as interrupt
+/// overflow interrupt at 0. One bit of that count overlaps the counter's top bit, which shows whether the interrupt of the
+/// latest half period was already counted. So the time is right at any instant and at any priority, as long as interrupt
 /// TC1 is served within 51 s.
 #[derive(Debug, Clone, Copy)]
 pub struct Mono;
-
-static HALF_PERIODS: AtomicU32 = AtomicU32::new(0);
 
 impl Mono {
     /// Starts the time at 0.
@@ -172,12 +161,7 @@ impl Mono {
 
     /// Ticks of 1/42 µs since the start.
     pub fn now_ticks() -> u64 {
-        // Without the critical section, a preemption of half a period between the two reads would be an error.
-        critical_section::with(|_| {
-            let half_periods = HALF_PERIODS.load(Ordering::Relaxed);
-            core::sync::atomic::compiler_fence(Ordering::SeqCst);
-            extend(half_periods, block().cv1.read().bits())
-        })
+        now_ticks()
     }
 
     /// Microseconds since the start.
@@ -185,30 +169,13 @@ impl Mono {
         Self::now_ticks() / u64::from(TICK_HZ / 1_000_000)
     }
 
-    /// To be called by the handler of interrupt TC1.
+    /// Counts the time and wakes tasks; called by the handler of interrupt TC1.
     pub fn on_interrupt() {
         #[cfg(feature = "rtic")]
         rtic::on_interrupt();
         #[cfg(not(feature = "rtic"))]
-        count_half_periods();
+        half_periods::count_half_periods();
     }
-}
-
-/// Counts what the status says has passed. The one place that reads the channel's status, since reading clears it.
-fn count_half_periods() {
-    let status = block().sr1.read().bits();
-    let passed = u32::from(status & CPAS != 0) + u32::from(status & COVFS != 0);
-    // The only writer is this interrupt, so that load and store need no atomic add.
-    HALF_PERIODS.store(HALF_PERIODS.load(Ordering::Relaxed).wrapping_add(passed), Ordering::Relaxed);
-}
-
-/// Joins the count of half periods, read first, with the counter, read second.
-///
-/// An odd count belongs to a counter in its upper half. If count and counter disagree, the counter has passed into the next
-/// half since the count was taken.
-fn extend(half_periods: u32, counter: u32) -> u64 {
-    let upper_half_expected = (half_periods & 1) << 31;
-    (u64::from(half_periods) << 31) + u64::from(upper_half_expected ^ counter)
 }
 
 #[cfg(test)]
@@ -227,21 +194,5 @@ mod tests {
         assert_eq!(periods(100, 0), Err(Error::Delay));
         assert_eq!(periods(100, 10_000), Err(Error::Delay));
         assert_eq!(periods(100, u32::MAX), Err(Error::Delay));
-    }
-
-    #[test]
-    fn time_is_the_same_whether_or_not_the_half_period_was_already_counted() {
-        for time in [0x8000_0000_u64, 0x8000_0005, 0x1_0000_0000, 0x1_0000_0005, 0x7_8000_0000, 0x8_0000_0003] {
-            let counted = (time >> 31) as u32;
-            assert_eq!(extend(counted, time as u32), time, "counted");
-            assert_eq!(extend(counted - 1, time as u32), time, "not yet counted");
-        }
-    }
-
-    #[test]
-    fn time_does_not_step_within_a_half_period() {
-        assert_eq!(extend(0, 0), 0);
-        assert_eq!(extend(0, 0x7FFF_FFFF), 0x7FFF_FFFF);
-        assert_eq!(extend(3, 0xFFFF_FFFF), 0x1_FFFF_FFFF);
     }
 }

@@ -24,7 +24,7 @@
 //! twi::on_interrupt::<pac::TWI1>();
 //! ```
 //!
-//! # What the hardware can do
+//! # Supported transactions
 //!
 //! A transaction is one write, one read, or a write of 1 to 3 bytes and a read with a repeated start between: the chip
 //! sends the written bytes as its "internal address" (datasheet chapter 33, internal address), and has no other repeated start. Anything else is
@@ -34,7 +34,7 @@
 //!
 //! A transfer has 400 µs plus 45 µs for each byte on the wire (twice the wire's time), measured by the delay that
 //! [`Twi::new`] is given, so that a bus without any interrupt ends it too. A device may stretch the clock within that time.
-//! After every error but [`Error::Stuck`] the peripheral is ready for the next transfer; [`Error::Stuck`] asks for
+//! After every error but [`Error::Stuck`] the peripheral is ready for the next transfer; [`Error::Stuck`] requires
 //! [`Twi::recover`]. A future that is dropped before its end resets the peripheral.
 
 use core::future::{Future, poll_fn};
@@ -43,19 +43,22 @@ use core::pin::pin;
 use core::task::Poll;
 
 use embedded_hal::digital::PinState;
-use embedded_hal::i2c::{ErrorKind, ErrorType, NoAcknowledgeSource, Operation};
+use embedded_hal::i2c::{ErrorType, Operation};
 use embedded_hal_async::delay::DelayNs;
 use embedded_hal_async::i2c::I2c;
 
 use crate::clock::{Clocks, MCK_HZ};
 use crate::{gpio, reg};
 
+mod error;
 mod instance;
 mod transfer;
 mod waveform;
 
+pub use error::Error;
 pub use instance::Instance;
 pub use transfer::MAX_TRANSFER;
+pub use waveform::BUS_HZ;
 
 use transfer::{Action, Transfer};
 use waveform::CLOCK_WAVEFORM;
@@ -67,59 +70,10 @@ const CR_SVDIS: u32 = 1 << 5;
 const CR_SWRST: u32 = 1 << 7;
 const MMR_MREAD: u32 = 1 << 12;
 
-/// The bus's clock in Hz.
-pub const BUS_HZ: u32 = 400_000;
-
 /// Half a period of the clock during recovery, 100 kHz: 5 µs.
 const RECOVERY_HALF_PERIOD: u32 = MCK_HZ / 200_000;
-/// A byte and its acknowledgement; a device that was interrupted in a byte lets go after so many (I2C specification 3.1.16).
+/// A byte and its acknowledgement; a device that was interrupted in a byte releases SDA within them (I2C specification 3.1.16).
 const RECOVERY_PULSES: u32 = 9;
-
-/// Why a transaction failed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
-pub enum Error {
-    /// No device acknowledged the address.
-    #[error("no device acknowledged the address: is it wired and powered?")]
-    NackAddress,
-    /// The device refused a byte of data.
-    #[error("the device did not acknowledge a byte")]
-    NackData,
-    /// The device acknowledged neither address nor register; the chip does not say which.
-    #[error("the device did not acknowledge its address or register")]
-    Nack,
-    /// Another master, or a disturbance, took the bus.
-    #[error("bus arbitration lost: is there another master, or noise?")]
-    ArbitrationLost,
-    /// A byte came before the one before it was taken.
-    #[error("a received byte was overwritten: the TWI interrupt came too late")]
-    Overrun,
-    /// The transfer did not end in its time; the lines are free.
-    #[error("the transfer did not end in time")]
-    Timeout,
-    /// SDA or SCL is held low.
-    #[error("a device holds SDA or SCL low: call recover")]
-    Stuck,
-    /// More bytes than the driver's buffer holds.
-    #[error("a transfer has at most 32 bytes")]
-    TooLong,
-    /// A transaction that the chip cannot do.
-    #[error("only a write, a read, or a write of 1 to 3 bytes and a read are possible, none of them empty")]
-    Unsupported,
-}
-
-impl embedded_hal::i2c::Error for Error {
-    fn kind(&self) -> ErrorKind {
-        match self {
-            Self::NackAddress => ErrorKind::NoAcknowledge(NoAcknowledgeSource::Address),
-            Self::NackData => ErrorKind::NoAcknowledge(NoAcknowledgeSource::Data),
-            Self::Nack => ErrorKind::NoAcknowledge(NoAcknowledgeSource::Unknown),
-            Self::ArbitrationLost => ErrorKind::ArbitrationLoss,
-            Self::Overrun => ErrorKind::Overrun,
-            Self::Stuck => ErrorKind::Bus,
-            Self::Timeout | Self::TooLong | Self::Unsupported => ErrorKind::Other,
-        }
-    }
-}
 
 /// An I2C master on TWI0 or TWI1.
 #[derive(Debug)]
@@ -139,7 +93,7 @@ impl<I: Instance, D: DelayNs> Twi<I, D> {
     }
 
     /// Frees a bus on which a device holds SDA: at most 9 clock pulses at 100 kHz until SDA is high, a STOP condition, and
-    /// the peripheral set up anew (the chip has no bus clear of its own; I2C specification 3.1.16).
+    /// the set-up of the peripheral (the chip has no bus clear; I2C specification 3.1.16).
     ///
     /// Blocks for at most 120 µs. A device that is cut off by a multiplexer must be connected first.
     ///
@@ -211,8 +165,8 @@ impl<I: Instance, D: DelayNs> Twi<I, D> {
         result
     }
 
-    /// Whether no one holds a line low. The STOP condition after a NACK, or a line that was just released, may take a few
-    /// microseconds.
+    /// Waits until both lines are high; false if one stays low. The STOP condition after a NACK, or a line that was just
+    /// released, may take a few microseconds.
     async fn lines_come_up(&mut self) -> bool {
         if !I::lines_are_high() {
             self.delay.delay_us(10).await;
@@ -253,7 +207,7 @@ impl<I: Instance, D: DelayNs> I2c for Twi<I, D> {
     }
 }
 
-/// To be called by the handler of the instance's interrupt.
+/// Moves a byte of the transfer; called by the handler of the instance's interrupt.
 pub fn on_interrupt<I: Instance>() {
     let twi = I::registers();
     let waker = critical_section::with(|token| {
@@ -284,7 +238,7 @@ pub fn on_interrupt<I: Instance>() {
     }
 }
 
-/// Programs a transfer and sets it off (datasheet chapter 33, master mode).
+/// Programs a transfer and starts it (datasheet chapter 33, master mode).
 fn start<I: Instance>(transfer: &Transfer) {
     let twi = I::registers();
     critical_section::with(|token| {
@@ -294,7 +248,7 @@ fn start<I: Instance>(transfer: &Transfer) {
         let direction = if transfer.is_read() { MMR_MREAD } else { 0 };
         reg::set(&twi.mmr, u32::from(transfer.address()) << 16 | direction | transfer.internal_address_size() << 8);
         reg::set(&twi.iadr, transfer.internal_address());
-        // What an earlier transfer left; a NACK of it must not be taken for one of this.
+        // Clears the status of an earlier transfer, whose NACK is not one of this.
         let _stale = (twi.sr.read(), twi.rhr.read());
         if transfer.is_read() {
             // A read of one byte needs its STOP at once.
@@ -307,7 +261,7 @@ fn start<I: Instance>(transfer: &Transfer) {
     });
 }
 
-/// How the transfer ended, if it has; otherwise leaves a waker.
+/// Result of the transfer, if it has ended; otherwise stores the waker.
 fn result<I: Instance>(waker: &core::task::Waker) -> Option<Result<(), Error>> {
     critical_section::with(|token| {
         let mut shared = I::shared().borrow_ref_mut(token);

@@ -1,11 +1,11 @@
 //! The UART, both directions by PDC and without any interrupt.
 //!
 //! [`Tx`] takes whole frames or refuses them, and never waits for the line. [`Rx`] collects bytes in the background; a flood
-//! of input costs no processor time until it is read. The PDC always knows all queued bytes (two runs, see below), so that
-//! there is no gap between frames and nothing to do between calls.
+//! of input costs no processor time until it is read. The PDC always has all queued bytes (as two runs), so that there is no
+//! gap between frames and no work between calls.
 //!
 //! `embedded_io::Write` is implemented for [`Tx`]: it waits for room, at the line's speed. `embedded_io::Read` would have to
-//! block until a byte comes, which is of no use here: call [`Rx::read`].
+//! block until a byte is received, which is of no use here: call [`Rx::read`].
 //!
 //! ```no_run
 //! use atsam3x8e_hal::{clock, gpio::Split, pac, uart};
@@ -19,7 +19,7 @@
 //! let (mut tx, mut rx) = uart::new(device.UART, rx_pin, tx_pin, 250_000, tx_ring, rx_ring, clocks)?;
 //!
 //! if tx.try_write_frame(b"hello\n").is_err() {
-//!     // the line is behind: the frame is dropped as a whole
+//!     // the ring is full: the frame is dropped as a whole
 //! }
 //! let mut bytes = [0; 64];
 //! let count = rx.read(&mut bytes);
@@ -146,13 +146,13 @@ impl Tx {
         self.ring.free()
     }
 
-    /// Whether everything has left the chip.
+    /// Returns whether all bytes are sent.
     pub fn is_idle(&mut self) -> bool {
         self.with_pdc_paused(|_| ());
         self.ring.length() == 0 && registers().sr.read().bits() & SR_TXEMPTY != 0
     }
 
-    /// Pauses the PDC, accounts for what it has sent, lets `change` change the ring, and hands the PDC all queued bytes.
+    /// Pauses the PDC, removes the bytes that it has sent from the ring, calls `change`, and gives the PDC all queued bytes.
     ///
     /// The counters stand still while the transfer is disabled (datasheet 26.4.3), which is for less than the 80 µs that the
     /// UART's two holding stages last at 250 kBd: no gap.
@@ -185,23 +185,23 @@ impl Tx {
 }
 
 impl Rx {
-    /// Takes the bytes that have arrived, at most as many as `bytes` holds, and says how many. Never waits.
+    /// Reads the bytes received so far, at most as many as `bytes` holds, and returns their number. Never waits.
     pub fn read(&mut self, bytes: &mut [u8]) -> usize {
         self.collect();
         self.ring.read(bytes)
     }
 
-    /// How often bytes were lost because the ring was full, since the start; it wraps.
+    /// Losses of bytes because the ring was full, since the start; wraps.
     pub fn overruns(&self) -> u32 {
         self.overruns
     }
 
-    /// How often a byte came without its stop bit (noise, or a wrong baud rate), since the start; it wraps.
+    /// Bytes without a stop bit (noise, or a wrong baud rate), since the start; wraps.
     pub fn framing_errors(&self) -> u32 {
         self.framing_errors
     }
 
-    /// Accounts for what the PDC has received, and gives it all free bytes.
+    /// Adds the bytes that the PDC has received to the ring, and gives it all free bytes.
     ///
     /// The counters stand still while the transfer is disabled; the receiver's holding register bridges the pause.
     fn collect(&mut self) {

@@ -25,7 +25,7 @@ const WDDIS: u32 = 1 << 15;
 const WDD_NO_WINDOW: u32 = 0xFFF << 16;
 const WDDBGHLT: u32 = 1 << 28;
 
-/// Why a watchdog was not started.
+/// Errors of the start of the watchdog.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum Error {
     /// The period does not fit the 12-bit counter of 3.9 ms steps.
@@ -54,7 +54,7 @@ impl Watchdog {
         Ok(Self(wdt))
     }
 
-    /// Starts the period anew.
+    /// Restarts the period.
     pub fn feed(&mut self) {
         reg::set(&self.0.cr, KEY | WDRSTT);
     }
@@ -65,7 +65,7 @@ pub fn disable(wdt: pac::WDT) {
     reg::set(&wdt.mr, WDDIS);
 }
 
-/// WDV for a period: steps of 1/256 s, rounded up so that no period is shorter than asked.
+/// WDV for a period: steps of 1/256 s, rounded up so that no period is shorter than the argument.
 fn count(period_ms: u32) -> Option<u32> {
     let count = period_ms.checked_mul(256)?.div_ceil(1000);
     (period_ms >= 4 && count <= 0xFFF).then_some(count)

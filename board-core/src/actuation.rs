@@ -1,7 +1,7 @@
-//! The six pressures: what may move them, and how they end vented when nobody does.
+//! The six pressures: arming, set-points with a deadline, and venting after it.
 //!
-//! Pressures move only while armed, and only for as long as set-points keep coming. Counted from the set-points that
-//! were accepted last, with the deadline of `valid_ms` that they bring along:
+//! Pressures move only while armed, and only while set-points are received. Accepted set-points are a lease of the
+//! pressures: they are valid until their deadline `valid_ms`. Time from the last accepted set-points:
 //!
 //! | time | state | pressures |
 //! |---|---|---|
@@ -10,23 +10,23 @@
 //! | then up to [`VENTED_MS`] | [`Actuation::Ramping`] | straight down to 0 |
 //! | from [`VENTED_MS`] on | [`Actuation::Disarmed`] | 0, until armed again |
 //!
-//! The arm is vented at the same time whatever the deadline was: a longer one leaves less time for the ramp, which
-//! takes 1.1 s at most and 0.1 s at the longest deadline of [`VALID_MS_MAX`]. [`VENTED_MS`] stands 100 ms before the
-//! 1.5 s within which the arm is to be vented, for a frame's way to the board, the tick, and the regulator's own lag.
+//! The arm is vented at the same time for every deadline: a longer one leaves less time for the ramp, which takes 1.1 s
+//! at most and 0.1 s at the longest deadline of [`VALID_MS_MAX`]. [`VENTED_MS`] is 100 ms less than the 1.5 s within
+//! which the arm must be vented, for the frame's transmission, the tick, and the regulator's own lag.
 //!
-//! Set-points that come while holding or ramping are followed again: only a vented arm waits to be armed. An arm that
-//! was armed and got no set-points yet has no deadline; it is vented and stays armed. To arm it again while it is not
-//! disarmed changes nothing, so that arming cannot stretch a deadline.
+//! Set-points received while holding or ramping are followed again: only a vented arm must be armed. An arm that was
+//! armed and has received no set-points has no deadline; it is vented and stays armed. Arming it again while it is not
+//! disarmed changes nothing, so that arming cannot extend a deadline.
 
 use telemetry::{Actuation, Event, REGULATORS, Refusal, SetPressures};
 
 /// Pressure of a regulator at full duty, Pa: the supply's.
 pub const FULL_SCALE_PA: u32 = 280_000;
 
-/// Longest time that set-points may stand, ms.
+/// Longest deadline of set-points, ms.
 pub const VALID_MS_MAX: u16 = 1000;
 
-/// How long the pressures are held after the deadline, ms.
+/// Time for which the pressures are held after the deadline, ms.
 pub const HOLD_MS: u16 = 300;
 
 /// Time from the last accepted set-points to zero pressure, ms.
@@ -35,9 +35,9 @@ pub const VENTED_MS: u16 = 1400;
 /// The longest deadline leaves time for a ramp.
 const _: () = assert!(VALID_MS_MAX + HOLD_MS < VENTED_MS);
 
-/// The pressures' set-points and who may change them.
+/// The pressures' set-points and their state.
 ///
-/// It keeps no clock: each call brings the time since boot in µs, which never goes back.
+/// It has no clock: the time since boot in µs, which never decreases, is an argument.
 ///
 /// ```
 /// use board_core::{Actuator, FULL_SCALE_PA};
@@ -62,21 +62,21 @@ pub struct Actuator {
     /// The state that was reported last.
     reported: Actuation,
     pressures_pa: [u32; REGULATORS],
-    /// What the set-points ask for, and when they end.
-    course: Option<Course>,
+    /// The accepted set-points and their deadline.
+    lease: Option<SetpointLease>,
     degraded: bool,
 }
 
-/// Set-points on their way from acceptance to the vent.
+/// Set-points from their acceptance to the vented arm.
 #[derive(Debug, Clone, Copy)]
-struct Course {
+struct SetpointLease {
     pressures_pa: [u32; REGULATORS],
     accepted_us: u64,
     valid_ms: u16,
 }
 
-impl Course {
-    /// State and pressures at a time.
+impl SetpointLease {
+    /// State and pressures, Pa, at a time.
     fn at(&self, now_us: u64) -> (Actuation, [u32; REGULATORS]) {
         let age_us = now_us.saturating_sub(self.accepted_us);
         let hold_from_us = us(self.valid_ms);
@@ -105,12 +105,12 @@ impl Actuator {
             state: Actuation::Disarmed,
             reported: Actuation::Disarmed,
             pressures_pa: [0; REGULATORS],
-            course: None,
+            lease: None,
             degraded: false,
         }
     }
 
-    /// Lets set-points move the pressures. Nothing moves yet.
+    /// Lets set-points move the pressures, which stay at zero until then.
     pub fn arm(&mut self) {
         if self.state == Actuation::Disarmed {
             self.state = Actuation::Armed;
@@ -121,22 +121,22 @@ impl Actuator {
     pub fn disarm(&mut self) {
         self.state = Actuation::Disarmed;
         self.pressures_pa = [0; REGULATORS];
-        self.course = None;
+        self.lease = None;
     }
 
-    /// Says whether the shape is known too poorly to push on: all IMUs, or all bend sensors of a segment, are lost.
+    /// Sets whether the shape estimate is degraded: all IMUs, or all bend sensors of a segment, are lost.
     ///
-    /// While degraded, set-points cannot raise a pressure above what it is at that moment: what they ask beyond it is
-    /// cut off, and they are accepted. So the arm can be lowered and vented under control, but not driven blindly.
+    /// While degraded, set-points are accepted but limited to the present pressures. So the arm can be lowered and vented
+    /// under control, but no pressure rises.
     pub fn set_degraded(&mut self, degraded: bool) {
         self.degraded = degraded;
     }
 
-    /// Accepts new set-points, from now on.
+    /// Accepts new set-points.
     ///
     /// # Errors
     /// [`Refusal::Disarmed`] if it is not armed, [`Refusal::OverRange`] if a pressure is over its regulator's limit,
-    /// [`Refusal::Deadline`] if `valid_ms` is not 1 to [`VALID_MS_MAX`]. The set-points before then stand unchanged.
+    /// [`Refusal::Deadline`] if `valid_ms` is not 1 to [`VALID_MS_MAX`]. The previous set-points are then unchanged.
     pub fn set(&mut self, request: &SetPressures, now_us: u64) -> Result<(), Refusal> {
         self.advance(now_us);
         if self.state == Actuation::Disarmed {
@@ -154,37 +154,37 @@ impl Actuator {
                 *pressure = now.min(*pressure);
             }
         }
-        self.course = Some(Course { pressures_pa, accepted_us: now_us, valid_ms: request.valid_ms });
+        self.lease = Some(SetpointLease { pressures_pa, accepted_us: now_us, valid_ms: request.valid_ms });
         self.advance(now_us);
         Ok(())
     }
 
-    /// Brings state and pressures to this time; to be called every tick.
+    /// Advances state and pressures to this time; called every tick.
     pub fn advance(&mut self, now_us: u64) {
-        let Some(course) = &self.course else { return };
-        (self.state, self.pressures_pa) = course.at(now_us);
+        let Some(lease) = &self.lease else { return };
+        (self.state, self.pressures_pa) = lease.at(now_us);
         if self.state == Actuation::Disarmed {
-            self.course = None;
+            self.lease = None;
         }
     }
 
-    /// State, as of the last call that brought the time.
+    /// State at the time of the last call with a time.
     pub fn state(&self) -> Actuation {
         self.state
     }
 
-    /// Set-points that the regulators get, Pa, as of the last call that brought the time.
+    /// Set-points of the regulators, Pa, at the time of the last call with a time.
     pub fn pressures_pa(&self) -> [u32; REGULATORS] {
         self.pressures_pa
     }
 
-    /// The same as duties of a PWM with this period, in counts: none at 0 Pa, the whole period at [`FULL_SCALE_PA`].
+    /// The set-points as PWM duties, counts: 0 at 0 Pa, the whole period at [`FULL_SCALE_PA`].
     pub fn duties(&self, period_counts: u16) -> [u16; REGULATORS] {
         let full = u64::from(FULL_SCALE_PA);
         self.pressures_pa.map(|pressure| share(u32::from(period_counts), u64::from(pressure), full) as u16)
     }
 
-    /// The state, once after each change.
+    /// Returns the state once after each change.
     pub fn event(&mut self) -> Option<Event> {
         let changed = self.state != self.reported;
         self.reported = self.state;

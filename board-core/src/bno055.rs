@@ -1,29 +1,29 @@
 //! BNO055: quaternions of an IMU in the fusion mode IMUPLUS, one short step a tick.
 //!
-//! A [`Bno055`] is advanced once a tick of 10 ms and never waits by itself: a step makes at most two transactions, each
-//! of at most eight bytes of data, and the chip's 650 ms of reset are ticks in which there is nothing to do. The time
-//! is the number of the tick, given by the caller, and may wrap.
+//! A [`Bno055`] is advanced once a tick of 10 ms and never blocks: a step makes at most two transactions, each of at most
+//! eight bytes of data, and the chip's 650 ms of reset are ticks without a transaction. The time is the number of the
+//! tick, given by the caller, and may wrap.
 //!
-//! | phase | transactions in one tick | goes on when |
+//! | phase | transactions in one tick | next phase after |
 //! |---|---|---|
 //! | identify | PAGE_ID ← 0, CHIP_ID → | CHIP_ID is 0xA0 |
-//! | inspect | OPR_MODE →, then OPR_MODE ← IMUPLUS, or SYS_TRIGGER ← RST_SYS | always |
+//! | inspect | OPR_MODE →, then OPR_MODE ← IMUPLUS, or SYS_TRIGGER ← RST_SYS | one tick |
 //! | boot | none | 700 ms have passed; identified again |
 //! | settle | none for two ticks, then SYS_STATUS … OPR_MODE → | fusion runs; after 1 s without, reset |
-//! | run | QUA_DATA →, every 4th tick SYS_STATUS … OPR_MODE or CHIP_ID → | for ever |
+//! | run | QUA_DATA →, every 4th tick SYS_STATUS … OPR_MODE or CHIP_ID → | an error |
 //!
 //! A chip in CONFIGMODE has just come out of a reset and holds all defaults (BST-BNO055-DS000, 3.2 and 3.3.1), which
-//! are what IMUPLUS needs here: a quaternion has no selectable unit (3.6.5.5), and the internal clock works on every
-//! board, also on those without a crystal. A chip in any other mode is reset first, so that each start is from the
+//! suit IMUPLUS here: a quaternion has no selectable unit (3.6.5.5), and the internal clock works on every board, also on
+//! those without a crystal. A chip in any other mode is reset first, so that each start is from the
 //! same state. A start takes 5 ticks from CONFIGMODE and about 76 ticks with a reset.
 //!
 //! A supply that dips returns the chip silently to CONFIGMODE, where it answers and reads zero (3.3.1). A reading that
 //! is no unit quaternion, and a reading after any error, is therefore followed by a check of mode and status in the same
-//! tick; both are checked every 80 ms anyway, and so is the identity. After a start the heading counts from anew.
+//! tick; both are checked every 80 ms anyway, and so is the identity. After a start the heading has a new zero.
 //!
 //! The published crate `bno055` 0.4 does not suit: its start blocks for 650 ms and more, each of its calls first
 //! writes the page register, which doubles the transactions, and it records a mode before the write has succeeded, so
-//! that one lost write makes it believe in a fusion that does not run.
+//! that after one lost write it assumes a fusion that does not run.
 
 use core::ops::RangeInclusive;
 use embedded_hal::i2c::{Error, ErrorKind};
@@ -39,7 +39,7 @@ const SYS_STATUS: u8 = 0x39;
 const OPR_MODE: u8 = 0x3D;
 const SYS_TRIGGER: u8 = 0x3F;
 
-/// What CHIP_ID reads.
+/// Value of CHIP_ID.
 const IDENTITY: u8 = 0xA0;
 /// Low bits of OPR_MODE (Table 3-5); the others are reserved.
 const MODE_MASK: u8 = 0x0F;
@@ -54,26 +54,26 @@ const RST_SYS: u8 = 0x20;
 const BOOT_TICKS: u32 = 70;
 /// 7 ms from CONFIGMODE to any other (Table 3-6); two ticks, because a step may come late in one and early in the next.
 const SWITCH_TICKS: u32 = 2;
-/// By then fusion runs, or never will.
+/// Longest time until fusion runs; after it the chip is started again.
 const SETTLE_TICKS: u32 = 100;
-/// Mode and status are checked once in so many ticks, and halfway between the identity.
+/// Period of the checks of mode and status, ticks; the identity is checked halfway between.
 const CHECK_TICKS: u32 = 8;
 
-/// The square of a quaternion's norm where that is 1 within 1 %: the chip's unit is 2¹⁴ steps (3.6.5.5).
+/// Square of a quaternion's norm of 1 within 1 %: the chip's unit is 2¹⁴ steps (3.6.5.5).
 const NORM_SQUARED: RangeInclusive<u64> = ((1 << 28) * 99 * 99 / 10_000)..=((1 << 28) * 101 * 101 / 10_000);
 
-/// What one step brought.
+/// Result of one step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Answer {
     /// The orientation w, x, y, z in units of 2⁻¹⁴, of norm 1 within 1 %.
     Quaternion([i16; 4]),
     /// The chip answers, but with no unit quaternion, or it is no BNO055.
-    Garbage,
-    /// The chip is on its way to its first reading; its heading counts from anew.
+    Invalid,
+    /// The chip is starting; the heading of its first reading has a new zero.
     Starting,
 }
 
-/// One IMU, read in IMUPLUS mode. See the [module](self) for what a step does.
+/// One IMU, read in IMUPLUS mode. The [module](self) documents the steps.
 #[derive(Debug)]
 pub struct Bno055 {
     address: u8,
@@ -90,20 +90,20 @@ enum Phase {
     Settle {
         since: u32,
     },
-    /// `trusted`: nothing has failed since mode and status were last seen right.
+    /// `trusted`: no error since the last good check of mode and status.
     Run {
         trusted: bool,
     },
 }
 
 impl Bno055 {
-    /// The IMU at `address`, in whatever state it is.
+    /// The IMU at `address`, in any state.
     #[must_use]
     pub const fn new(address: u8) -> Self {
         Self { address, phase: Phase::Identify }
     }
 
-    /// Whether a step in this tick would only wait, so that the bus need not be given to it.
+    /// Returns whether a step in this tick would make no transaction, so that it does not need the bus.
     #[must_use]
     pub fn is_waiting(&self, tick: u32) -> bool {
         match self.phase {
@@ -113,13 +113,13 @@ impl Bno055 {
         }
     }
 
-    /// One step in tick number `tick`: at most two transactions. May be dropped at any await: the next step then
-    /// checks before it trusts.
+    /// Advances the driver in tick number `tick`: at most two transactions. The future may be dropped at any await: the next
+    /// step then checks mode and status before it returns a reading.
     ///
     /// # Errors
     ///
-    /// What the bus says; the step is done again in the next tick. The caller decides how often it asks a chip that
-    /// does not answer.
+    /// The bus's error; the step is repeated in the next tick. The caller decides how often it polls a chip that does not
+    /// answer.
     pub async fn step<I: I2c>(&mut self, i2c: &mut I, tick: u32) -> Result<Answer, I::Error> {
         if self.is_waiting(tick) {
             return Ok(Answer::Starting);
@@ -136,7 +136,7 @@ impl Bno055 {
         // Another page would hide the identity; PAGE_ID is on both pages (4.2).
         self.write(i2c, PAGE_ID, 0).await?;
         if !self.is_bno055(i2c).await? {
-            return Ok(Answer::Garbage);
+            return Ok(Answer::Invalid);
         }
         self.phase = Phase::Inspect;
         Ok(Answer::Starting)
@@ -185,7 +185,7 @@ impl Bno055 {
             return Ok(Answer::Starting);
         }
         self.phase = Phase::Run { trusted: true };
-        Ok(if is_unit { Answer::Quaternion(quaternion) } else { Answer::Garbage })
+        Ok(if is_unit { Answer::Quaternion(quaternion) } else { Answer::Invalid })
     }
 
     async fn is_bno055<I: I2c>(&self, i2c: &mut I) -> Result<bool, I::Error> {

@@ -1,53 +1,53 @@
-//! The arm's IMUs behind the multiplexer: who is read in a tick, what comes of it, and who is in which state.
+//! The arm's IMUs behind the multiplexer: polling, validation of the readings, and the state of each IMU.
 //!
-//! A tick has two halves. [`Imus::read`] does all that needs the bus; its future may be dropped at any time, which is
-//! how a caller bounds it. [`Imus::judge`] then gives the readings that can be trusted, and what has changed.
+//! A tick has two halves. [`Imus::read`] makes all transactions; its future may be dropped at any time, so that a caller
+//! can bound its time. [`Imus::validate`] then returns the valid readings and the changes of state.
 //!
 //! # How long a tick can take
 //!
 //! An IMU that runs costs three transactions, and a fourth in every fourth tick: six take 2.2 to 2.4 ms on the wire at
-//! 400 kHz, and 3.3 ms where all of them have to be checked. The others do not wait for one that is missing: after three
-//! refusals it is asked only every 25 ticks (250 ms), and each time costs selecting its channel and one address. No tick
-//! makes more than 36 transactions, nor clears the bus more than once.
+//! 400 kHz, and 3.3 ms if all of them must be checked. A missing IMU does not delay the others: after three NACKs it is
+//! polled only every 25 ticks (250 ms), and each poll costs the selection of its channel and one address. A tick has at
+//! most 36 transactions and one recovery of the bus.
 //!
 //! # Faults
 //!
-//! | what is seen | what is done | state |
+//! | fault | reaction | state |
 //! |---|---|---|
-//! | no acknowledge | asked again in the next tick, after three every 25 ticks | `Off` after three ticks |
-//! | no unit quaternion | the reading is rejected, mode and status are checked | `Garbage` after three ticks |
-//! | no fusion, wrong mode or identity | started anew; runs again after 5 to 76 ticks | `Off` at once, then `Ok` |
-//! | the tick ended in an IMU's transaction | the bus is cleared; asked again after 25 ticks | `Slow` after three ticks |
-//! | bus error, or a multiplexer that fails | [`BusRecovery`], multiplexer reset, the rest of the tick goes on | `Off` after three ticks |
-//! | repeats itself while another turns | its readings are withheld until one differs | `Stuck` after 50 ticks |
+//! | no acknowledge | polled again in the next tick, after three every 25 ticks | `NoResponse` after three ticks |
+//! | no unit quaternion | the reading is rejected, mode and status are checked | `Invalid` after three ticks |
+//! | no fusion, wrong mode or identity | restarted; runs again after 5 to 76 ticks | `NoResponse` at once, then `Ok` |
+//! | the tick ended in an IMU's transaction | the bus is recovered; polled again after 25 ticks | `Timeout` after three ticks |
+//! | bus error, or a multiplexer that fails | [`BusRecovery`], multiplexer reset, then the rest of the tick | `NoResponse` after three ticks |
+//! | the same reading while another IMU turns | readings are rejected until one differs | `Stuck` after 50 ticks |
 //!
-//! An IMU that was `Off` may have started anew, and then its heading does too: whoever uses headings aligns them again
-//! after an [`Event::Imu`] with `Off`. A dip of the supply that the chip does not answer in takes up to 250 ms beyond its
-//! own 650 ms until it is asked again, and 5 ticks to start: well under 2 s.
+//! An IMU that was `NoResponse` may have restarted, and its heading with it: a user of headings aligns them again after
+//! an [`Event::Imu`] with `NoResponse`. After a supply dip the chip does not answer for 650 ms; it is polled at most 250 ms
+//! later and takes 5 ticks to start: well under 2 s.
 
 mod bus;
-mod frozen;
-mod unit;
+mod channel;
+mod stuck;
 
 use crate::bno055;
 use crate::tca9548a::{Channel, Tca9548a};
 use bus::Bus;
 pub use bus::{BusRecovery, BusStuck};
+use channel::ImuChannel;
 use embedded_hal::digital::OutputPin;
 use embedded_hal_async::i2c::I2c;
 use heapless::Vec;
 use telemetry::{Event, SEGMENTS, SensorHealth};
-use unit::Unit;
 
 /// Most events of a tick: each IMU's state, and one recovery of the bus.
 pub const EVENTS: usize = SEGMENTS + 1;
 
-/// What a tick brought.
+/// Valid readings and events of one tick.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Judged {
-    /// Raw quaternion w, x, y, z of each IMU, in units of 2⁻¹⁴; `None`: not read, or not to be trusted.
+pub struct ImuReadings {
+    /// Raw quaternion w, x, y, z of each IMU, in units of 2⁻¹⁴; `None`: not read, or not valid.
     pub imu: [Option<[i16; 4]>; SEGMENTS],
-    /// What has changed.
+    /// Changes of state.
     pub events: Vec<Event, EVENTS>,
 }
 
@@ -58,69 +58,69 @@ pub struct Judged {
 /// use embedded_hal::digital::OutputPin;
 /// use embedded_hal_async::i2c::I2c;
 ///
-/// /// Once every 10 ms; in an application `read` stands in a time limit.
+/// /// Called every 10 ms; an application bounds the time of `read`.
 /// async fn tick<I: I2c + BusRecovery, R: OutputPin>(imus: &mut Imus<I, R>, tick: u32) -> [Option<[i16; 4]>; 6] {
 ///     imus.read(tick).await;
-///     imus.judge().imu
+///     imus.validate().imu
 /// }
 /// ```
 #[derive(Debug)]
 pub struct Imus<I, R> {
     bus: Bus<I, R>,
-    units: [Unit; SEGMENTS],
+    channels: [ImuChannel; SEGMENTS],
 }
 
 impl<I: I2c + BusRecovery, R: OutputPin> Imus<I, R> {
-    /// All IMUs, at their default address, none read yet. Nothing is sent.
+    /// All IMUs, at their default address and not read yet. Makes no transaction.
     pub fn new(i2c: I, mux: Tca9548a<R>) -> Self {
-        Self { bus: Bus::new(i2c, mux), units: core::array::from_fn(|_| Unit::new(bno055::ADDRESS)) }
+        Self { bus: Bus::new(i2c, mux), channels: core::array::from_fn(|_| ImuChannel::new(bno055::ADDRESS)) }
     }
 
-    /// Reads each IMU that is due in tick number `tick`, once a tick. The future may be dropped at any await; what was
-    /// read until then counts, and the next call clears the bus first.
+    /// Reads each IMU that is due in tick number `tick`, once a tick. The future may be dropped at any await; readings
+    /// until then count, and the next call recovers the bus first.
     pub async fn read(&mut self, tick: u32) {
         let mut may_recover = true;
-        for (k, (unit, channel)) in (0..).zip(self.units.iter_mut().zip(Channel::ALL)) {
-            // From one IMU to the next the count is shifted, so that they are checked in different ticks.
+        for (k, (imu, channel)) in (0..).zip(self.channels.iter_mut().zip(Channel::ALL)) {
+            // The tick is shifted by one for each IMU, so that they are checked in different ticks.
             let tick = tick.wrapping_add(k);
-            if !unit.is_due(tick) {
+            if !imu.is_due(tick) {
                 continue;
             }
-            if self.bus.is_in_doubt() {
+            if self.bus.needs_recovery() {
                 if !may_recover || !self.bus.recover().await {
                     return;
                 }
                 may_recover = false;
             }
-            unit.read(&mut self.bus, channel, tick).await;
+            imu.read(&mut self.bus, channel, tick).await;
         }
     }
 
-    /// Judges what the last [`read`](Self::read) brought; once a tick, also when that was cut off.
-    pub fn judge(&mut self) -> Judged {
-        let seen = self.units.each_ref().map(Unit::seen);
-        let mut judged = Judged { imu: [None; SEGMENTS], events: Vec::new() };
+    /// Validates the readings of the last [`read`](Self::read); once a tick, also if that was cut off.
+    pub fn validate(&mut self) -> ImuReadings {
+        let quaternions = self.channels.each_ref().map(ImuChannel::quaternion);
+        let mut readings = ImuReadings { imu: [None; SEGMENTS], events: Vec::new() };
         // There is room for an event of each IMU and one of the bus: no push can fail.
-        if self.bus.take_cleared() {
-            let _ = judged.events.push(Event::BusRecovery);
+        if self.bus.take_recovery() {
+            let _ = readings.events.push(Event::BusRecovery);
         }
-        for (k, (unit, imu)) in (0..).zip(self.units.iter_mut().zip(&mut judged.imu)) {
-            let before = unit.health().state;
-            *imu = unit.judge(&seen);
-            let state = unit.health().state;
+        for (k, (channel, imu)) in (0..).zip(self.channels.iter_mut().zip(&mut readings.imu)) {
+            let before = channel.health().state;
+            *imu = channel.validate(&quaternions);
+            let state = channel.health().state;
             if state != before {
-                let _ = judged.events.push(Event::Imu(k, state));
+                let _ = readings.events.push(Event::Imu(k, state));
             }
         }
-        judged
+        readings
     }
 
-    /// State of each IMU, and in how many ticks it gave no reading to be trusted.
+    /// State of each IMU, and its ticks without a valid reading.
     pub fn health(&self) -> [SensorHealth; SEGMENTS] {
-        self.units.each_ref().map(Unit::health)
+        self.channels.each_ref().map(ImuChannel::health)
     }
 
-    /// How often since boot the bus was found stuck and cleared; stays at its largest value.
+    /// Recoveries of a stuck bus since boot; saturates.
     pub fn bus_recoveries(&self) -> u32 {
         self.bus.recoveries()
     }

@@ -1,40 +1,40 @@
-//! What the arm's board does beside estimating, without the board.
+//! Logic of the arm's board, independent of its hardware.
 //!
-//! The firmware reads pins and buses and moves bytes; what it makes of them is decided here, in `no_std` code that
-//! knows no chip and is tested on a host. Each part is a state machine that the firmware advances once a tick of 10 ms.
-//! None keeps a clock: the caller gives the tick's number, or the time since boot in µs, so that the same inputs give
-//! the same outputs.
+//! The firmware accesses pins and buses and moves bytes; the decisions are made here, in `no_std` code that depends on no
+//! chip and is tested on a host. Each part is a state machine that the firmware advances once a tick of 10 ms. None has a
+//! clock: the caller gives the tick's number, or the time since boot in µs, so that the same inputs give the same
+//! outputs.
 //!
-//! | part | what it decides |
+//! | part | task |
 //! |---|---|
-//! | [`imus`] | which IMU is read in a tick, and which are to be trusted |
-//! | [`bno055`], [`tca9548a`] | how an IMU, and the multiplexer before it, are spoken to |
-//! | [`Bends`] | which bend sensors are to be trusted |
-//! | [`Arm`] | what the estimator is fed, and when it starts anew |
-//! | [`Link`] | which of the host's requests are done, and what each is answered |
-//! | [`Schedule`] | which messages are due |
-//! | [`Actuator`] | what may move the pressures, and how they end vented |
-//! | [`Supervisor`] | whether the watchdog is fed |
-//! | [`Boots`] | whether the board is in a boot loop |
+//! | [`imus`] | polling and validation of the IMUs |
+//! | [`bno055`], [`tca9548a`] | drivers of an IMU and of the multiplexer before it |
+//! | [`BendSensorMonitor`] | rail detection and debounced states of the bend sensors |
+//! | [`BoardEstimator`] | the estimator, its tares and its results as messages |
+//! | [`CommandServer`] | idempotent requests and their rate limit |
+//! | [`Schedule`] | periods of the messages |
+//! | [`Actuator`] | arming, set-points with a deadline, venting |
+//! | [`Supervisor`] | the tasks' deadlines, for the watchdog |
+//! | [`BootCounter`] | detection of a boot loop |
 //!
-//! Nothing here can panic on what comes from outside.
+//! No input from outside can cause a panic.
 #![no_std]
 
 mod actuation;
-mod arm;
-mod bends;
+mod bend_sensors;
 pub mod bno055;
-mod boots;
+mod board_estimator;
+mod boot_counter;
+mod command_server;
 pub mod imus;
-mod link;
 mod schedule;
 mod supervisor;
 pub mod tca9548a;
 
 pub use actuation::{Actuator, FULL_SCALE_PA, HOLD_MS, VALID_MS_MAX, VENTED_MS};
-pub use arm::{Arm, TARE_TICKS};
-pub use bends::{Bends, LOSS_TICKS, RAIL_COUNTS, RETURN_TICKS};
-pub use boots::{Boots, CRASHES, UPTIME_WORD, WINDOW_TICKS, WORDS};
-pub use link::{ANEW_TICKS, BURST, Link, PER_TICK};
-pub use schedule::{DEFAULT_RATES, Due, HELLO_TICKS, Schedule};
-pub use supervisor::{Late, STARTUP_TICKS, Supervisor, Task};
+pub use bend_sensors::{BendSensorMonitor, LOSS_TICKS, RAIL_COUNTS, RETURN_TICKS};
+pub use board_estimator::{BoardEstimator, TARE_TICKS};
+pub use boot_counter::{BootCounter, CRASHES, RETAINED_WORDS, UPTIME_WORD, WINDOW_TICKS};
+pub use command_server::{BUCKET_SIZE, CommandServer, REFILL_PER_TICK, SESSION_TIMEOUT_TICKS};
+pub use schedule::{DEFAULT_RATES, DueMessages, HELLO_TICKS, Schedule};
+pub use supervisor::{DeadlineMissed, STARTUP_TICKS, Supervisor, Task};

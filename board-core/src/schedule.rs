@@ -1,18 +1,18 @@
-//! Which messages are due in a tick.
+//! Schedule of the periodic messages.
 
 use telemetry::Rates;
 
-/// What is sent until the host asks for something else: samples and estimates every tick, health at 5 Hz, uncertainty at 4 Hz,
-/// which the line has just room for.
+/// Rates until the host sets others: samples and estimates every tick, health at 5 Hz, uncertainty at 4 Hz, which just fit
+/// the line.
 pub const DEFAULT_RATES: Rates = Rates { sample: 1, estimate: 1, health: 20, uncertainty: 25 };
 
-/// Ticks of 10 ms from one hello to the next: it comes once a second whatever the rates are.
+/// Ticks of 10 ms from one hello to the next: once a second at any rates.
 pub const HELLO_TICKS: u16 = 100;
 
-/// How often messages are sent.
+/// Periods of the messages.
 ///
-/// A message with a rate of n goes out in the ticks that are multiples of n, so that samples and estimates of the same
-/// rate belong to the same ticks, and the same rates give the same stream.
+/// A message with a period of n is sent in the ticks that are multiples of n, so that samples and estimates of the same
+/// period are of the same ticks, and the same rates give the same stream.
 ///
 /// ```
 /// use board_core::Schedule;
@@ -27,10 +27,10 @@ pub struct Schedule {
     rates: Rates,
 }
 
-/// What is due in one tick.
+/// Messages that are due in one tick.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[expect(clippy::struct_excessive_bools, reason = "one for each kind of message, each by itself")]
-pub struct Due {
+#[expect(clippy::struct_excessive_bools, reason = "one independent flag for each kind of message")]
+pub struct DueMessages {
     /// A sample.
     pub sample: bool,
     /// An estimate.
@@ -44,15 +44,15 @@ pub struct Due {
 }
 
 impl Schedule {
-    /// Sends at these rates.
+    /// A schedule of these rates.
     pub const fn new(rates: Rates) -> Self {
         Self { rates }
     }
 
-    /// What is due in this tick.
-    pub fn due(&self, tick: u32) -> Due {
+    /// Messages that are due in this tick.
+    pub fn due(&self, tick: u32) -> DueMessages {
         let every = |ticks: u16| tick.checked_rem(u32::from(ticks)) == Some(0);
-        Due {
+        DueMessages {
             sample: every(self.rates.sample),
             estimate: every(self.rates.estimate),
             health: every(self.rates.health),

@@ -1,16 +1,16 @@
 //! TCA9548A: the multiplexer that puts IMUs of one address on one bus.
 //!
-//! What is connected is known only while everything goes well: [`Selected`] is `Unknown` from before each transaction
-//! until it has succeeded, whether the transaction is the multiplexer's or that of a device behind it. A future that is
-//! dropped in between leaves it `Unknown` too. From there all channels are deselected before one is selected, and
-//! each write of the control register is read back, so that a reading never goes under another channel's name: a
-//! multiplexer that lost its supply or missed the write is found before a device is asked.
+//! The connected channel is known only between successful transactions: [`Selected`] is `Unknown` from before each
+//! transaction until it has succeeded, be it the multiplexer's or that of a device behind it. A future that is dropped in
+//! between leaves it `Unknown` too. In that state all channels are deselected before one is selected, and each write of
+//! the control register is read back, so that no reading is attributed to another channel: a multiplexer that lost its
+//! supply or missed the write is detected before a device is read.
 //!
 //! A channel is connected at the STOP after the write (SCPS207F, 8.5.4); selecting and reading are therefore separate
-//! transactions. A multiplexer that fails is reset by its RESET pin, which disconnects all channels whatever the bus
-//! does (8.4.1).
+//! transactions. A multiplexer that fails is reset by its RESET pin, which disconnects all channels in
+//! any state of the bus (8.4.1).
 //!
-//! The published crate `xca9548a` 1.0 does not suit: it never forgets its channel after an error, and then talks to
+//! The published crate `xca9548a` 1.0 does not suit: it keeps its channel after an error, and then accesses
 //! whichever device is connected.
 
 use embedded_hal::digital::OutputPin;
@@ -34,24 +34,24 @@ impl Channel {
     }
 }
 
-/// What is connected.
+/// Connected channels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Selected {
     /// This channel alone.
     Channel(Channel),
     /// No channel.
     None,
-    /// Something has failed or was cut off: any channels, or several.
+    /// A transaction failed or was cut off: any set of channels.
     Unknown,
 }
 
-/// Why a device behind the multiplexer could not be spoken to.
+/// Error of an access to a device behind the multiplexer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum MuxError<E> {
-    /// The bus failed while the multiplexer was spoken to.
+    /// The bus failed in a transaction of the multiplexer.
     #[error("the multiplexer does not answer: clear the bus and pulse the multiplexer's RESET")]
     Mux(E),
-    /// The control register does not hold what was written.
+    /// The control register does not hold the written value.
     #[error("the multiplexer's control register reads {0:#010b}, not what was written: pulse its RESET")]
     NotTaken(u8),
     /// The bus failed once the channel was connected, or the device does not acknowledge.
@@ -59,7 +59,7 @@ pub enum MuxError<E> {
     Device(E),
 }
 
-/// The multiplexer, with its RESET pin where that is wired.
+/// The multiplexer, with its RESET pin if that is wired.
 #[derive(Debug)]
 pub struct Tca9548a<R> {
     address: u8,
@@ -68,25 +68,25 @@ pub struct Tca9548a<R> {
 }
 
 impl<R: OutputPin> Tca9548a<R> {
-    /// The multiplexer at `address`, in whatever state it is. The RESET pin must be high.
+    /// The multiplexer at `address`, in any state. The RESET pin must be high.
     #[must_use]
     pub const fn new(address: u8, reset: Option<R>) -> Self {
         Self { address, reset, selected: Selected::Unknown }
     }
 
-    /// What is connected.
+    /// Connected channels.
     #[must_use]
     pub const fn selected(&self) -> Selected {
         self.selected
     }
 
-    /// Connects `channel` alone and lets `access` speak to the device behind it. Two short transactions beside those of
-    /// `access`, four where it was not known what is connected, none where the channel is connected already.
+    /// Connects `channel` alone and runs `access` to the device behind it. Takes two short transactions in addition to those
+    /// of `access`, four if the connected channel was not known, none if the channel is connected already.
     ///
     /// # Errors
     ///
-    /// [`MuxError::Device`] is the device's or its channel's. After the others the bus is to be cleared and
-    /// [`reset`](Self::reset) called. After each of them all channels are deselected before one is used.
+    /// [`MuxError::Device`] is the device's or its channel's. After the others, recover the bus and call
+    /// [`reset`](Self::reset). After each of them all channels are deselected before one is used.
     pub async fn with_channel<I: I2c, T>(
         &mut self,
         i2c: &mut I,
@@ -105,11 +105,11 @@ impl<R: OutputPin> Tca9548a<R> {
         Ok(answer)
     }
 
-    /// Disconnects all channels by the RESET pin; without one, forgets what is connected.
+    /// Disconnects all channels by the RESET pin; without one, marks the connected channels as unknown.
     ///
     /// # Errors
     ///
-    /// What the pin says.
+    /// The pin's error.
     pub fn reset(&mut self) -> Result<(), R::Error> {
         self.selected = Selected::Unknown;
         if let Some(pin) = &mut self.reset {
@@ -127,7 +127,7 @@ impl<R: OutputPin> Tca9548a<R> {
         i2c.write(self.address, &[control]).await.map_err(MuxError::Mux)?;
         let mut taken = [0];
         i2c.read(self.address, &mut taken).await.map_err(|error| match (wanted, error.kind()) {
-            // The write went well: it is what was connected by it that disturbs the bus.
+            // The write succeeded: the channel that it connected disturbs the bus.
             (Selected::Channel(_), kind) if !matches!(kind, ErrorKind::NoAcknowledge(_)) => MuxError::Device(error),
             _ => MuxError::Mux(error),
         })?;

@@ -1,4 +1,4 @@
-//! Pressures: armed explicitly, within limits, and vented when nobody speaks.
+//! Pressures are armed explicitly, within limits, and vented when no set-points are received.
 
 use board_core::{Actuator, FULL_SCALE_PA, HOLD_MS, VALID_MS_MAX, VENTED_MS};
 use proptest::prelude::*;
@@ -24,7 +24,7 @@ fn at(actuator: &mut Actuator, now_us: u64) -> (Actuation, [u32; REGULATORS]) {
 }
 
 #[test]
-fn it_starts_vented_and_refuses_set_points_until_armed() {
+fn actuator_starts_vented_and_refuses_set_points_until_armed() {
     let mut actuator = Actuator::new([FULL_SCALE_PA; REGULATORS]);
     assert_eq!(actuator.set(&request(100), 0), Err(Refusal::Disarmed));
     assert_eq!(at(&mut actuator, 0), (Actuation::Disarmed, [0; REGULATORS]));
@@ -124,7 +124,7 @@ fn set_points_are_followed_again_while_holding_and_ramping() {
 fn after_silence_it_stays_vented_until_armed_again() {
     let mut actuator = armed();
     actuator.set(&request(100), 0).unwrap();
-    // Nothing advanced it meanwhile: the set-points themselves come too late.
+    // It was not advanced meanwhile: the set-points are too late.
     assert_eq!(actuator.set(&request(100), VENTED_US), Err(Refusal::Disarmed));
     assert_eq!(at(&mut actuator, VENTED_US + 1), (Actuation::Disarmed, [0; REGULATORS]));
     actuator.arm();
@@ -132,7 +132,7 @@ fn after_silence_it_stays_vented_until_armed_again() {
 }
 
 #[test]
-fn arming_again_does_not_stretch_the_deadline() {
+fn arming_again_does_not_extend_the_deadline() {
     let mut actuator = armed();
     actuator.set(&request(100), 0).unwrap();
     for ms in 0..u64::from(VENTED_MS) {
@@ -143,7 +143,7 @@ fn arming_again_does_not_stretch_the_deadline() {
 }
 
 #[test]
-fn disarming_vents_at_once_and_for_good() {
+fn disarming_vents_at_once_until_armed_again() {
     for ms in [0, 200, 900] {
         let mut actuator = armed();
         actuator.set(&request(100), 0).unwrap();
@@ -173,7 +173,7 @@ fn while_degraded_pressures_go_down_and_not_up() {
 }
 
 #[test]
-fn while_degraded_a_ramp_goes_on_from_where_it_is() {
+fn while_degraded_a_ramp_continues_from_the_present_pressures() {
     let mut actuator = armed();
     actuator.set(&request(100), 0).unwrap();
     actuator.set_degraded(true);
@@ -184,7 +184,7 @@ fn while_degraded_a_ramp_goes_on_from_where_it_is() {
 }
 
 #[test]
-fn each_change_of_state_is_said_once() {
+fn each_change_of_state_is_reported_once() {
     let mut actuator = armed();
     assert_eq!(actuator.event(), Some(Event::Actuation(Actuation::Armed)));
     actuator.set(&request(100), 0).unwrap();
@@ -198,7 +198,7 @@ fn each_change_of_state_is_said_once() {
 }
 
 #[test]
-fn duties_are_none_when_vented_and_the_whole_period_at_full_scale() {
+fn duties_are_zero_when_vented_and_the_whole_period_at_full_scale() {
     let mut actuator = armed();
     assert_eq!(actuator.duties(u16::MAX), [0; REGULATORS]);
     let all = |pressure| SetPressures { pressures_pa: [pressure; REGULATORS], valid_ms: 100 };
@@ -210,7 +210,7 @@ fn duties_are_none_when_vented_and_the_whole_period_at_full_scale() {
     }
 }
 
-/// What a host might do at a time.
+/// Action of a host at a time.
 #[derive(Debug, Clone)]
 enum Step {
     Arm,

@@ -4,8 +4,8 @@ use board_core::bno055::{ADDRESS, Answer, Bno055};
 use embedded_hal::i2c::{ErrorKind, NoAcknowledgeSource};
 use embedded_hal_mock::eh1::i2c::{Mock, Transaction};
 
-mod arm;
-use arm::now;
+mod imu_rig;
+use imu_rig::now;
 
 const NACK: ErrorKind = ErrorKind::NoAcknowledge(NoAcknowledgeSource::Address);
 const UPRIGHT: [i16; 4] = [16384, 0, 0, 0];
@@ -45,7 +45,7 @@ fn start(imu: &mut Bno055, tick: u32) -> u32 {
     tick + 4
 }
 
-/// An IMU that runs; its next tick is 9, in which nothing is checked.
+/// An IMU that runs; its next tick is 9, in which there is no check.
 fn running() -> Bno055 {
     let mut imu = Bno055::new(ADDRESS);
     start(&mut imu, 5);
@@ -60,7 +60,7 @@ fn from_configmode_the_fifth_step_reads() {
 }
 
 #[test]
-fn a_chip_in_another_mode_is_reset_and_left_alone_for_700_ms() {
+fn a_chip_in_another_mode_is_reset_and_not_polled_for_700_ms() {
     let mut imu = Bno055::new(ADDRESS);
     assert_eq!(step(&mut imu, 0, &[write(0x07, 0), read(0x00, &[0xA0])]), Ok(Answer::Starting));
     assert_eq!(step(&mut imu, 1, &[read(0x3D, &[0x18]), write(0x3F, 0x20)]), Ok(Answer::Starting));
@@ -74,7 +74,7 @@ fn a_chip_in_another_mode_is_reset_and_left_alone_for_700_ms() {
 }
 
 #[test]
-fn a_start_does_not_mind_the_ticks_number_wrapping() {
+fn a_start_works_while_the_ticks_number_wraps() {
     let mut imu = Bno055::new(ADDRESS);
     let tick = u32::MAX - 1;
     assert_eq!(step(&mut imu, tick, &[write(0x07, 0), read(0x00, &[0xA0])]), Ok(Answer::Starting));
@@ -94,7 +94,7 @@ fn a_chip_that_is_gone_before_it_acknowledges_its_reset_was_reset() {
 }
 
 #[test]
-fn a_refusal_at_any_step_of_the_start_is_reported_and_the_step_done_again() {
+fn a_nack_at_any_step_of_the_start_is_reported_and_the_step_repeated() {
     let steps = [
         vec![write(0x07, 0), read(0x00, &[0xA0])],
         vec![read(0x3D, &[0x10]), write(0x3D, 0x08)],
@@ -126,10 +126,10 @@ fn a_refusal_at_any_step_of_the_start_is_reported_and_the_step_done_again() {
 }
 
 #[test]
-fn another_chip_at_the_address_is_garbage() {
+fn another_chip_at_the_address_is_invalid() {
     let mut imu = Bno055::new(ADDRESS);
     for tick in 0..3 {
-        assert_eq!(step(&mut imu, tick, &[write(0x07, 0), read(0x00, &[0xE5])]), Ok(Answer::Garbage));
+        assert_eq!(step(&mut imu, tick, &[write(0x07, 0), read(0x00, &[0xE5])]), Ok(Answer::Invalid));
     }
 }
 
@@ -161,7 +161,7 @@ fn mode_and_identity_are_checked_in_turn_every_80_ms() {
 }
 
 #[test]
-fn zeros_in_configmode_are_seen_at_once_and_the_chip_started_anew() {
+fn zeros_in_configmode_are_detected_at_once_and_the_chip_is_restarted() {
     let mut imu = running();
     assert_eq!(step(&mut imu, 9, &[quaternion([0; 4]), state(0, 0)]), Ok(Answer::Starting));
     let tick = start(&mut imu, 10);
@@ -169,30 +169,30 @@ fn zeros_in_configmode_are_seen_at_once_and_the_chip_started_anew() {
 }
 
 #[test]
-fn a_bad_norm_while_fusion_runs_is_garbage_for_that_tick() {
+fn a_bad_norm_while_fusion_runs_is_invalid_for_that_tick() {
     let mut imu = running();
     for bad in [[0; 4], [16384, 16384, 0, 0], [i16::MIN; 4], [-1; 4], [16200, 0, 0, 0]] {
-        assert_eq!(step(&mut imu, 9, &[quaternion(bad), state(5, 8)]), Ok(Answer::Garbage));
+        assert_eq!(step(&mut imu, 9, &[quaternion(bad), state(5, 8)]), Ok(Answer::Invalid));
     }
     assert_eq!(step(&mut imu, 10, &[quaternion(UPRIGHT)]), Ok(Answer::Quaternion(UPRIGHT)));
 }
 
 #[test]
-fn a_good_looking_reading_of_a_chip_that_left_its_mode_is_not_given() {
+fn a_unit_quaternion_of_a_chip_in_another_mode_is_rejected() {
     let mut imu = running();
     assert_eq!(step(&mut imu, 16, &[quaternion(UPRIGHT), state(6, 12)]), Ok(Answer::Starting));
     assert_eq!(step(&mut imu, 17, &[write(0x07, 0), read(0x00, &[0xA0])]), Ok(Answer::Starting));
 }
 
 #[test]
-fn a_wrong_identity_starts_the_chip_anew() {
+fn a_wrong_identity_restarts_the_chip() {
     let mut imu = running();
     assert_eq!(step(&mut imu, 12, &[quaternion(UPRIGHT), read(0x00, &[0x00])]), Ok(Answer::Starting));
     assert_eq!(step(&mut imu, 13, &[write(0x07, 0), read(0x00, &[0xA0])]), Ok(Answer::Starting));
 }
 
 #[test]
-fn after_an_error_a_reading_is_trusted_only_with_a_check() {
+fn after_an_error_a_reading_is_returned_only_after_a_check() {
     let mut imu = running();
     assert_eq!(step(&mut imu, 9, &[quaternion(UPRIGHT).with_error(ErrorKind::Bus)]), Err(ErrorKind::Bus));
     assert_eq!(step(&mut imu, 10, &[quaternion(UPRIGHT), state(5, 8)]), Ok(Answer::Quaternion(UPRIGHT)));

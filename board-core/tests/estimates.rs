@@ -1,6 +1,6 @@
-//! When the estimator starts, that it starts anew, and what is told beside the estimates.
+//! Tares of the estimator, contact events and uncertainties.
 
-use board_core::{Arm, TARE_TICKS};
+use board_core::{BoardEstimator, TARE_TICKS};
 use estimator_core::{
     ArmConfig, BendMap, BendSensorConfig, ContactConfig, Q, QuadraticMap, SegmentConfig, Turns, UncertaintyConfig,
     VARIANCE_SCALE,
@@ -18,7 +18,7 @@ fn sample(tick: u32) -> Sample {
     Sample {
         tick,
         time_us: u64::from(tick) * 10_000,
-        tare: 0,
+        tare_epoch: 0,
         bend: [None; BEND_SENSORS],
         imu: [Some([16_384, 0, 0, 0]); SEGMENTS],
     }
@@ -26,40 +26,40 @@ fn sample(tick: u32) -> Sample {
 
 #[test]
 fn the_first_tare_waits_for_all_imus() {
-    let arm = Arm::new(table());
-    assert!(!arm.is_due(10, false));
-    assert!(arm.is_due(10, true));
+    let estimator = BoardEstimator::new(table());
+    assert!(!estimator.needs_first_tare(10, false));
+    assert!(estimator.needs_first_tare(10, true));
 }
 
 #[test]
-fn the_first_tare_does_not_wait_for_ever() {
-    let arm = Arm::new(table());
-    assert!(!arm.is_due(TARE_TICKS - 1, false));
-    assert!(arm.is_due(TARE_TICKS, false));
+fn the_first_tare_waits_for_a_limited_time() {
+    let estimator = BoardEstimator::new(table());
+    assert!(!estimator.needs_first_tare(TARE_TICKS - 1, false));
+    assert!(estimator.needs_first_tare(TARE_TICKS, false));
 }
 
 #[test]
 fn there_is_one_first_tare() {
-    let mut arm = Arm::new(table());
-    arm.tare();
-    assert!(!arm.is_due(TARE_TICKS, true));
+    let mut estimator = BoardEstimator::new(table());
+    estimator.tare();
+    assert!(!estimator.needs_first_tare(TARE_TICKS, true));
 }
 
 #[test]
-fn samples_can_tell_how_often_it_was_tared() {
-    let mut arm = Arm::new(table());
-    arm.start();
-    assert_eq!(arm.tares(), 0);
-    arm.tare();
-    arm.tare();
-    assert_eq!(arm.tares(), 2);
+fn the_tare_epoch_counts_tares() {
+    let mut estimator = BoardEstimator::new(table());
+    estimator.start();
+    assert_eq!(estimator.tare_epoch(), 0);
+    estimator.tare();
+    estimator.tare();
+    assert_eq!(estimator.tare_epoch(), 2);
 }
 
 #[test]
-fn an_estimate_carries_the_tick_of_its_sample() {
-    let mut arm = Arm::new(table());
-    arm.start();
-    assert_eq!(arm.step(&sample(77)).tick, 77);
+fn an_estimate_has_the_tick_of_its_sample() {
+    let mut estimator = BoardEstimator::new(table());
+    estimator.start();
+    assert_eq!(estimator.update(&sample(77)).tick, 77);
 }
 
 /// Six segments with bend sensors, straight at 1.5 V, with contact detection and error sources.
@@ -90,34 +90,34 @@ fn turned(tick: u32, degrees: f64) -> Sample {
 }
 
 #[test]
-fn contact_is_told_once_when_it_begins_and_once_when_a_tare_ends_it() {
-    let mut arm = Arm::new(full_table());
-    arm.start();
-    let tell = |arm: &mut Arm, tick, degrees| {
-        arm.step(&turned(tick, degrees));
-        arm.contact(tick)
+fn contact_has_one_event_at_its_begin_and_one_when_a_tare_ends_it() {
+    let mut estimator = BoardEstimator::new(full_table());
+    estimator.start();
+    let contact_after = |estimator: &mut BoardEstimator, tick, degrees| {
+        estimator.update(&turned(tick, degrees));
+        estimator.contact_event(tick)
     };
-    assert!((0..20).all(|tick| tell(&mut arm, tick, 0.0).is_none()));
-    // The IMUs turn and the bend sensors do not: the first segment is bent where they do not feel it.
+    assert!((0..20).all(|tick| contact_after(&mut estimator, tick, 0.0).is_none()));
+    // The IMUs turn and the bend sensors do not: the first segment is in contact.
     let first_alone = [true, false, false, false, false, false];
-    assert_eq!(tell(&mut arm, 20, 20.0), Some(Event::Contact(20, first_alone)));
-    assert!((21..30).all(|tick| tell(&mut arm, tick, 20.0).is_none()));
-    arm.tare();
-    assert_eq!(tell(&mut arm, 30, 20.0), Some(Event::Contact(30, [false; SEGMENTS])));
+    assert_eq!(contact_after(&mut estimator, 20, 20.0), Some(Event::Contact(20, first_alone)));
+    assert!((21..30).all(|tick| contact_after(&mut estimator, tick, 20.0).is_none()));
+    estimator.tare();
+    assert_eq!(contact_after(&mut estimator, 30, 20.0), Some(Event::Contact(30, [false; SEGMENTS])));
 }
 
 #[test]
-fn an_uncertainty_is_of_the_newest_estimate() {
-    let mut arm = Arm::new(full_table());
-    arm.start();
+fn an_uncertainty_is_of_the_latest_estimate() {
+    let mut estimator = BoardEstimator::new(full_table());
+    estimator.start();
     for tick in 0..20 {
-        arm.step(&turned(tick, 0.0));
+        estimator.update(&turned(tick, 0.0));
     }
-    let free = arm.uncertainty(19);
-    arm.step(&turned(20, 20.0));
-    let touched = arm.uncertainty(20);
+    let free = estimator.uncertainty(19);
+    estimator.update(&turned(20, 20.0));
+    let touched = estimator.uncertainty(20);
     assert_eq!((free.tick, touched.tick), (19, 20));
-    assert!(!free.segments[0].is_touched && touched.segments[0].is_touched);
+    assert!(!free.segments[0].in_contact && touched.segments[0].in_contact);
     assert!(touched.segments[0].theta > free.segments[0].theta && free.segments[0].theta.is_some());
     assert!(touched.segments[5].end.is_some());
 }

@@ -1,133 +1,133 @@
-//! Six IMUs behind the multiplexer, and what becomes of their readings when things fail.
+//! Six IMUs behind the multiplexer, and their readings under faults.
 
-use board_core::imus::Judged;
+use board_core::imus::ImuReadings;
 use proptest::prelude::*;
 use telemetry::{Event, SensorState};
 
-mod arm;
-use arm::{Arm, Holder, POWER_ON_TICKS, heading};
+mod imu_rig;
+use imu_rig::{Holder, ImuRig, POWER_ON_TICKS, heading};
 
-/// Of the 4 ms in which the IMUs are to be read, a quarter is the processor's and the chips' that stretch the clock.
+/// Limit of the time on the wire: a quarter of the IMUs' 4 ms is for the processor and for clock stretching.
 const WIRE_LIMIT_US: f64 = 3_000.0;
 
-/// What unit k (from 0) is set to measure in a tick: no two are ever alike.
+/// Reading of IMU k (from 0) in a tick: no two are equal.
 fn measured(k: usize, tick: u32) -> [i16; 4] {
     heading(10.0 * (k + 1) as f64 + 0.02 * f64::from(tick % 200))
 }
 
 /// One tick in which every IMU moves.
-fn moving_tick(arm: &mut Arm) -> Judged {
-    let tick = arm.wiring().tick;
-    for (k, chip) in arm.wiring().chips.iter_mut().enumerate() {
+fn moving_tick(rig: &mut ImuRig) -> ImuReadings {
+    let tick = rig.wiring().tick;
+    for (k, chip) in rig.wiring().chips.iter_mut().enumerate() {
         chip.quaternion = measured(k, tick);
     }
-    arm.tick()
+    rig.tick()
 }
 
-fn state(arm: &Arm, k: usize) -> SensorState {
-    arm.imus.health()[k].state
+fn state(rig: &ImuRig, k: usize) -> SensorState {
+    rig.imus.health()[k].state
 }
 
 /// Ticks until IMU k is in a state, at most `limit`.
-fn ticks_until(arm: &mut Arm, k: usize, wanted: SensorState, limit: u32) -> u32 {
+fn ticks_until(rig: &mut ImuRig, k: usize, wanted: SensorState, limit: u32) -> u32 {
     (1..=limit)
         .find(|_| {
-            moving_tick(arm);
-            state(arm, k) == wanted
+            moving_tick(rig);
+            state(rig, k) == wanted
         })
         .unwrap_or_else(|| panic!("IMU {k} is not {wanted:?} within {limit} ticks"))
 }
 
 #[test]
-fn imus_that_have_power_are_read_from_the_fifth_tick_each_under_its_own_number() {
-    let mut arm = Arm::powered_up();
+fn imus_with_power_are_read_from_the_fifth_tick_in_order() {
+    let mut rig = ImuRig::powered_up();
     for _ in 0..4 {
-        assert_eq!(arm.tick(), Judged { imu: [None; 6], events: heapless::Vec::new() });
+        assert_eq!(rig.tick(), ImuReadings { imu: [None; 6], events: heapless::Vec::new() });
     }
-    let judged = arm.tick();
-    assert_eq!(judged.imu, std::array::from_fn(|k| Some(heading(10.0 * (k + 1) as f64))));
+    let readings = rig.tick();
+    assert_eq!(readings.imu, std::array::from_fn(|k| Some(heading(10.0 * (k + 1) as f64))));
     let events: Vec<_> = (0..6).map(|k| Event::Imu(k, SensorState::Ok)).collect();
-    assert_eq!(judged.events, events[..]);
-    assert!(arm.imus.health().iter().all(|health| health.missed == 4));
+    assert_eq!(readings.events, events[..]);
+    assert!(rig.imus.health().iter().all(|health| health.missed == 4));
 }
 
 #[test]
 fn imus_found_running_are_reset_first_and_read_within_0_8_s() {
-    let mut arm = Arm::powered_up();
-    for chip in &mut arm.wiring().chips {
+    let mut rig = ImuRig::powered_up();
+    for chip in &mut rig.wiring().chips {
         (chip.mode, chip.page) = (12, 1);
     }
-    arm.ticks(80);
-    assert!(arm.tick().imu.iter().all(Option::is_some));
-    assert!(arm.wiring().chips.iter().all(|chip| chip.mode == 8));
+    rig.ticks(80);
+    assert!(rig.tick().imu.iter().all(Option::is_some));
+    assert!(rig.wiring().chips.iter().all(|chip| chip.mode == 8));
 }
 
 #[test]
 fn no_tick_is_long_and_the_checks_of_different_imus_are_spread() {
-    let mut arm = Arm::running();
+    let mut rig = ImuRig::running();
     for _ in 0..100 {
-        moving_tick(&mut arm);
-        assert!(arm.log.len() <= 20, "{} transactions", arm.log.len());
-        assert!(arm.wire_us() < WIRE_LIMIT_US, "{} µs", arm.wire_us());
+        moving_tick(&mut rig);
+        assert!(rig.log.len() <= 20, "{} transactions", rig.log.len());
+        assert!(rig.wire_us() < WIRE_LIMIT_US, "{} µs", rig.wire_us());
     }
 }
 
 #[test]
 fn imus_that_are_absent_from_the_start_leave_the_others_on_schedule() {
     for absent in 0..6 {
-        let mut arm = Arm::powered_up();
-        arm.wiring().chips[absent].is_plugged = false;
-        arm.ticks(4);
-        let mut asked = 0;
+        let mut rig = ImuRig::powered_up();
+        rig.wiring().chips[absent].is_plugged = false;
+        rig.ticks(4);
+        let mut polls = 0;
         for _ in 0..1000 {
-            let judged = moving_tick(&mut arm);
-            let read: Vec<_> = judged.imu.iter().map(Option::is_some).collect();
+            let readings = moving_tick(&mut rig);
+            let read: Vec<_> = readings.imu.iter().map(Option::is_some).collect();
             assert_eq!(read, (0..6).map(|k| k != absent).collect::<Vec<_>>());
-            assert!(arm.wire_us() < WIRE_LIMIT_US, "{} µs", arm.wire_us());
-            asked += arm.log.iter().filter(|(address, bits)| *address == 0x28 && *bits == 11).count();
+            assert!(rig.wire_us() < WIRE_LIMIT_US, "{} µs", rig.wire_us());
+            polls += rig.log.iter().filter(|(address, bits)| *address == 0x28 && *bits == 11).count();
         }
-        assert_eq!(asked, 1000 / 25, "an absent IMU costs one address every 250 ms");
-        assert_eq!(arm.imus.bus_recoveries(), 0);
+        assert_eq!(polls, 1000 / 25, "an absent IMU costs one address every 250 ms");
+        assert_eq!(rig.imus.bus_recoveries(), 0);
     }
 }
 
 #[test]
-fn an_imu_that_is_unplugged_is_off_within_five_ticks_and_back_when_it_answers() {
-    let mut arm = Arm::running();
-    arm.wiring().chips[2].is_plugged = false;
-    let judged = moving_tick(&mut arm);
-    assert_eq!(judged.imu[2], None);
-    assert!(ticks_until(&mut arm, 2, SensorState::Off, 4) <= 4);
-    arm.ticks(100);
-    arm.wiring().chips[2].is_plugged = true;
-    assert!(ticks_until(&mut arm, 2, SensorState::Ok, 200) <= 25, "it kept running: no new start");
-    assert!((0..6).filter(|k| *k != 2).all(|k| arm.imus.health()[k].missed == 4));
+fn an_imu_that_is_unplugged_has_no_response_within_five_ticks_and_back_when_it_answers() {
+    let mut rig = ImuRig::running();
+    rig.wiring().chips[2].is_plugged = false;
+    let readings = moving_tick(&mut rig);
+    assert_eq!(readings.imu[2], None);
+    assert!(ticks_until(&mut rig, 2, SensorState::NoResponse, 4) <= 4);
+    rig.ticks(100);
+    rig.wiring().chips[2].is_plugged = true;
+    assert!(ticks_until(&mut rig, 2, SensorState::Ok, 200) <= 25, "it kept running: no new start");
+    assert!((0..6).filter(|k| *k != 2).all(|k| rig.imus.health()[k].missed == 4));
 }
 
 #[test]
-fn a_single_refusal_costs_one_reading_and_no_event() {
-    let mut arm = Arm::running();
-    arm.wiring().chips[4].is_plugged = false;
-    moving_tick(&mut arm);
-    arm.wiring().chips[4].is_plugged = true;
-    let judged = moving_tick(&mut arm);
-    assert!(judged.imu.iter().all(Option::is_some) && judged.events.is_empty());
-    assert_eq!(arm.imus.health()[4].missed, 5);
+fn a_single_nack_costs_one_reading_and_no_event() {
+    let mut rig = ImuRig::running();
+    rig.wiring().chips[4].is_plugged = false;
+    moving_tick(&mut rig);
+    rig.wiring().chips[4].is_plugged = true;
+    let readings = moving_tick(&mut rig);
+    assert!(readings.imu.iter().all(Option::is_some) && readings.events.is_empty());
+    assert_eq!(rig.imus.health()[4].missed, 5);
 }
 
 #[test]
-fn a_silent_brown_out_is_seen_within_100_ms_and_over_within_2_s() {
+fn a_silent_brown_out_is_detected_within_100_ms_and_over_within_2_s() {
     for phase in 0..8 {
         for data in [None, Some(heading(77.0))] {
-            let mut arm = Arm::running();
-            arm.ticks(phase);
+            let mut rig = ImuRig::running();
+            rig.ticks(phase);
             // Back in CONFIGMODE, where it reads zeros or, worse, what it read last.
-            arm.wiring().chips[3].mode = 0;
-            arm.wiring().chips[3].forced = data;
-            assert!(ticks_until(&mut arm, 3, SensorState::Off, 10) <= if data.is_none() { 1 } else { 10 });
-            arm.wiring().chips[3].forced = None;
-            ticks_until(&mut arm, 3, SensorState::Ok, 190);
-            assert_eq!(arm.wiring().chips[3].mode, 8);
+            rig.wiring().chips[3].mode = 0;
+            rig.wiring().chips[3].forced = data;
+            assert!(ticks_until(&mut rig, 3, SensorState::NoResponse, 10) <= if data.is_none() { 1 } else { 10 });
+            rig.wiring().chips[3].forced = None;
+            ticks_until(&mut rig, 3, SensorState::Ok, 190);
+            assert_eq!(rig.wiring().chips[3].mode, 8);
         }
     }
 }
@@ -135,197 +135,197 @@ fn a_silent_brown_out_is_seen_within_100_ms_and_over_within_2_s() {
 #[test]
 fn a_brown_out_in_which_the_chip_does_not_answer_is_over_within_2_s() {
     for phase in 0..25 {
-        let mut arm = Arm::running();
-        arm.ticks(phase);
-        let from = arm.wiring().tick + POWER_ON_TICKS;
-        (arm.wiring().chips[0].mode, arm.wiring().chips[0].answers_from) = (0, from);
-        let noticed = ticks_until(&mut arm, 0, SensorState::Off, 5);
-        ticks_until(&mut arm, 0, SensorState::Ok, 200 - noticed);
-        assert_eq!(arm.imus.health()[1].missed, 4, "the next one missed nothing");
+        let mut rig = ImuRig::running();
+        rig.ticks(phase);
+        let from = rig.wiring().tick + POWER_ON_TICKS;
+        (rig.wiring().chips[0].mode, rig.wiring().chips[0].answers_from) = (0, from);
+        let noticed = ticks_until(&mut rig, 0, SensorState::NoResponse, 5);
+        ticks_until(&mut rig, 0, SensorState::Ok, 200 - noticed);
+        assert_eq!(rig.imus.health()[1].missed, 4, "the next one missed nothing");
     }
 }
 
 #[test]
-fn a_quaternion_that_cannot_be_is_withheld_at_once_and_reported_after_three() {
+fn a_quaternion_of_wrong_norm_is_rejected_at_once_and_reported_after_three_ticks() {
     for bad in [[0; 4], [i16::MIN; 4], [16384, 16384, 16384, 16384]] {
-        let mut arm = Arm::running();
-        arm.wiring().chips[1].forced = Some(bad);
+        let mut rig = ImuRig::running();
+        rig.wiring().chips[1].forced = Some(bad);
         for tick in 1..=3 {
-            assert_eq!(moving_tick(&mut arm).imu[1], None);
-            assert_eq!(state(&arm, 1), if tick < 3 { SensorState::Ok } else { SensorState::Garbage });
+            assert_eq!(moving_tick(&mut rig).imu[1], None);
+            assert_eq!(state(&rig, 1), if tick < 3 { SensorState::Ok } else { SensorState::Invalid });
         }
-        arm.wiring().chips[1].forced = None;
-        assert!(moving_tick(&mut arm).imu[1].is_some());
+        rig.wiring().chips[1].forced = None;
+        assert!(moving_tick(&mut rig).imu[1].is_some());
     }
 }
 
 #[test]
-fn an_imu_frozen_while_the_others_move_is_stuck_after_half_a_second_and_until_it_moves() {
-    let mut arm = Arm::running();
-    arm.wiring().chips[5].forced = Some(heading(123.0));
-    moving_tick(&mut arm);
+fn an_imu_that_repeats_its_reading_while_the_others_move_is_stuck_after_half_a_second_and_until_it_moves() {
+    let mut rig = ImuRig::running();
+    rig.wiring().chips[5].forced = Some(heading(123.0));
+    moving_tick(&mut rig);
     let mut turn = 0.0;
     for tick in 1..=200 {
         turn += 0.03;
-        for (k, chip) in arm.wiring().chips.iter_mut().enumerate() {
+        for (k, chip) in rig.wiring().chips.iter_mut().enumerate() {
             chip.quaternion = heading(10.0 * (k + 1) as f64 + turn);
         }
-        let judged = arm.tick();
-        assert_eq!(judged.imu[5].is_none(), tick >= 50, "tick {tick}");
-        assert_eq!(judged.events.contains(&Event::Imu(5, SensorState::Stuck)), tick == 50, "tick {tick}");
-        assert!((0..5).all(|k| judged.imu[k].is_some()));
+        let readings = rig.tick();
+        assert_eq!(readings.imu[5].is_none(), tick >= 50, "tick {tick}");
+        assert_eq!(readings.events.contains(&Event::Imu(5, SensorState::Stuck)), tick == 50, "tick {tick}");
+        assert!((0..5).all(|k| readings.imu[k].is_some()));
     }
-    arm.wiring().chips[5].forced = None;
-    assert!(arm.tick().imu[5].is_some());
-    assert_eq!(state(&arm, 5), SensorState::Ok);
+    rig.wiring().chips[5].forced = None;
+    assert!(rig.tick().imu[5].is_some());
+    assert_eq!(state(&rig, 5), SensorState::Ok);
 }
 
 #[test]
-fn at_rest_ten_minutes_of_the_same_bytes_are_no_alarm_though_one_unit_drifts() {
-    let mut arm = Arm::running();
+fn at_rest_ten_minutes_of_the_same_bytes_are_no_fault_though_one_imu_drifts() {
+    let mut rig = ImuRig::running();
     for tick in 0..60_000 {
         // 45° in 900 s, the worst drift.
-        arm.wiring().chips[3].quaternion = heading(40.0 + 0.0005 * f64::from(tick));
-        let judged = arm.tick();
-        assert!(judged.imu.iter().all(Option::is_some) && judged.events.is_empty(), "tick {tick}");
+        rig.wiring().chips[3].quaternion = heading(40.0 + 0.0005 * f64::from(tick));
+        let readings = rig.tick();
+        assert!(readings.imu.iter().all(Option::is_some) && readings.events.is_empty(), "tick {tick}");
     }
 }
 
 #[test]
 fn a_new_heading_after_a_start_does_not_make_resting_imus_stuck() {
-    let mut arm = Arm::running();
-    arm.ticks(120);
-    arm.wiring().chips[2].mode = 0;
-    arm.wiring().chips[2].quaternion = heading(0.0);
+    let mut rig = ImuRig::running();
+    rig.ticks(120);
+    rig.wiring().chips[2].mode = 0;
+    rig.wiring().chips[2].quaternion = heading(0.0);
     for _ in 0..200 {
-        arm.tick();
-        assert!((0..6).filter(|k| *k != 2).all(|k| state(&arm, k) == SensorState::Ok));
+        rig.tick();
+        assert!((0..6).filter(|k| *k != 2).all(|k| state(&rig, k) == SensorState::Ok));
     }
-    assert_eq!(state(&arm, 2), SensorState::Ok);
+    assert_eq!(state(&rig, 2), SensorState::Ok);
 }
 
 #[test]
 fn a_bus_clocked_free_in_the_same_tick_costs_one_reading() {
-    let mut arm = Arm::running();
-    arm.wiring().holder = Some(Holder::Clockable(2));
-    let judged = moving_tick(&mut arm);
-    let read: Vec<_> = judged.imu.iter().map(Option::is_some).collect();
+    let mut rig = ImuRig::running();
+    rig.wiring().holder = Some(Holder::Clockable(2));
+    let readings = moving_tick(&mut rig);
+    let read: Vec<_> = readings.imu.iter().map(Option::is_some).collect();
     assert_eq!(read, [true, true, false, true, true, true]);
-    assert_eq!(judged.events, [Event::BusRecovery]);
-    assert!(moving_tick(&mut arm).imu.iter().all(Option::is_some));
-    assert_eq!(arm.imus.bus_recoveries(), 1);
+    assert_eq!(readings.events, [Event::BusRecovery]);
+    assert!(moving_tick(&mut rig).imu.iter().all(Option::is_some));
+    assert_eq!(rig.imus.bus_recoveries(), 1);
 }
 
 #[test]
 fn an_imu_that_keeps_holding_the_bus_is_cut_off_and_the_others_are_read() {
-    let mut arm = Arm::running();
-    arm.wiring().holder = Some(Holder::Broken(0));
+    let mut rig = ImuRig::running();
+    rig.wiring().holder = Some(Holder::Broken(0));
     for _ in 0..200 {
-        let judged = moving_tick(&mut arm);
-        assert!((1..6).all(|k| judged.imu[k].is_some()));
+        let readings = moving_tick(&mut rig);
+        assert!((1..6).all(|k| readings.imu[k].is_some()));
     }
-    assert_eq!(state(&arm, 0), SensorState::Off);
-    assert!(arm.imus.bus_recoveries() <= 3 + 200 / 25);
-    arm.wiring().holder = None;
-    ticks_until(&mut arm, 0, SensorState::Ok, 200);
+    assert_eq!(state(&rig, 0), SensorState::NoResponse);
+    assert!(rig.imus.bus_recoveries() <= 3 + 200 / 25);
+    rig.wiring().holder = None;
+    ticks_until(&mut rig, 0, SensorState::Ok, 200);
 }
 
 #[test]
-fn a_shorted_bus_costs_little_in_each_tick_and_is_reported_once_when_it_is_cleared() {
-    let mut arm = Arm::running();
-    arm.wiring().holder = Some(Holder::Short);
+fn a_shorted_bus_costs_little_in_each_tick_and_is_reported_once_when_it_recovers() {
+    let mut rig = ImuRig::running();
+    rig.wiring().holder = Some(Holder::Short);
     for tick in 1..=500 {
-        let recoveries = arm.wiring().recoveries;
-        let judged = moving_tick(&mut arm);
-        assert_eq!(judged.imu, [None; 6]);
-        assert!(arm.log.len() <= 2 && arm.wiring().recoveries - recoveries <= 2, "tick {tick}: {:?}", arm.log);
-        assert!(!judged.events.contains(&Event::BusRecovery));
+        let recoveries = rig.wiring().recoveries;
+        let readings = moving_tick(&mut rig);
+        assert_eq!(readings.imu, [None; 6]);
+        assert!(rig.log.len() <= 2 && rig.wiring().recoveries - recoveries <= 2, "tick {tick}: {:?}", rig.log);
+        assert!(!readings.events.contains(&Event::BusRecovery));
     }
-    assert!((0..6).all(|k| state(&arm, k) == SensorState::Off));
-    arm.wiring().holder = None;
+    assert!((0..6).all(|k| state(&rig, k) == SensorState::NoResponse));
+    rig.wiring().holder = None;
     let mut events = Vec::new();
-    (0..60).for_each(|_| events.extend(moving_tick(&mut arm).events));
+    (0..60).for_each(|_| events.extend(moving_tick(&mut rig).events));
     assert_eq!(events.iter().filter(|event| **event == Event::BusRecovery).count(), 1);
-    assert!((0..6).all(|k| state(&arm, k) == SensorState::Ok));
-    assert_eq!(arm.imus.bus_recoveries(), 1);
+    assert!((0..6).all(|k| state(&rig, k) == SensorState::Ok));
+    assert_eq!(rig.imus.bus_recoveries(), 1);
 }
 
 #[test]
-fn a_multiplexer_that_is_gone_takes_the_imus_off_and_brings_them_back() {
-    let mut arm = Arm::running();
-    // What an IMU once said is no word on the multiplexer.
-    arm.wiring().chips[1].forced = Some([0; 4]);
-    arm.tick();
-    arm.wiring().chips[1].forced = None;
-    arm.tick();
-    arm.wiring().mux_is_gone = true;
-    arm.ticks(3);
-    assert!((0..6).all(|k| state(&arm, k) == SensorState::Off));
-    arm.ticks(100);
-    assert!(arm.log.len() <= 4, "{:?}", arm.log);
-    arm.wiring().mux_is_gone = false;
-    assert!(moving_tick(&mut arm).imu.iter().all(Option::is_some));
+fn a_missing_multiplexer_disconnects_the_imus_until_it_returns() {
+    let mut rig = ImuRig::running();
+    // An earlier fault of an IMU is independent of the multiplexer's.
+    rig.wiring().chips[1].forced = Some([0; 4]);
+    rig.tick();
+    rig.wiring().chips[1].forced = None;
+    rig.tick();
+    rig.wiring().mux_is_gone = true;
+    rig.ticks(3);
+    assert!((0..6).all(|k| state(&rig, k) == SensorState::NoResponse));
+    rig.ticks(100);
+    assert!(rig.log.len() <= 4, "{:?}", rig.log);
+    rig.wiring().mux_is_gone = false;
+    assert!(moving_tick(&mut rig).imu.iter().all(Option::is_some));
 }
 
 #[test]
-fn a_multiplexer_that_stays_on_a_channel_never_gives_its_imu_another_name() {
-    let mut arm = Arm::running();
-    arm.wiring().connected = 1 << 4;
-    arm.wiring().mux_ignores = true;
+fn a_multiplexer_stuck_on_a_channel_never_attributes_its_imu_to_another() {
+    let mut rig = ImuRig::running();
+    rig.wiring().connected = 1 << 4;
+    rig.wiring().mux_ignores = true;
     for _ in 0..20 {
-        let tick = arm.wiring().tick;
-        let judged = moving_tick(&mut arm);
-        for (k, reading) in judged.imu.iter().enumerate() {
+        let tick = rig.wiring().tick;
+        let readings = moving_tick(&mut rig);
+        for (k, reading) in readings.imu.iter().enumerate() {
             assert!(reading.is_none_or(|reading| reading == measured(k, tick)), "IMU {k}");
         }
     }
-    arm.wiring().mux_ignores = false;
-    arm.ticks(2);
-    assert!(moving_tick(&mut arm).imu.iter().all(Option::is_some));
+    rig.wiring().mux_ignores = false;
+    rig.ticks(2);
+    assert!(moving_tick(&mut rig).imu.iter().all(Option::is_some));
 }
 
 #[test]
-fn a_tick_cut_off_at_any_transaction_keeps_what_was_read_and_the_next_clears_the_bus_first() {
-    let mut whole = Arm::running();
+fn a_tick_cut_off_at_any_transaction_keeps_the_readings_and_the_next_recovers_the_bus_first() {
+    let mut whole = ImuRig::running();
     whole.tick();
     for cut in 0..whole.log.len() {
-        let mut arm = Arm::running();
-        arm.wiring().hangs_at = Some(cut);
-        let judged = moving_tick(&mut arm);
-        let read = judged.imu.iter().filter(|reading| reading.is_some()).count();
-        assert!(judged.imu[..read].iter().all(Option::is_some), "cut at {cut}");
-        assert_eq!(arm.log.len(), cut + 1);
+        let mut rig = ImuRig::running();
+        rig.wiring().hangs_at = Some(cut);
+        let readings = moving_tick(&mut rig);
+        let read = readings.imu.iter().filter(|reading| reading.is_some()).count();
+        assert!(readings.imu[..read].iter().all(Option::is_some), "cut at {cut}");
+        assert_eq!(rig.log.len(), cut + 1);
 
-        arm.wiring().hangs_at = None;
-        let recoveries = arm.wiring().recoveries;
-        let tick = arm.wiring().tick;
-        let judged = moving_tick(&mut arm);
-        assert_eq!(arm.wiring().recoveries, recoveries + 1);
-        for (k, reading) in judged.imu.iter().enumerate() {
+        rig.wiring().hangs_at = None;
+        let recoveries = rig.wiring().recoveries;
+        let tick = rig.wiring().tick;
+        let readings = moving_tick(&mut rig);
+        assert_eq!(rig.wiring().recoveries, recoveries + 1);
+        for (k, reading) in readings.imu.iter().enumerate() {
             let expected = (k != read).then(|| measured(k, tick));
             assert_eq!(*reading, expected, "cut at {cut}, IMU {k}: only the one cut off pauses");
         }
-        ticks_until(&mut arm, read, SensorState::Slow, 3);
-        ticks_until(&mut arm, read, SensorState::Ok, 25);
+        ticks_until(&mut rig, read, SensorState::Timeout, 3);
+        ticks_until(&mut rig, read, SensorState::Ok, 25);
     }
 }
 
 #[test]
-fn an_imu_that_never_lets_go_of_the_clock_delays_the_others_once_in_250_ms() {
-    let mut arm = Arm::running();
-    arm.wiring().chips[1].stretches = true;
-    let before = arm.imus.health()[5].missed;
+fn an_imu_that_holds_the_clock_low_delays_the_others_once_in_250_ms() {
+    let mut rig = ImuRig::running();
+    rig.wiring().chips[1].stretches = true;
+    let before = rig.imus.health()[5].missed;
     for _ in 0..250 {
-        moving_tick(&mut arm);
+        moving_tick(&mut rig);
     }
-    assert_eq!(state(&arm, 1), SensorState::Slow);
-    assert_eq!(state(&arm, 5), SensorState::Ok);
-    assert_eq!(arm.imus.health()[5].missed - before, 10);
+    assert_eq!(state(&rig, 1), SensorState::Timeout);
+    assert_eq!(state(&rig, 5), SensorState::Ok);
+    assert_eq!(rig.imus.health()[5].missed - before, 10);
 }
 
-/// Something that goes wrong, for one tick or for good.
+/// A fault, for one tick or permanent.
 #[derive(Debug, Clone)]
-enum Mishap {
+enum Fault {
     Hang(usize),
     Plug(usize, bool),
     BrownOut(usize),
@@ -335,58 +335,58 @@ enum Mishap {
     MuxLosesPower,
 }
 
-fn mishap() -> impl Strategy<Value = Mishap> {
+fn fault() -> impl Strategy<Value = Fault> {
     prop_oneof![
-        (0_usize..25).prop_map(Mishap::Hang),
-        (0_usize..6, any::<bool>()).prop_map(|(k, is_plugged)| Mishap::Plug(k, is_plugged)),
-        (0_usize..6).prop_map(Mishap::BrownOut),
-        (0_usize..6).prop_map(|k| Mishap::Hold(Holder::Clockable(k))),
-        (0_usize..6).prop_map(|k| Mishap::Hold(Holder::Broken(k))),
-        Just(Mishap::Hold(Holder::Short)),
-        Just(Mishap::Release),
-        any::<bool>().prop_map(Mishap::MuxIgnores),
-        Just(Mishap::MuxLosesPower),
+        (0_usize..25).prop_map(Fault::Hang),
+        (0_usize..6, any::<bool>()).prop_map(|(k, is_plugged)| Fault::Plug(k, is_plugged)),
+        (0_usize..6).prop_map(Fault::BrownOut),
+        (0_usize..6).prop_map(|k| Fault::Hold(Holder::Clockable(k))),
+        (0_usize..6).prop_map(|k| Fault::Hold(Holder::Broken(k))),
+        Just(Fault::Hold(Holder::Short)),
+        Just(Fault::Release),
+        any::<bool>().prop_map(Fault::MuxIgnores),
+        Just(Fault::MuxLosesPower),
     ]
 }
 
-fn befall(arm: &Arm, mishap: &Mishap) {
-    let mut wiring = arm.wiring();
+fn inject(rig: &ImuRig, fault: &Fault) {
+    let mut wiring = rig.wiring();
     let tick = wiring.tick;
-    match *mishap {
-        Mishap::Hang(at) => wiring.hangs_at = Some(at),
-        Mishap::Plug(k, is_plugged) => wiring.chips[k].is_plugged = is_plugged,
-        Mishap::BrownOut(k) => {
+    match *fault {
+        Fault::Hang(at) => wiring.hangs_at = Some(at),
+        Fault::Plug(k, is_plugged) => wiring.chips[k].is_plugged = is_plugged,
+        Fault::BrownOut(k) => {
             (wiring.chips[k].mode, wiring.chips[k].answers_from) = (0, tick + POWER_ON_TICKS);
         }
-        Mishap::Hold(holder) => wiring.holder = Some(holder),
-        Mishap::Release => wiring.holder = None,
-        Mishap::MuxIgnores(ignores) => wiring.mux_ignores = ignores,
-        Mishap::MuxLosesPower => wiring.connected = 0,
+        Fault::Hold(holder) => wiring.holder = Some(holder),
+        Fault::Release => wiring.holder = None,
+        Fault::MuxIgnores(ignores) => wiring.mux_ignores = ignores,
+        Fault::MuxLosesPower => wiring.connected = 0,
     }
 }
 
 proptest! {
     #[test]
     fn whatever_happens_no_reading_goes_under_another_name_and_all_come_back(
-        mishaps in prop::collection::vec((mishap(), 0_u32..40), 1..30)
+        faults in prop::collection::vec((fault(), 0_u32..40), 1..30)
     ) {
-        let mut arm = Arm::running();
-        for (mishap, ticks) in &mishaps {
-            befall(&arm, mishap);
+        let mut rig = ImuRig::running();
+        for (fault, ticks) in &faults {
+            inject(&rig, fault);
             for _ in 0..=*ticks {
-                let tick = arm.wiring().tick;
-                let judged = moving_tick(&mut arm);
-                arm.wiring().hangs_at = None;
-                for (k, reading) in judged.imu.iter().enumerate() {
+                let tick = rig.wiring().tick;
+                let readings = moving_tick(&mut rig);
+                rig.wiring().hangs_at = None;
+                for (k, reading) in readings.imu.iter().enumerate() {
                     prop_assert!(reading.is_none_or(|reading| reading == measured(k, tick)));
                 }
-                prop_assert!(arm.log.len() <= 36);
+                prop_assert!(rig.log.len() <= 36);
             }
         }
-        arm.wiring().holder = None;
-        arm.wiring().mux_ignores = false;
-        arm.wiring().chips.iter_mut().for_each(|chip| chip.is_plugged = true);
-        (0..200).for_each(|_| { moving_tick(&mut arm); });
-        prop_assert!(moving_tick(&mut arm).imu.iter().all(Option::is_some));
+        rig.wiring().holder = None;
+        rig.wiring().mux_ignores = false;
+        rig.wiring().chips.iter_mut().for_each(|chip| chip.is_plugged = true);
+        (0..200).for_each(|_| { moving_tick(&mut rig); });
+        prop_assert!(moving_tick(&mut rig).imu.iter().all(Option::is_some));
     }
 }

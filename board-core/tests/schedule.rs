@@ -1,9 +1,9 @@
-//! Messages are due at the rates asked for.
+//! Messages are due at their rates.
 
 use board_core::Schedule;
 use telemetry::Rates;
 
-/// How many samples, estimates, healths, uncertainties and hellos ten seconds bring.
+/// Counts of samples, estimates, healths, uncertainties and hellos in ten seconds.
 fn in_ten_seconds(schedule: Schedule) -> [usize; 5] {
     let mut count = [0; 5];
     for tick in 0..1000 {

@@ -8,8 +8,8 @@ use embedded_hal_mock::eh1::i2c::{Mock, Transaction};
 use std::pin::pin;
 use std::task::{Context, Waker};
 
-mod arm;
-use arm::now;
+mod imu_rig;
+use imu_rig::now;
 
 const DEVICE: u8 = 0x28;
 const NACK: ErrorKind = ErrorKind::NoAcknowledge(NoAcknowledgeSource::Address);

@@ -1,31 +1,55 @@
-//! Bend sensors beyond the paper's quadratic: curves, memory, and the errors that a sweep has left.
+//! `bend`: bend sensors, their V–Orient maps (quadratic or curve), and their creep and hysteresis.
 
 use std::ops::RangeInclusive;
 
 use estimator_core::{
-    BendErrorConfig, BendMap, BendSensorConfig, CurveMap, Lag, MemoryConfig, Play, Q, QuadraticMap,
-    SENSORS_PER_SEGMENT, TIME_UNIT_S,
+    BendMap, BendSensorConfig, CurveMap, FusedOps, Lag, MemoryConfig, Play, Q, QuadraticMap, TIME_UNIT_S,
+    VOLTS_PER_COUNT,
 };
-use serde::{Deserialize, Serialize};
+use serde::de::Error;
+use serde::{Deserialize, Deserializer, Serialize};
 
-use crate::check::{ADC_VOLTS, ensure, within};
-use crate::drift::variance;
-use crate::file::{BendKeys, FileError, SegmentKeys};
+use crate::error::{FileError, ensure, within};
 
+/// Largest bend angle of a segment, rad.
+const MAX_ANGLE: f64 = std::f64::consts::TAU;
+/// Largest coefficient of a map about the middle of its range that fits fixed point, rad.
+const MAX_COEFFICIENT: f64 = 31.0;
+/// Voltages that the ADC can read, with some room for rounding.
+const ADC_VOLTS: RangeInclusive<f64> = -0.001..=3.301;
 /// Number of points of a curve.
 pub const CURVE_POINTS: RangeInclusive<usize> = 2..=65;
-/// Largest standard deviation of a bend sensor that the bias filter's fixed point holds.
-const MAX_DEVIATION_DEG: f64 = 5.0;
-/// A sensor steps where it moves by more than so many standard deviations of its noise, and by so many degrees.
-const STEP_DEVIATIONS: f64 = 8.0;
-const LEAST_STEP_DEG: f64 = 6.0;
-/// Two lags and two plays.
+/// Number of lags, and of plays.
 const MEMORIES: usize = 2;
+
+/// One bend sensor's V–Orient map, θ = c2 V² + c1 V + c0 in rad.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BendToml {
+    /// rad.
+    pub c0: f64,
+    /// rad/V.
+    pub c1: f64,
+    /// rad/V².
+    pub c2: f64,
+    /// Residual of the calibration.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rmse_deg: Option<f64>,
+    /// Lowest and highest voltage of the calibration, V; `None`: those at which |θ| is half a turn.
+    #[serde(default, deserialize_with = "pair", skip_serializing_if = "Option::is_none")]
+    pub volts: Option<[f64; 2]>,
+    /// A curve that replaces the quadratic.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub curve: Option<CurveToml>,
+    /// Creep and hysteresis of this sensor.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub memory: Option<MemoryToml>,
+}
 
 /// `curve`: bend angles at evenly spaced voltages, linear between them.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct CurveKeys {
+pub struct CurveToml {
     /// Voltage of the first and of the last point.
     pub volts: [f64; 2],
     /// Bend angle at each point.
@@ -35,7 +59,7 @@ pub struct CurveKeys {
 /// `memory`: θ + Σ w (θ − lag(θ)) + Σ w (θ − play(θ)).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct MemoryKeys {
+pub struct MemoryToml {
     /// Time constants of the lags.
     pub lag_s: [f64; MEMORIES],
     /// Their weights.
@@ -46,30 +70,7 @@ pub struct MemoryKeys {
     pub play_weight: [f64; MEMORIES],
 }
 
-/// `bend_error`: standard deviations and ranges of the errors that the sweep has left.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct BendErrorKeys {
-    /// Of the mean of the segment's sensors.
-    pub mean_deg: f64,
-    /// Of each sensor.
-    pub sensor_deg: Vec<f64>,
-    /// Of the change from one value to the next at 10 Hz, of the noisier sensor.
-    #[serde(default)]
-    pub noise_deg: f64,
-    /// Of half the difference of a and b.
-    pub difference_deg: f64,
-    /// Of 60 s means of half the difference.
-    pub slow_difference_deg: f64,
-    /// Variance of 60 s means of the mean over that of half the difference, 0 to 1.
-    pub slow_ratio: f64,
-    /// Travel after which the error is a new one.
-    pub travel_deg: f64,
-    /// Time after which the error is a new one.
-    pub correlation_s: f64,
-}
-
-impl CurveKeys {
+impl CurveToml {
     pub(crate) fn check(&self, key: &str) -> Result<(), FileError> {
         let [lo, hi] = self.volts;
         let in_order = ADC_VOLTS.contains(&lo) && ADC_VOLTS.contains(&hi) && lo < hi;
@@ -96,7 +97,7 @@ impl CurveKeys {
     }
 }
 
-impl MemoryKeys {
+impl MemoryToml {
     pub(crate) fn check(&self, key: &str) -> Result<(), FileError> {
         for lag_s in self.lag_s {
             within(&format!("{key}.lag_s"), lag_s, 2.5..=1e4)?;
@@ -110,7 +111,7 @@ impl MemoryKeys {
         Ok(())
     }
 
-    fn bake(&self) -> MemoryConfig<Q> {
+    fn compile(&self) -> MemoryConfig<Q> {
         let lag = |k: usize| Lag {
             time: Q::from_f64(self.lag_s[k] / TIME_UNIT_S),
             rate: Q::from_f64(TIME_UNIT_S / self.lag_s[k]),
@@ -124,41 +125,76 @@ impl MemoryKeys {
     }
 }
 
-impl BendErrorKeys {
+impl BendToml {
     pub(crate) fn check(&self, key: &str) -> Result<(), FileError> {
-        within(&format!("{key}.mean_deg"), self.mean_deg, 0.05..=90.0)?;
-        let sensors = self.sensor_deg.len();
-        ensure(sensors <= SENSORS_PER_SEGMENT, &format!("{key}.sensor_deg"), &sensors, "one for each sensor")?;
-        for deviation in &self.sensor_deg {
-            within(&format!("{key}.sensor_deg"), *deviation, 0.05..=90.0)?;
+        for (name, value) in [("c0", self.c0), ("c1", self.c1), ("c2", self.c2)] {
+            within(&format!("{key}.{name}"), value, -1e4..=1e4)?;
         }
-        within(&format!("{key}.noise_deg"), self.noise_deg, 0.0..=90.0)?;
-        within(&format!("{key}.difference_deg"), self.difference_deg, 0.0..=90.0)?;
-        within(&format!("{key}.slow_difference_deg"), self.slow_difference_deg, 0.0..=90.0)?;
-        within(&format!("{key}.slow_ratio"), self.slow_ratio, 0.0..=1.0)?;
-        within(&format!("{key}.travel_deg"), self.travel_deg, 0.0..=1000.0)?;
-        within(&format!("{key}.correlation_s"), self.correlation_s, 0.0..=1000.0)
+        within(&format!("{key}.rmse_deg"), self.rmse_deg.unwrap_or(0.0), 0.0..=360.0)?;
+        if let Some(volts) = self.volts {
+            self.check_within(key, volts)?;
+        }
+        self.curve.as_ref().map_or(Ok(()), |curve| curve.check(&format!("{key}.curve")))?;
+        self.memory.as_ref().map_or(Ok(()), |memory| memory.check(&format!("{key}.memory")))?;
+        let map = QuadraticMap::<f64>::from_volts(self.c2, self.c1, self.c0, self.range_volts());
+        let largest = map.coefficients.into_iter().fold(0.0, |largest: f64, b| largest.max(b.abs()));
+        ensure(
+            largest < MAX_COEFFICIENT,
+            key,
+            &"a map that is too steep",
+            "the angles of a segment, within half a turn",
+        )
     }
 
-    fn bake(&self) -> BendErrorConfig {
-        let deviation = |degrees: f64| variance(degrees.min(MAX_DEVIATION_DEG));
-        let sensor = |k: usize| deviation(self.sensor_deg.get(k).copied().unwrap_or(self.mean_deg));
-        BendErrorConfig {
-            mean: deviation(self.mean_deg),
-            sensor: [sensor(0), sensor(1)],
-            step: Q::from_f64((STEP_DEVIATIONS * self.noise_deg).max(LEAST_STEP_DEG).to_radians()),
-            difference: deviation(self.difference_deg),
-            slow_difference: Q::from_f64(self.slow_difference_deg.to_radians()),
-            slow_ratio: Q::from_f64(self.slow_ratio),
-            travel: Q::from_f64(self.travel_deg.to_radians()),
-            correlation_time: Q::from_f64(self.correlation_s / TIME_UNIT_S),
-        }
+    fn check_within(&self, key: &str, [lo, hi]: [f64; 2]) -> Result<(), FileError> {
+        let volts = format!("{key}.volts");
+        let in_order = ADC_VOLTS.contains(&lo) && ADC_VOLTS.contains(&hi) && lo < hi;
+        ensure(in_order, &volts, &format!("[{lo}, {hi}]"), "[lowest, highest] within 0 to 3.3 V")?;
+        let steepest = [lo, hi].map(|v| self.angle(v).abs()).into_iter().fold(0.0, f64::max);
+        within(&format!("{key}: largest angle within volts, rad"), steepest, 0.0..=MAX_ANGLE)?;
+        ensure(
+            self.is_monotonic_within([lo, hi]),
+            key,
+            &match self.turning_point() {
+                volts if volts.is_finite() => format!("a map that turns back at {volts:.3} V"),
+                _ => "a map that stays level".to_owned(),
+            },
+            &format!("one that only rises or only falls from {lo} V to {hi} V"),
+        )
     }
-}
 
-impl BendKeys {
-    /// Map and memory of the sensor.
-    pub(crate) fn bake<S: estimator_core::FusedOps>(&self) -> BendSensorConfig<S> {
+    /// Range of voltages of the map's fit, V; without `volts`, the range in which |θ| is within half a turn.
+    #[must_use]
+    pub fn range_volts(&self) -> [f64; 2] {
+        self.volts.unwrap_or_else(|| {
+            let volts = (0..=4095_u16).map(|counts| f64::from(counts) * VOLTS_PER_COUNT);
+            let bent = volts.filter(|v| self.angle(*v).abs() <= std::f64::consts::PI);
+            let [lo, hi] = bent.fold([f64::INFINITY, f64::NEG_INFINITY], |[lo, hi], v| [lo.min(v), hi.max(v)]);
+            if lo < hi { [lo, hi] } else { [0.0, 3.3] }
+        })
+    }
+
+    /// Bend angle at a voltage, rad.
+    #[must_use]
+    pub fn angle(&self, volts: f64) -> f64 {
+        (self.c2 * volts + self.c1) * volts + self.c0
+    }
+
+    /// Returns `true` if the map is strictly monotonic between the two voltages.
+    #[must_use]
+    pub fn is_monotonic_within(&self, volts: [f64; 2]) -> bool {
+        let [at_lo, at_hi] = volts.map(|v| 2.0 * self.c2 * v + self.c1);
+        at_lo * at_hi > 0.0
+    }
+
+    /// The voltage where the map turns back, V; not finite for a straight line.
+    #[must_use]
+    pub fn turning_point(&self) -> f64 {
+        -self.c1 / (2.0 * self.c2)
+    }
+
+    /// Converts the map and the memory of the sensor.
+    pub(crate) fn compile<S: FusedOps>(&self) -> BendSensorConfig<S> {
         let map = match &self.curve {
             Some(curve) => {
                 let angles: Vec<f64> = curve.theta_deg.iter().copied().map(f64::to_radians).collect();
@@ -166,33 +202,14 @@ impl BendKeys {
             }
             None => BendMap::Quadratic(QuadraticMap::from_volts(self.c2, self.c1, self.c0, self.range_volts())),
         };
-        BendSensorConfig { map, memory: self.memory.as_ref().map(MemoryKeys::bake) }
+        BendSensorConfig { map, memory: self.memory.as_ref().map(MemoryToml::compile) }
     }
 }
 
-impl SegmentKeys {
-    /// Errors of the bend sensors: those of the sweep, or those that the residuals of the quadratics suggest.
-    pub(crate) fn bake_bend_error(&self) -> BendErrorConfig {
-        self.bend_error.clone().unwrap_or_else(|| self.default_bend_error()).bake()
-    }
-
-    /// Two sensors of one segment with independent errors of the maps' RMSE; correlation as on the paper's sweeps.
-    fn default_bend_error(&self) -> BendErrorKeys {
-        let sensors = self.bend.as_deref().unwrap_or_default();
-        let rmse = |sensor: &BendKeys| sensor.rmse_deg.unwrap_or(crate::noise::RMSE_DEG_UNKNOWN).max(0.3);
-        let sensor_deg: Vec<f64> = sensors.iter().map(rmse).collect();
-        let n = sensor_deg.len().max(1) as f64;
-        let square_sum: f64 = sensor_deg.iter().map(|deviation| deviation * deviation).sum();
-        let mean_deg = if sensors.is_empty() { crate::noise::RMSE_DEG_UNKNOWN } else { square_sum.sqrt() / n };
-        BendErrorKeys {
-            mean_deg,
-            sensor_deg,
-            noise_deg: 0.0,
-            difference_deg: mean_deg,
-            slow_difference_deg: mean_deg / 2.0,
-            slow_ratio: 1.0,
-            travel_deg: 60.0,
-            correlation_s: 10.0,
-        }
-    }
+/// An array of two numbers, no more.
+fn pair<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<[f64; 2]>, D::Error> {
+    let numbers = Vec::deserialize(deserializer)?;
+    let found = numbers.len();
+    let pair = numbers.try_into().map_err(|_: Vec<f64>| D::Error::custom(format!("{found} numbers, expected 2")))?;
+    Ok(Some(pair))
 }

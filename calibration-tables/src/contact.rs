@@ -1,90 +1,90 @@
-//! `[contact]`, `contact` and `coupled_to`: thresholds of contact detection, and segments that bend alike.
+//! `[contact]`, `contact` and `coupled_to`: thresholds of contact detection, and coupled segments.
 
 use std::ops::RangeInclusive;
 
-use estimator_core::{ChangeLimit, ContactConfig, ContactLimits, CoupledSegment, Coupling, Response, Turns};
+use estimator_core::{ChangeLimit, ContactConfig, CoupledSegment, Coupling, Response, Turns};
 use serde::{Deserialize, Serialize};
 
-use crate::check::{ensure, within};
-use crate::file::{FileError, SegmentKeys};
+use crate::error::{FileError, ensure, within};
 
-/// `[contact]`: changes within five values, half a second at 10 Hz, that a free arm does not make; for segments without
-/// limits of their own.
+/// `[contact]`: thresholds of the change within five values (half a second at 10 Hz), for segments without limits of
+/// their own.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
-pub struct ContactKeys {
-    /// Of a segment's IMUs against its bend sensors, a quarter of the motion taken off.
+pub struct ContactToml {
+    /// Threshold of the IMUs against the bend sensors of a segment, after a quarter of the motion is subtracted.
     pub bend_deg: f64,
-    /// Of a segment against the one that it is coupled to.
+    /// Threshold of a segment against the segment that it is coupled to.
     #[serde(alias = "alike_deg")]
     pub coupling_deg: f64,
 }
 
-impl Default for ContactKeys {
+impl Default for ContactToml {
     fn default() -> Self {
         Self { bend_deg: 5.0, coupling_deg: 4.0 }
     }
 }
 
-/// `coupled_to`: an earlier segment that bends alike while the arm moves freely, θ = ratio · θ of that one.
+/// `coupled_to`: an earlier segment that bends in proportion in free motion, θ = ratio · θ of that segment.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct CoupledKeys {
+pub struct CoupledToml {
     /// Its number, from 1.
     pub segment: usize,
-    /// What its θ is multiplied by.
+    /// Ratio of this segment's θ to that of the earlier one.
     pub ratio: f64,
-    /// The same where its θ is negative; `None`: `ratio`.
+    /// The ratio where θ of the earlier segment is negative; `None`: `ratio`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub ratio_left: Option<f64>,
-    /// Time constant by which the segment lags behind the earlier one, s; negative: leads.
+    /// Time constant by which the segment lags the earlier one, s; negative: leads.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub lag_s: f64,
-    /// Radius of the play that the segment has more than the earlier one, degrees; negative: less.
+    /// Radius of the segment's play less that of the earlier one, degrees.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub play_deg: f64,
     /// Limit of the change of the residual; `None`: that of `[contact]`, without response to the earlier segment.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub limit: Option<ChangeKeys>,
+    pub limit: Option<ChangeToml>,
 }
 
 /// Limit of the change of a residual within ten values, a second at 10 Hz.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct ChangeKeys {
+pub struct ChangeToml {
     /// Change that the free arm does not reach.
     pub change_deg: f64,
-    /// Motion within five values that the sweep has shown; what exceeds it is taken off the change, in part.
+    /// Largest motion within five values in the calibration sweep; a part of the excess over it is subtracted from the
+    /// change.
     pub motion_deg: f64,
 }
 
-impl ContactKeys {
+impl ContactToml {
     pub(crate) fn check(&self) -> Result<(), FileError> {
         within("contact.bend_deg", self.bend_deg, 0.1..=90.0)?;
         within("contact.coupling_deg", self.coupling_deg, 0.1..=90.0)
     }
 
-    pub(crate) fn bake(&self) -> ContactConfig {
+    pub(crate) fn compile(&self) -> ContactConfig {
         let [bend, coupling] = [self.bend_deg, self.coupling_deg].map(|degrees| Turns::from_rad(degrees.to_radians()));
         ContactConfig { bend, coupling }
     }
 }
 
-/// What the `ratio` of segments that bend alike may be.
+/// Range of the `ratio` of coupled segments.
 pub const RATIO_RANGE: RangeInclusive<f64> = -7.9..=7.9;
 
 /// Longest lag and largest play between two coupled segments.
 const LONGEST_LAG_S: f64 = 10.0;
 const LARGEST_PLAY_DEG: f64 = 30.0;
 
-impl CoupledKeys {
+impl CoupledToml {
     /// θ = ratio · θ of the segment of this number, without response and limit.
     #[must_use]
     pub const fn with_ratio(segment: usize, ratio: f64) -> Self {
         Self { segment, ratio, ratio_left: None, lag_s: 0.0, play_deg: 0.0, limit: None }
     }
 
-    /// Of the segment of this number.
+    /// Checks the key of segment number `segment`.
     pub(crate) fn check(&self, key: &str, segment: usize) -> Result<(), FileError> {
         let is_earlier = (1..segment).contains(&self.segment);
         ensure(is_earlier, &format!("{key}.segment"), &self.segment, "the number of an earlier segment")?;
@@ -95,12 +95,12 @@ impl CoupledKeys {
         self.limit.map_or(Ok(()), |limit| limit.check(&format!("{key}.limit")))
     }
 
-    pub(crate) fn bake(self) -> CoupledSegment {
+    pub(crate) fn compile(self) -> CoupledSegment {
         CoupledSegment { segment: (self.segment - 1) as u8, ratio: ratio(self.ratio) }
     }
 
-    /// At so many values a second; `None` without a limit.
-    fn bake_coupling(self, value_hz: f64) -> Option<Coupling> {
+    /// Converts the response at `value_hz` values a second; `None` without a limit.
+    pub(crate) fn compile_coupling(self, value_hz: f64) -> Option<Coupling> {
         let play = (self.play_deg.abs() / 360.0 * 2.0_f64.powi(32)).round() as i32;
         let share = 1.0 - (-1.0 / (value_hz * self.lag_s.abs())).exp();
         let share = if self.lag_s.abs() > 0.0 { share } else { 1.0 };
@@ -115,29 +115,20 @@ impl CoupledKeys {
             ratio_left: ratio(self.ratio_left.unwrap_or(self.ratio)),
             lead: response(false),
             own: response(true),
-            limit: self.limit?.bake(),
+            limit: self.limit?.compile(),
         })
     }
 }
 
-impl ChangeKeys {
+impl ChangeToml {
     pub(crate) fn check(&self, key: &str) -> Result<(), FileError> {
         within(&format!("{key}.change_deg"), self.change_deg, 0.1..=90.0)?;
         within(&format!("{key}.motion_deg"), self.motion_deg, 0.0..=90.0)
     }
 
-    fn bake(self) -> ChangeLimit {
+    pub(crate) fn compile(self) -> ChangeLimit {
         let [change, motion] = [self.change_deg, self.motion_deg].map(|degrees| Turns::from_rad(degrees.to_radians()));
         ChangeLimit { change, motion }
-    }
-}
-
-impl SegmentKeys {
-    /// Limits of the segment's own, where it has any.
-    pub(crate) fn bake_contact(&self, value_hz: f64) -> Option<ContactLimits> {
-        let bend = self.contact.map(ChangeKeys::bake);
-        let coupling = self.coupled_to.and_then(|coupled| coupled.bake_coupling(value_hz));
-        (bend.is_some() || coupling.is_some()).then_some(ContactLimits { bend, coupling })
     }
 }
 

@@ -1,52 +1,52 @@
 //! `[drift]`: the drift correction of the IMUs, and the priors and noise of the bias filter.
 
-use estimator_core::{BiasFilterConfig, Q, TIME_UNIT_S, VARIANCE_SCALE};
+use estimator_core::{BiasFilterConfig, Q, TIME_UNIT_S};
 use serde::de::IgnoredAny;
 use serde::{Deserialize, Serialize};
 
-use crate::check::within;
-use crate::file::FileError;
+use crate::error::{FileError, within};
+use crate::variance::variance;
 
 /// `[drift]`. Deviations are standard deviations.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(from = "DriftFile")]
-pub struct DriftKeys {
+pub struct DriftToml {
     /// Drift correction.
     pub kind: DriftKind,
-    /// Each heading's zero at the end of the tare.
+    /// Deviation of each heading's zero at the end of the tare.
     pub start_deg: f64,
-    /// Each segment's bend angle in the reference pose.
+    /// Deviation of each segment's bend angle in the reference pose.
     pub straightness_deg: f64,
-    /// Turn-on bias of the gyroscopes: the drift's rate at the start.
+    /// Deviation of the turn-on bias of the gyroscopes, the drift's rate at the start.
     pub rate_deg_per_s: f64,
     /// Angle random walk (IEEE Std 952).
     pub angle_random_walk_deg_per_sqrt_s: f64,
     /// Rate random walk (IEEE Std 952).
     pub rate_random_walk_deg_per_s_sqrt_s: f64,
-    /// Offset of a segment's bend sensors in a session, which the sweep cannot show.
+    /// Deviation of the offset of a segment's bend sensors between sessions, which the sweep does not contain.
     pub offset_deg: f64,
     /// Time constant of that offset.
     pub offset_s: f64,
 }
 
-/// `[drift]` as it stands in files, those of version 0.1 among them.
+/// `[drift]` in files, including those of version 0.1.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct DriftFile {
     kind: DriftKind,
-    #[serde(default = "DriftKeys::start_deg")]
+    #[serde(default = "DriftToml::start_deg")]
     start_deg: f64,
-    #[serde(default = "DriftKeys::straightness_deg")]
+    #[serde(default = "DriftToml::straightness_deg")]
     straightness_deg: f64,
-    #[serde(default = "DriftKeys::rate_deg_per_s")]
+    #[serde(default = "DriftToml::rate_deg_per_s")]
     rate_deg_per_s: f64,
-    #[serde(default = "DriftKeys::angle_random_walk")]
+    #[serde(default = "DriftToml::angle_random_walk")]
     angle_random_walk_deg_per_sqrt_s: f64,
-    #[serde(default = "DriftKeys::rate_random_walk", alias = "walk_deg_per_s")]
+    #[serde(default = "DriftToml::rate_random_walk", alias = "walk_deg_per_s")]
     rate_random_walk_deg_per_s_sqrt_s: f64,
-    #[serde(default = "DriftKeys::offset_deg")]
+    #[serde(default = "DriftToml::offset_deg")]
     offset_deg: f64,
-    #[serde(default = "DriftKeys::offset_s")]
+    #[serde(default = "DriftToml::offset_s")]
     offset_s: f64,
     // Keys of version 0.1's observer, which the bias filter replaced.
     #[serde(default)]
@@ -72,7 +72,7 @@ struct DriftFile {
     doubt_deg: IgnoredAny,
 }
 
-impl From<DriftFile> for DriftKeys {
+impl From<DriftFile> for DriftToml {
     fn from(file: DriftFile) -> Self {
         let DriftFile {
             kind,
@@ -110,7 +110,7 @@ pub enum DriftKind {
     Observer,
 }
 
-impl DriftKeys {
+impl DriftToml {
     /// The bias filter with the priors and noise of BNO055 units.
     #[must_use]
     pub fn kalman() -> Self {
@@ -165,7 +165,7 @@ impl DriftKeys {
     }
 
     /// The bias filter's configuration.
-    pub(crate) fn bake(&self) -> BiasFilterConfig {
+    pub(crate) fn compile(&self) -> BiasFilterConfig {
         let root_unit = TIME_UNIT_S.sqrt();
         BiasFilterConfig {
             initial_bias: variance(self.start_deg),
@@ -177,9 +177,4 @@ impl DriftKeys {
             offset_rate: Q::from_f64(TIME_UNIT_S / self.offset_s),
         }
     }
-}
-
-/// The scaled variance of a standard deviation in degrees.
-pub(crate) fn variance(deviation_deg: f64) -> Q {
-    Q::from_f64(deviation_deg.to_radians().powi(2) * VARIANCE_SCALE)
 }

@@ -1,10 +1,10 @@
-//! Tables of soft robot arms: what a calibration is written to, checked when it is read, and made into the
-//! estimator's parameters.
+//! Calibration tables of soft robot arms: the TOML format, its validation, and its compilation to the estimator's
+//! configuration.
 //!
-//! [`ArmFile`] is the TOML file as it stands, in the units that people read (mm, degrees, volts). [`ArmFile::load`]
-//! refuses what the estimator could not use and names the key. A file with geometry alone is an *arm description*, what
-//! a calibration starts from; once every segment says what bend sensors it has, it is a *table*, and
-//! [`ArmFile::bake`] turns it into an [`estimator_core::ArmConfig`] for one sample rate.
+//! [`ArmFile`] holds the keys of the TOML file in their units (mm, degrees, volts). [`ArmFile::load`] rejects values
+//! that the estimator cannot use, and names the key. A file with geometry alone is an *arm description*, the input of a
+//! calibration; if every segment has the key `bend` it is a *table*, which [`ArmFile::compile`] converts to an
+//! [`estimator_core::ArmConfig`] for one sample rate.
 //!
 //! ```
 //! use calibration_tables::ArmFile;
@@ -22,36 +22,87 @@
 //!     bend = [{ c0 = -1.5, c1 = 0.8, c2 = 0.1, rmse_deg = 4.7, volts = [0.4, 2.6] }]
 //!     "#,
 //! )?;
-//! let baked = table.bake::<Q>(100.0)?;
-//! let config = baked.config();
+//! let compiled = table.compile::<Q>(100.0)?;
+//! let config = compiled.config();
 //! assert!(Estimator::<Q, 1, 100>::new(&config).is_ok());
 //! # Ok::<(), calibration_tables::FileError>(())
 //! ```
+//!
+//! # Firmware
+//!
+//! This crate needs `std` and belongs in a firmware's `[build-dependencies]`; in its `[dependencies]` the build for a
+//! target without an operating system fails. The firmware itself depends on [`estimator_core`] alone:
+//!
+//! ```toml
+//! [dependencies]
+//! estimator-core = "0.2"
+//!
+//! [build-dependencies]
+//! calibration-tables = "0.2"
+//! estimator-core = "0.2"
+//! ```
+//!
+//! The build script `build.rs` compiles the table to Rust source:
+//!
+//! ```no_run
+//! use std::path::PathBuf;
+//! use std::{env, fs};
+//!
+//! use calibration_tables::ArmFile;
+//! use estimator_core::Q;
+//!
+//! fn main() -> Result<(), Box<dyn std::error::Error>> {
+//!     let table = PathBuf::from(env::var("CARGO_MANIFEST_DIR")?).join("arm.toml");
+//!     println!("cargo::rerun-if-changed={}", table.display());
+//!     let source = ArmFile::load(&table)?.compile::<Q>(100.0)?.to_rust();
+//!     fs::write(PathBuf::from(env::var("OUT_DIR")?).join("table.rs"), source)?;
+//!     Ok(())
+//! }
+//! ```
+//!
+//! The firmware includes the source and passes `TABLE` to the estimator:
+//!
+//! ```ignore
+//! #[expect(clippy::unreadable_literal, reason = "generated")]
+//! mod table {
+//!     include!(concat!(env!("OUT_DIR"), "/table.rs"));
+//! }
+//!
+//! let mut estimator = estimator_core::Estimator::<estimator_core::Q, 6, 100>::new(&table::TABLE)?;
+//! ```
+//!
+//! `estimator-core/examples/no-std-table` in the repository is a complete program.
 
-mod bake;
+mod arm;
 mod bend;
-mod check;
+mod bend_error;
+mod codegen;
+mod compile;
 mod contact;
 mod drift;
+mod error;
 mod file;
 mod noise;
-mod place;
-mod source;
+mod segment;
+mod span;
 mod tuning;
 mod uncertainty;
+mod variance;
 
-pub use bake::Baked;
-pub use bend::{BendErrorKeys, CURVE_POINTS, CurveKeys, MemoryKeys};
-pub use check::H_RANGE;
-pub use contact::{ChangeKeys, ContactKeys, CoupledKeys, RATIO_RANGE};
-pub use drift::{DriftKeys, DriftKind};
-pub use file::{
-    AnchorKeys, ArmFile, BendKeys, FileError, MAX_SEGMENTS, MAX_WINDOW, NoiseKeys, PlayKeys, SegmentKeys, Side,
-    TareKeys,
-};
-pub use noise::{LAG_S, RMSE_DEG_UNKNOWN};
-pub use tuning::{DriftTuningKeys, RmseKeys, Stopped, TuningKeys};
-pub use uncertainty::UncertaintyKeys;
+// Types of this crate are in public signatures.
+pub use estimator_core;
+
+pub use arm::{AnchorToml, ArmFile, MAX_SEGMENTS, MAX_WINDOW, TareToml};
+pub use bend::{BendToml, CURVE_POINTS, CurveToml, MemoryToml};
+pub use bend_error::BendErrorToml;
+pub use compile::CompiledTable;
+pub use contact::{ChangeToml, ContactToml, CoupledToml, RATIO_RANGE};
+pub use drift::{DriftKind, DriftToml};
+pub use error::FileError;
+pub use noise::{H_RANGE, LAG_S, NoiseToml, RMSE_DEG_UNKNOWN};
+pub use segment::{PlayToml, SegmentToml, Side};
+pub use tuning::{DriftTuningToml, RmseToml, StopReason, TuningToml};
+pub use uncertainty::UncertaintyToml;
 
 /// The reference arm's description, `arms/planar-6.toml`.
 pub const PLANAR_6_ARM: &str = include_str!("../arms/planar-6.toml");

@@ -4,29 +4,28 @@ use estimator_core::{Q, UncertaintyConfig, VARIANCE_SCALE};
 use serde::de::IgnoredAny;
 use serde::{Deserialize, Serialize};
 
-use crate::check::within;
-use crate::drift::variance;
-use crate::file::FileError;
+use crate::error::{FileError, within};
+use crate::variance::variance;
 
-/// `[uncertainty]`: standard deviations that an estimate's errors come from.
+/// `[uncertainty]`: standard deviations of the error sources of an estimate.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct UncertaintyKeys {
-    /// Of θ behind the moving-average anchor.
+pub struct UncertaintyToml {
+    /// Deviation of θ with the moving-average anchor.
     pub theta_deg: f64,
     /// Factor on the bias filter's covariance, which is conservative.
-    #[serde(default = "UncertaintyKeys::bias_share")]
+    #[serde(default = "UncertaintyToml::bias_share")]
     pub bias_share: f64,
     /// The factor of version 0.1's observer: accepted, without effect.
     #[serde(default, skip_serializing, rename = "drift_share")]
     pub retired: IgnoredAny,
-    /// Of θ that bend sensors alone measure, behind the anchor.
+    /// Deviation of θ measured by bend sensors alone, with the anchor.
     pub bend_deg: f64,
-    /// Added by a contact, behind the anchor.
+    /// Deviation added by a contact, with the anchor.
     pub contact_deg: f64,
-    /// Of each heading alone: what one θ has too much of it, the next has too little.
+    /// Deviation of each heading's own error, which enters two neighbouring θ with opposite signs.
     pub heading_deg: f64,
-    /// Of either coordinate of a segment's end, whatever its angle.
+    /// Deviation of either coordinate of a segment's end in its own frame, at any bend angle.
     pub end_mm: f64,
 }
 
@@ -35,8 +34,8 @@ const LARGEST_DEG: f64 = 9.0;
 const LARGEST_SHARE: f64 = 10.0;
 const LARGEST_MM: f64 = 100.0;
 
-impl UncertaintyKeys {
-    /// All variances times `factor`, or as far as the format goes.
+impl UncertaintyToml {
+    /// All variances times `factor`, limited to the ranges of the format.
     #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {
         let deviation = |value: f64, largest: f64| (value * factor.sqrt()).min(largest);
@@ -60,7 +59,7 @@ impl UncertaintyKeys {
         within("uncertainty.end_mm", self.end_mm, 0.0..=LARGEST_MM)
     }
 
-    pub(crate) fn bake(&self) -> UncertaintyConfig {
+    pub(crate) fn compile(&self) -> UncertaintyConfig {
         UncertaintyConfig {
             theta: variance(self.theta_deg),
             bias_share: Q::from_f64(self.bias_share),
@@ -71,7 +70,8 @@ impl UncertaintyKeys {
         }
     }
 
-    /// Factor of the bias filter's covariance: the priors and the noise of the bend sensors are wide.
+    /// Default factor on the bias filter's covariance, below 1 as the priors and the noise of the bend sensors are
+    /// conservative.
     #[must_use]
     pub const fn bias_share() -> f64 {
         0.6

@@ -1,7 +1,7 @@
 //! Configuration of an arm: types alone, in the estimator's number and for one sample rate.
 //!
-//! The firmware holds an [`ArmConfig`] as a constant; on the host `calibration-tables` makes it from TOML. Variances are held
-//! [`VARIANCE_SCALE`] times as large as they are, times in units of [`TIME_UNIT_S`](crate::TIME_UNIT_S).
+//! The firmware holds an [`ArmConfig`] as a constant; on the host `calibration-tables` makes it from TOML. Variances
+//! are stored multiplied by [`VARIANCE_SCALE`](crate::VARIANCE_SCALE), times in units of [`TIME_UNIT_S`](crate::TIME_UNIT_S).
 
 mod contact;
 
@@ -21,17 +21,14 @@ pub const PLAYS: usize = 3;
 /// Knots of a [`CurveMap`].
 pub const KNOTS: usize = 65;
 
-/// Factor of all variances in fixed point: 2⁻³² rad² or m² are one step, and 0.5 are the largest value.
-pub const VARIANCE_SCALE: f64 = 64.0;
-
 /// An arm's calibration.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ArmConfig<'t, S> {
     /// The segments from the base to the tip.
     pub segments: &'t [SegmentConfig<S>],
-    /// Samples at the start over which headings are tared; 0: they are absolute.
+    /// Number of samples at the start over which headings are tared; 0: headings are absolute.
     pub tare_samples: u32,
-    /// The moving-average anchor; its rate is that of contact detection, too.
+    /// The moving-average anchor; contact detection runs at its rate, too.
     pub anchor: AnchorConfig,
     /// The bias filter; `None`: the moving-average anchor corrects the drift.
     pub bias_filter: Option<BiasFilterConfig>,
@@ -58,7 +55,7 @@ pub struct SegmentConfig<S> {
     pub bend_error: BendErrorConfig,
     /// Sensitivity of the IMU's heading as a factor minus 1, in units of 2⁻³²: 0.01 reads 1 % too much.
     pub imu_scale_error: i32,
-    /// The earlier segment that bends alike, where there is one.
+    /// The earlier segment that this one is coupled to, if any.
     pub coupled_to: Option<CoupledSegment>,
     /// Limits of contact detection; `None`: the thresholds of the arm.
     pub contact: Option<ContactLimits>,
@@ -100,8 +97,8 @@ pub enum BendMap<S> {
 /// Quadratic map about the middle of the sensor's own voltage range: θ = b0 + b1 u + b2 u² with
 /// u = (counts − `center`) / 2^`shift` within ±1.
 ///
-/// So the coefficients stay as small as the angles themselves, where c2, c1 and c0 of a sensor with a narrow range are
-/// large and cancel.
+/// In this form the coefficients are no larger than the angles; c2, c1 and c0 of a sensor with a narrow range are large
+/// and cancel.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct QuadraticMap<S> {
     /// Counts in the middle of the calibrated range.
@@ -124,9 +121,9 @@ pub struct CurveMap<S> {
     pub shift: u8,
     /// Bend angle at each knot, rad.
     pub knots: [S; KNOTS],
-    /// Lowest and highest counts that are a reading.
+    /// Lowest and highest valid counts.
     pub readable: [u16; 2],
-    /// Lowest and highest counts of the calibration sweep; beyond them the curve is extrapolated.
+    /// Lowest and highest counts of the calibration sweep; outside them the curve is extrapolated.
     pub calibrated: [u16; 2],
 }
 
@@ -161,15 +158,15 @@ pub struct Play<S> {
 
 /// Errors of a segment's bend sensors, from the residuals of the calibration sweep.
 ///
-/// The error is a function of the path (map, hysteresis), not white in time: it is new after a travel of `travel`, or after
-/// `correlation_time`.
+/// The error is a function of the path (map, hysteresis), not white in time: it decorrelates after a travel of
+/// `travel`, or after `correlation_time`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BendErrorConfig {
     /// Variance of the mean of both sensors, σ².
     pub mean: Q,
     /// Variance of each sensor, σ₁².
     pub sensor: [Q; SENSORS_PER_SEGMENT],
-    /// Change of a sensor from one sample to the next that is a step, rad.
+    /// Threshold of a step: change of a sensor from one sample to the next, rad.
     pub step: Q,
     /// Variance of half the difference of a and b, σ_d².
     pub difference: Q,
@@ -177,13 +174,13 @@ pub struct BendErrorConfig {
     pub slow_difference: Q,
     /// Variance of the mean's slow error over that of half the difference, κ, 0 to 1.
     pub slow_ratio: Q,
-    /// Travel after which the error is a new one, ℓ, rad.
+    /// Correlation length ℓ: travel after which the error is independent, rad.
     pub travel: Q,
-    /// Time after which the error is a new one, τ, units of [`TIME_UNIT_S`](crate::TIME_UNIT_S).
+    /// Correlation time τ, after which the error is independent, units of [`TIME_UNIT_S`](crate::TIME_UNIT_S).
     pub correlation_time: Q,
 }
 
-/// When the moving average averages and when it corrects; the same for all segments.
+/// Window, rates and threshold of the moving-average anchor; the same for all segments.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct AnchorConfig {
     /// Length of the window, in values.
@@ -192,24 +189,24 @@ pub struct AnchorConfig {
     pub rate_millihertz: u32,
     /// Rate of the samples, mHz; those between two values are averaged.
     pub sample_rate_millihertz: u32,
-    /// Offsets up to this size are left alone.
+    /// Offsets up to this size are not applied.
     pub threshold: Turns,
 }
 
-/// Priors and process noise of the bias filter; the same for all IMUs and segments. All are variances but the last.
+/// Priors and process noise of the bias filter; the same for all IMUs and segments. All but the last are variances.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BiasFilterConfig {
-    /// Each heading's zero at the end of the tare, rad².
+    /// Prior of each heading's bias at the end of the tare, rad².
     pub initial_bias: Q,
-    /// Each segment's bend angle in the reference pose, rad².
+    /// Prior of each segment's bend angle in the reference pose, rad².
     pub straightness: Q,
-    /// The bias's rate, turn-on bias of the gyroscope, (rad per time unit)².
+    /// Prior of the bias's rate (turn-on bias of the gyroscope), (rad per time unit)².
     pub initial_rate: Q,
     /// Process noise of the bias (angle random walk), rad² per time unit.
     pub bias_noise: Q,
     /// Process noise of the rate (rate random walk), (rad per time unit)² per time unit.
     pub rate_noise: Q,
-    /// Offset of a segment's bend sensors in a session, rad².
+    /// Prior of the offset of a segment's bend sensors in a session, rad².
     pub offset: Q,
     /// [`TIME_UNIT_S`](crate::TIME_UNIT_S) over the time constant of the offset (a Gauss–Markov process).
     pub offset_rate: Q,
@@ -226,14 +223,14 @@ pub struct UncertaintyConfig {
     pub bend: Q,
     /// Variance that a contact adds to θ, rad².
     pub contact: Q,
-    /// Variance of each heading's own error, rad²: what one θ has too much of it, the next has too little.
+    /// Variance of each heading's own error, rad². It enters θ of this segment and of the next with opposite signs.
     pub heading: Q,
     /// Variance of either coordinate of a segment's end in its own frame, at any bend angle, m².
     pub end: Q,
 }
 
-/// Parameters of one block of KF_orient or KF_coord. Only the ratios of covariances act on the gains, so all are given as
-/// ratios to the larger of R_imu and R_bend, which keeps them within [`Q`]'s range.
+/// Parameters of one scalar filter of KF_orient or KF_coord. The gains depend on ratios of covariances alone, so all
+/// are given as ratios to the larger of R_imu and R_bend, which keeps them within [`Q`]'s range.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct KalmanParams<S> {
     /// Process noise Q from one sample to the next.
@@ -249,7 +246,7 @@ pub struct KalmanParams<S> {
 }
 
 impl BendErrorConfig {
-    /// Errors of sensors that no sweep has measured: the paper's mean of 4.72° for each, independent of each other.
+    /// Errors of sensors without a calibration sweep: the paper's mean of 4.72° for each, independent of each other.
     pub const PAPER: Self = Self {
         mean: variance_deg(3.34).q,
         sensor: [variance_deg(4.72).q; SENSORS_PER_SEGMENT],
@@ -263,7 +260,7 @@ impl BendErrorConfig {
 }
 
 impl BiasFilterConfig {
-    /// Priors and noise of BNO055 units in IMUPLUS mode and of flex sensors (`docs/METHOD.md` has the sources).
+    /// Priors and noise of BNO055 units in IMUPLUS mode and of flex sensors (`docs/explanation/drift.md` has the sources).
     pub const BNO055: Self = Self {
         initial_bias: variance_deg(0.1).q,
         straightness: variance_deg(0.3).q,
@@ -314,7 +311,7 @@ impl<'t, S> ArmConfig<'t, S> {
     }
 }
 
-/// Why an [`Estimator`](crate::Estimator) cannot use a configuration.
+/// Reason why an [`Estimator`](crate::Estimator) rejects a configuration.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ConfigError {
     /// The arm has no segment, or more than the estimator was built for.

@@ -6,13 +6,13 @@ use crate::config::{ArmConfig, ConfigError, UncertaintyConfig};
 use crate::contact::monitor::ContactMonitor;
 use crate::drift::bias_filter::BiasFilter;
 use crate::drift::bias_trace::BiasTrace;
+use crate::drift::correction::{CorrectedArm, DriftCorrection, SensedArm};
 use crate::drift::decimator::Decimator;
 use crate::drift::moving_average::MovingAverage;
 use crate::drift::share::{Share, ShareCounter};
-use crate::drift::{CorrectedArm, DriftCorrection, SensedArm};
 use crate::kinematics::forward::forward_kinematics;
+use crate::numeric::angle::Angle;
 use crate::numeric::fused::FusedOps;
-use crate::numeric::phase::{Angle, Turns};
 use crate::numeric::q::Q;
 use crate::segment::SegmentState;
 use crate::sensing::heading::SegmentHeading;
@@ -23,11 +23,12 @@ use crate::uncertainty::ShapeUncertainty;
 
 /// State of the pipeline for an arm of up to `N` segments and an anchor of up to `W` values.
 ///
-/// A method that cannot estimate anything yet, or not from this sample, gives `None`: imu_o and imu_c until the tare is
-/// complete, every method but fusion where a reading is missing. A table without any bend sensor has neither drift
-/// correction nor fusion, but imu_o alone. See the [crate's example](crate).
+/// A method without an estimate for a sample returns `None`: imu_o and imu_c until the tare is complete, every method
+/// but fusion where a reading is missing. A table without any bend sensor has imu_o alone, and neither drift correction
+/// nor fusion. See the [crate's example](crate).
 ///
-/// `T` is the [trace](BiasTrace) of the bias filter's operations: none, unless a host smooths a recording.
+/// `T` is the [trace](BiasTrace) of the bias filter's operations, for a host that smooths a recording; by default there
+/// is no trace.
 #[derive(Debug, Clone)]
 pub struct Estimator<'t, S, const N: usize, const W: usize, T = ()> {
     config: &'t ArmConfig<'t, S>,
@@ -36,16 +37,17 @@ pub struct Estimator<'t, S, const N: usize, const W: usize, T = ()> {
     segments: Vec<SegmentState<S>, N>,
     drift: Drift<N, W, T>,
     contact: ContactMonitor<N>,
-    /// Angles of the newest sample: a local would be copied.
+    /// Angles of the newest sample; a field, as a local variable would be copied.
     sensed: SensedArm<S, N>,
-    /// θ_c of each segment.
-    theta_c: [Option<Turns>; N],
+    /// Corrected angles of the newest sample; for a table without bend sensors all are unknown.
+    corrected: CorrectedArm<N>,
     fused: Shape<S, N>,
     uncertainty: ShapeUncertainty<N>,
 }
 
-/// Both drift corrections, of which the configuration selects one: a static has room for both, and a small stack for
-/// neither. The bias filter works in fixed point for every `S`, so that every number type takes the same decisions.
+/// Both drift corrections, of which the configuration selects one. Both are allocated, as a static has room for them
+/// and a small stack has not. The bias filter uses fixed point for every `S`, so that its decisions do not depend on
+/// the number type.
 #[derive(Debug, Clone)]
 struct Drift<const N: usize, const W: usize, T> {
     moving_average: MovingAverage<N, W>,
@@ -77,20 +79,25 @@ impl<const N: usize, const W: usize, T: BiasTrace<Q>> Drift<N, W, T> {
         self.has_bias_filter.then_some(&self.bias_filter)
     }
 
-    fn correct<S: FusedOps>(&mut self, config: &ArmConfig<S>, sensed: &SensedArm<S, N>) -> CorrectedArm<N> {
+    fn correct<S: FusedOps>(
+        &mut self,
+        config: &ArmConfig<S>,
+        sensed: &SensedArm<S, N>,
+        corrected: &mut CorrectedArm<N>,
+    ) {
         if self.has_bias_filter {
-            self.bias_filter.correct(config, sensed)
+            self.bias_filter.correct(config, sensed, corrected);
         } else {
-            self.moving_average.correct(config, sensed)
+            self.moving_average.correct(config, sensed, corrected);
         }
     }
 
-    /// Ends a sample, after all that reads the covariance.
+    /// Ends a sample, after the last use of the covariance.
     fn finish(&mut self, share: Share, segments: usize) {
         if let Share::Row(row) = share {
-            self.bias_filter.reduce_covariance();
+            self.bias_filter.update_covariance_row();
             if row + 1 >= segments {
-                // Rows of segments that the arm does not have.
+                // Rows beyond the arm's number of segments.
                 self.bias_filter.finish_covariance();
             }
         }
@@ -105,13 +112,13 @@ impl<'t, S: FusedOps, const N: usize, const W: usize> Estimator<'t, S, N, W> {
     /// An estimator at the start of a session.
     ///
     /// # Errors
-    /// [`ConfigError`] where the arm has more segments or a longer window than there is room for, or none at all.
+    /// [`ConfigError`] if the arm has no segment, or more segments or a longer window than `N` and `W`.
     pub fn new(config: &'t ArmConfig<'t, S>) -> Result<Self, ConfigError> {
         Self::with_trace(config, ())
     }
 
-    /// An estimator without segments until it is [started](Self::start): the value of a static, where several kilobytes are
-    /// better made in place than moved over a small stack.
+    /// An estimator without segments until it is [started](Self::start): the initial value of a static. Several
+    /// kilobytes are then initialised in place, and not moved over a small stack.
     #[must_use]
     pub const fn const_new(config: &'t ArmConfig<'t, S>) -> Self {
         Self::unstarted(config, ())
@@ -119,7 +126,7 @@ impl<'t, S: FusedOps, const N: usize, const W: usize> Estimator<'t, S, N, W> {
 }
 
 impl<'t, S: FusedOps, const N: usize, const W: usize, T: BiasTrace<Q>> Estimator<'t, S, N, W, T> {
-    /// As [`Self::new`], with a trace of the bias filter's operations.
+    /// An estimator at the start of a session, with a trace of the bias filter's operations.
     ///
     /// # Errors
     /// As [`Self::new`].
@@ -138,7 +145,7 @@ impl<'t, S: FusedOps, const N: usize, const W: usize, T: BiasTrace<Q>> Estimator
             drift: Drift::new(trace),
             contact: ContactMonitor::new(),
             sensed: SensedArm::UNKNOWN,
-            theta_c: [None; N],
+            corrected: CorrectedArm::UNKNOWN,
             fused: Vec::new(),
             uncertainty: ShapeUncertainty::new(),
         }
@@ -149,7 +156,7 @@ impl<'t, S: FusedOps, const N: usize, const W: usize, T: BiasTrace<Q>> Estimator
         self.drift.bias_filter.trace_mut()
     }
 
-    /// Begins a session, and forgets the one before.
+    /// Starts a session; clears the state of the one before.
     ///
     /// # Errors
     /// As [`Self::new`]; the estimator then has no segment.
@@ -159,7 +166,7 @@ impl<'t, S: FusedOps, const N: usize, const W: usize, T: BiasTrace<Q>> Estimator
         self.fused.clear();
         self.decimator = Decimator::new();
         self.contact.start();
-        self.theta_c = [None; N];
+        self.corrected = CorrectedArm::UNKNOWN;
         self.sensed = SensedArm::UNKNOWN;
         self.uncertainty = ShapeUncertainty::new();
         let window = config.anchor.window;
@@ -173,33 +180,33 @@ impl<'t, S: FusedOps, const N: usize, const W: usize, T: BiasTrace<Q>> Estimator
         self.has_bend_sensors = config.segments.iter().any(|segment| segment.bend.iter().any(Option::is_some));
         self.drift.start(config.bias_filter.is_some());
         for segment in config.segments {
-            // There is room: it was checked.
+            // The capacity was checked above.
             let _ = self.segments.push(SegmentState::new(segment, config.tare_samples));
             let _ = self.fused.push(SegmentShape { theta: None, end: None });
         }
         Ok(())
     }
 
-    /// Takes one sample; gives the fused shape. Allocates nothing.
+    /// Processes one sample; returns the fused shape. Allocates nothing.
     ///
-    /// The numbers are those of [`Estimator::update_full`] and [`Estimator::shape`] by [`Method::Fusion`], to the bit.
+    /// The result equals that of [`Estimator::update_full`] and [`Estimator::shape`] by [`Method::Fusion`] to the bit.
     pub fn update(&mut self, sample: &Sample<N>) -> &Shape<S, N> {
         self.process(sample);
         &self.fused
     }
 
-    /// Takes one sample; gives the estimate by every method.
+    /// Processes one sample; returns the estimate by every method.
     pub fn update_full(&mut self, sample: &Sample<N>) -> Estimate<S, N> {
         self.process(sample);
         let sensed = &self.sensed;
         let mut segments = Vec::new();
         let mut below = &SegmentHeading::BASE;
-        let angles = sensed.bend.iter().zip(&sensed.headings).zip(self.theta_c);
+        let angles = sensed.bend.iter().zip(&sensed.headings).zip(self.corrected.imu);
         for (segment, ((bend, heading), imu_c)) in self.segments.iter().zip(angles) {
             let [difference, zero] = heading.relative_to(below);
             below = heading;
             let imu_o = difference.zip(zero).map(|(imu, zero)| Angle::from(imu - zero));
-            let _ = segments.push(segment.estimate(bend, imu_o, imu_c)); // There is room: `start` has checked.
+            let _ = segments.push(segment.estimate(bend, imu_o, imu_c)); // `start` has checked the capacity.
         }
         Estimate { time_us: sample.time_us, segments }
     }
@@ -207,13 +214,13 @@ impl<'t, S: FusedOps, const N: usize, const W: usize, T: BiasTrace<Q>> Estimator
     /// The stages, in the order of the data.
     fn process(&mut self, sample: &Sample<N>) {
         self.sense(sample);
-        let mut corrected = self.drift.correct(self.config, &self.sensed);
+        self.drift.correct(self.config, &self.sensed, &mut self.corrected);
         if !self.has_bend_sensors {
-            corrected = CorrectedArm::UNKNOWN;
+            self.corrected = CorrectedArm::UNKNOWN;
         }
-        self.fuse(&corrected);
-        self.detect_contact(&corrected);
-        self.follow_uncertainty();
+        self.fuse();
+        self.detect_contact();
+        self.update_uncertainty();
         self.drift.finish(self.sensed.share, self.segments.len());
     }
 
@@ -221,7 +228,7 @@ impl<'t, S: FusedOps, const N: usize, const W: usize, T: BiasTrace<Q>> Estimator
     fn sense(&mut self, sample: &Sample<N>) {
         let sensed = &mut self.sensed;
         sensed.time_us = sample.time_us;
-        sensed.decimated = self.decimator.tick(&self.config.anchor);
+        sensed.decimated = self.decimator.advance(&self.config.anchor);
         sensed.share = self.drift.shares.share(&self.config.anchor);
         let rows = sensed.share.rows(N);
         let readings = sample.bend.iter().zip(&sample.imu);
@@ -233,17 +240,16 @@ impl<'t, S: FusedOps, const N: usize, const W: usize, T: BiasTrace<Q>> Estimator
         }
     }
 
-    /// Fusion, and forward kinematics of what it gives.
-    fn fuse(&mut self, corrected: &CorrectedArm<N>) {
+    /// Fusion, and forward kinematics of the fused links.
+    fn fuse(&mut self) {
         let filters = !self.drift.has_bias_filter;
-        let angles = self.sensed.bend.iter().zip(&corrected.imu).zip(&corrected.fused).zip(&mut self.theta_c);
-        for (segment, (((bend, corrected), fused), theta_c)) in self.segments.iter_mut().zip(angles) {
+        let angles = self.sensed.bend.iter().zip(&self.corrected.imu).zip(&self.corrected.fused);
+        for (segment, ((bend, theta_c), fused)) in self.segments.iter_mut().zip(angles) {
             if filters {
-                segment.filter(*corrected, bend.mean);
+                segment.filter(*theta_c, bend.mean);
             } else {
                 segment.bend_to(*fused);
             }
-            *theta_c = *corrected;
         }
         let links = self.segments.iter().map(SegmentState::fused);
         for (shape, segment) in self.fused.iter_mut().zip(forward_kinematics(links)) {
@@ -251,9 +257,9 @@ impl<'t, S: FusedOps, const N: usize, const W: usize, T: BiasTrace<Q>> Estimator
         }
     }
 
-    fn detect_contact(&mut self, corrected: &CorrectedArm<N>) {
+    fn detect_contact(&mut self) {
         let Some(thresholds) = &self.config.contact else { return };
-        let Self { contact, drift, sensed, .. } = self;
+        let Self { contact, drift, sensed, corrected, .. } = self;
         let condition = |i| drift.bias_filter().map_or(Condition::default(), |filter| filter.condition(i));
         contact.update(self.config, thresholds, self.decimator, sensed.decimated, &corrected.measured, condition);
     }
@@ -267,13 +273,13 @@ impl<'t, S: FusedOps, const N: usize, const W: usize, T: BiasTrace<Q>> Estimator
         }
     }
 
-    /// A bit for each segment in contact, the first in the lowest place: less work than [`Self::contacts`].
+    /// Bit mask of the segments in contact, bit 0 for the first segment; cheaper than [`Self::contacts`].
     #[must_use]
     pub fn contact_mask(&self) -> u32 {
         self.contact.contact_mask(self.config.segments)
     }
 
-    /// Conditions of the newest sample, from the base to the tip; none hold behind the moving-average anchor.
+    /// Conditions of the newest sample, from the base to the tip; with the moving-average anchor all are `false`.
     #[must_use]
     pub fn conditions(&self) -> Conditions<N> {
         let condition = |i| self.drift.bias_filter().map_or(Condition::default(), |filter| filter.condition(i));
@@ -286,7 +292,7 @@ impl<'t, S: FusedOps, const N: usize, const W: usize, T: BiasTrace<Q>> Estimator
 
     /// Uncertainty of the newest fused shape; empty where the configuration has no error sources.
     ///
-    /// Above 50 Hz it is worked out a segment in a sample, and so by up to N + 2 samples older than the shape.
+    /// Above 50 Hz one segment is computed in a sample, so that the result is up to N + 2 samples older than the shape.
     #[must_use]
     pub fn uncertainties(&self) -> Uncertainties<N> {
         let mut uncertainties = Vec::new();
@@ -302,7 +308,7 @@ impl<'t, S: FusedOps, const N: usize, const W: usize, T: BiasTrace<Q>> Estimator
     }
 
     /// Variance of each heading that was not read, in addition to that of its bias, rad² times
-    /// [`VARIANCE_SCALE`](crate::VARIANCE_SCALE); zero for all others, and behind the moving-average anchor.
+    /// [`VARIANCE_SCALE`](crate::VARIANCE_SCALE); zero for all others, and with the moving-average anchor.
     #[must_use]
     pub fn absence_variances(&self) -> [Q; N] {
         let mut variances = [Q::from_bits(0); N];
@@ -317,8 +323,8 @@ impl<'t, S: FusedOps, const N: usize, const W: usize, T: BiasTrace<Q>> Estimator
         filter.map_or(Q::from_bits(0), |(filter, config)| filter.absence_variance(&config.bend_error, i))
     }
 
-    /// This sample's share of the uncertainties.
-    fn follow_uncertainty(&mut self) {
+    /// Computes this sample's share of the uncertainties.
+    fn update_uncertainty(&mut self) {
         let Some(sources) = &self.config.uncertainty else { return };
         for i in self.sensed.share.rows(self.segments.len()) {
             self.propagate(sources, i);
@@ -328,10 +334,15 @@ impl<'t, S: FusedOps, const N: usize, const W: usize, T: BiasTrace<Q>> Estimator
     /// Propagates the covariance of the headings over segment `i`.
     fn propagate(&mut self, sources: &UncertaintyConfig, i: usize) {
         let (Some(shape), Some(config)) = (self.fused.get(i), self.config.segments.get(i)) else { return };
-        let mut headings = match self.drift.bias_filter() {
-            Some(filter) => filter.heading_covariance(i).map(|covariance| sources.bias_share * covariance),
-            None => self.anchored_covariance(sources, i),
-        };
+        let mut headings = [Q::from_bits(0); N];
+        match self.drift.bias_filter() {
+            Some(filter) => {
+                for (scaled, covariance) in headings.iter_mut().zip(filter.heading_covariances(i)) {
+                    *scaled = sources.bias_share * covariance;
+                }
+            }
+            None => headings = self.anchored_covariance(sources, i),
+        }
         if let Some(own) = headings.get_mut(i) {
             *own += self.absence_variance(i) + sources.heading;
         }
@@ -341,16 +352,17 @@ impl<'t, S: FusedOps, const N: usize, const W: usize, T: BiasTrace<Q>> Estimator
 
     fn is_measured(&self, i: usize) -> bool {
         let is_bend_read = || self.sensed.bend.get(i).is_some_and(|bend| bend.mean.is_some());
-        let measured = self.theta_c.get(i).is_some_and(Option::is_some) || is_bend_read();
+        let measured = self.corrected.imu.get(i).is_some_and(Option::is_some) || is_bend_read();
         self.drift.bias_filter().map_or(measured, BiasFilter::is_started)
     }
 
-    /// Behind the anchors the errors of the bend angles are independent, and add up along the arm.
+    /// Covariance of heading `i` with the moving-average anchor: the errors of the bend angles are independent, and add
+    /// up along the arm.
     fn anchored_covariance(&self, sources: &UncertaintyConfig, i: usize) -> [Q; N] {
         let mask = self.contact_mask();
         let mut sums = [Q::from_f64(0.0); N];
         let mut sum = Q::from_f64(0.0);
-        for (j, (total, theta_c)) in sums.iter_mut().zip(&self.theta_c).enumerate() {
+        for (j, (total, theta_c)) in sums.iter_mut().zip(&self.corrected.imu).enumerate() {
             if j <= i {
                 sum += if theta_c.is_some() { sources.theta } else { sources.bend };
                 if mask >> j & 1 != 0 {
@@ -362,7 +374,7 @@ impl<'t, S: FusedOps, const N: usize, const W: usize, T: BiasTrace<Q>> Estimator
         sums
     }
 
-    /// The arm's shape by `method` at one of this estimator's estimates: bend angles, and the chain of the segments.
+    /// Shape of the arm by `method` at one of this estimator's estimates: bend angles, and forward kinematics.
     #[must_use]
     pub fn shape(&self, estimate: &Estimate<S, N>, method: Method) -> Shape<S, N> {
         let links = self.segments.iter().zip(&estimate.segments).map(|(segment, of)| match method {
@@ -373,7 +385,7 @@ impl<'t, S: FusedOps, const N: usize, const W: usize, T: BiasTrace<Q>> Estimator
         });
         let mut shape = Vec::new();
         for segment in forward_kinematics(links) {
-            let _ = shape.push(segment); // There is room: `start` has checked.
+            let _ = shape.push(segment); // `start` has checked the capacity.
         }
         shape
     }

@@ -1,16 +1,17 @@
 //! The shape of a soft robot arm from its bend sensors and IMUs, without a camera.
 //!
 //! The method is that of arXiv 2511.01165: quadratic V–Orient maps turn bend-sensor voltages into bend angles, a
-//! moving-average anchor takes the drift out of the IMUs, two Kalman filters (KF_orient, KF_coord) fuse both, and
-//! piecewise-constant-curvature kinematics (PCC) chain the segments to the arm's shape. `docs/PAPER.md` in the
+//! moving-average anchor removes the drift of the IMUs, two Kalman filters (KF_orient, KF_coord) fuse both, and
+//! piecewise-constant-curvature kinematics (PCC) chain the segments to the arm's shape. `docs/explanation/paper.md` in the
 //! repository lists where the paper's text errs and what is done here instead.
 //!
-//! The crate is `no_std`, allocates nothing and knows no hardware, no file and no protocol. It is generic over its
-//! number ([`Scalar`]): a board without a float unit runs [`Q`], and a laptop that runs [`Q`] gets the same bits.
+//! The crate is `no_std`, does not allocate, and depends on no hardware, file or protocol. It is generic over its
+//! number type ([`Scalar`]): a board without a float unit runs [`Q`], and a laptop that runs [`Q`] computes the same
+//! bits.
 //!
 //! # The pipeline
 //!
-//! A sample passes through the stages in this order; each is a module, and each equation stands in one function.
+//! A sample passes through the stages in this order. Each stage is a module, and each equation is one function.
 //!
 //! | stage | equation | function |
 //! |---|---|---|
@@ -43,6 +44,9 @@
 //! assert!((tip.x.to_f64() - 0.02897).abs() < 1e-5 && (tip.y.to_f64() - 0.09111).abs() < 1e-5);
 //! # Ok::<(), estimator_core::ConfigError>(())
 //! ```
+//!
+//! `examples/tip.rs` runs the pipeline on a host; `examples/no-std-table` is a `no_std` program with a calibration
+//! table.
 #![no_std]
 
 mod config;
@@ -57,10 +61,15 @@ mod sensing;
 mod types;
 mod uncertainty;
 
+// Types of these crates are in public signatures.
+pub use heapless;
+pub use nalgebra;
+pub use num_traits;
+
 pub use config::{
     AnchorConfig, ArmConfig, BendErrorConfig, BendMap, BendSensorConfig, BiasFilterConfig, ChangeLimit, ConfigError,
     ContactConfig, ContactLimits, CoupledSegment, Coupling, CurveMap, KNOTS, KalmanParams, Lag, MemoryConfig, OffsetAt,
-    PLAYS, Play, QuadraticMap, Response, SENSORS_PER_SEGMENT, SegmentConfig, UncertaintyConfig, VARIANCE_SCALE,
+    PLAYS, Play, QuadraticMap, Response, SENSORS_PER_SEGMENT, SegmentConfig, UncertaintyConfig,
 };
 pub use drift::bias_filter::ABSENT_TIME_S;
 pub use drift::bias_state::{BiasState, Innovation, LONGEST_PREDICTION_US, Row};
@@ -74,11 +83,13 @@ pub use fusion::kalman::{COVARIANCE_LIMIT, H_LIMIT, KalmanFilter, KalmanGains};
 pub use kinematics::covariance::{CovariancePropagation, lever_arm};
 pub use kinematics::forward::forward_kinematics;
 pub use kinematics::pcc::{Link, Pcc, UnitArc};
+pub use numeric::angle::Angle;
 pub use numeric::fused::{FusedOps, plain};
-pub use numeric::phase::{Angle, Phase, Turns};
+pub use numeric::phase::{Phase, Turns};
 pub use numeric::q::Q;
 pub use numeric::saturation::saturations;
 pub use numeric::scalar::{Constant, Scalar, TIME_UNIT_S};
+pub use numeric::variance::VARIANCE_SCALE;
 pub use sensing::bend_map::VOLTS_PER_COUNT;
 pub use sensing::bend_sensors::BendAngles;
 pub use sensing::heading::{HeadingTracker, SegmentHeading};

@@ -5,8 +5,9 @@ use nalgebra::SVector;
 use crate::config::SegmentConfig;
 use crate::fusion::kalman::{KalmanFilter, KalmanGains};
 use crate::kinematics::pcc::{Link, Pcc};
+use crate::numeric::angle::Angle;
 use crate::numeric::fused::FusedOps;
-use crate::numeric::phase::{Angle, Turns};
+use crate::numeric::phase::Turns;
 use crate::sensing::bend_sensors::{BendAngles, BendSensors};
 use crate::sensing::heading::{HeadingTracker, SegmentHeading};
 use crate::types::{ImuReading, SegmentEstimate};
@@ -39,13 +40,13 @@ impl<S: FusedOps> SegmentState<S> {
         }
     }
 
-    /// Takes the `heading` of one sample's reading.
+    /// Updates `heading` with one sample's reading.
     pub fn sense_heading(&mut self, heading: &mut SegmentHeading, imu: Option<&ImuReading>) {
         self.heading.read(imu.and_then(ImuReading::heading));
         *heading = *self.heading.segment_heading();
     }
 
-    /// Takes the bend `angles` of one sample's readings; the sensors' memory of creep moves where it `is_followed`.
+    /// Computes the bend `angles` of one sample's readings; the creep states are updated if `is_followed`.
     pub fn sense_bend(
         &mut self,
         angles: &mut BendAngles<S>,
@@ -57,8 +58,8 @@ impl<S: FusedOps> SegmentState<S> {
         self.bend.read(angles, config, counts, time_us, is_followed);
     }
 
-    /// KF_orient and KF_coord with the angles that there are; of θ_c without its whole turns, which say nothing of the bend
-    /// of a segment that nothing anchors, and fixed point ends at 32 rad.
+    /// Runs KF_orient and KF_coord with the available angles. Whole turns of θ_c are dropped: a segment without an
+    /// anchor gathers them by drift alone, and fixed point ends at 32 rad.
     pub fn filter(&mut self, theta_c: Option<Turns>, theta_bend: Option<S>) {
         let theta_c = theta_c.map(|theta| S::from_phase(theta.phase()));
         let end = |theta: S| self.pcc.link(Angle::from(theta)).end;
@@ -69,7 +70,7 @@ impl<S: FusedOps> SegmentState<S> {
         self.fused = states.map(|((theta, _), (end, _))| Link { theta: Angle::from(theta.x), end });
     }
 
-    /// Constant curvature at the bend angle of all sensors.
+    /// Sets the fused link to constant curvature at the bend angle of all sensors.
     pub fn bend_to(&mut self, theta: Option<Turns>) {
         self.fused = theta.map(|theta| self.pcc.link(Angle::from(theta)));
     }
@@ -79,12 +80,12 @@ impl<S: FusedOps> SegmentState<S> {
         self.fused
     }
 
-    /// A link at any bend angle.
+    /// The link at any bend angle.
     pub fn link(&self, theta: Angle<S>) -> Link<S> {
         self.pcc.link(theta)
     }
 
-    /// Estimate of this sample by every method, `i`th from the base.
+    /// Estimate of this sample by every method.
     pub fn estimate(
         &self,
         angles: &BendAngles<S>,

@@ -3,10 +3,12 @@
 use heapless::Vec;
 use nalgebra::Vector2;
 
-use crate::config::{SENSORS_PER_SEGMENT, VARIANCE_SCALE};
+use crate::config::SENSORS_PER_SEGMENT;
 use crate::kinematics::pcc::Link;
-use crate::numeric::phase::{Angle, Phase};
+use crate::numeric::angle::Angle;
+use crate::numeric::phase::Phase;
 use crate::numeric::q::Q;
+use crate::numeric::variance::VARIANCE_SCALE;
 
 /// Raw readings of one tick, for an arm of up to `N` segments. A missing reading is `None`.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -20,7 +22,7 @@ pub struct Sample<const N: usize> {
 }
 
 impl<const N: usize> Sample<N> {
-    /// A sample at `time_us` in which nothing was read.
+    /// A sample at `time_us` without readings.
     #[must_use]
     pub const fn missing(time_us: u64) -> Self {
         Self { time_us, bend: [[None; SENSORS_PER_SEGMENT]; N], imu: [None; N] }
@@ -37,7 +39,7 @@ pub enum ImuReading {
 }
 
 impl ImuReading {
-    /// From a BNO055's quaternion registers w, x, y, z in units of 2⁻¹⁴ (datasheet 3.6.5.5). Exact.
+    /// Converts from a BNO055's quaternion registers w, x, y, z in units of 2⁻¹⁴ (datasheet 3.6.5.5). Exact.
     #[must_use]
     pub const fn from_bno055([w, x, y, z]: [i16; 4]) -> Self {
         Self::Quaternion([(w as i32) << 16, (x as i32) << 16, (y as i32) << 16, (z as i32) << 16])
@@ -49,7 +51,7 @@ impl ImuReading {
 pub enum Method {
     /// Bend sensors alone.
     Bend,
-    /// Raw IMUs, drift and all (the paper's IMU_O).
+    /// Raw IMUs, without drift correction (the paper's IMU_O).
     ImuO,
     /// Drift-corrected IMUs (the paper's IMU_C).
     ImuC,
@@ -76,17 +78,18 @@ impl Method {
 /// Estimate of one segment by every method.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SegmentEstimate<S> {
-    /// From the bend sensors that were read.
+    /// Estimate from the bend sensors that were read.
     pub bend: Option<Link<S>>,
     /// θ_imu,i from the raw IMUs; `None` until the tare is complete.
     pub imu_o: Option<Angle<S>>,
-    /// From the drift-corrected IMUs.
+    /// Estimate from the drift-corrected IMUs.
     pub imu_c: Option<Link<S>>,
-    /// From all sensors: θ_i of KF_orient and P_i of KF_coord, or of the bias filter; `None` before the first measurement.
+    /// Estimate from all sensors: θ_i of KF_orient and P_i of KF_coord, or of the bias filter; `None` before the first
+    /// measurement.
     pub fusion: Option<Link<S>>,
     /// Number of the segment's bend sensors that were read.
     pub bend_sensors_read: u8,
-    /// Whether the segment's IMU gave a heading.
+    /// The segment's IMU returned a valid heading.
     pub imu_read: bool,
 }
 
@@ -142,24 +145,24 @@ pub struct Uncertainty {
 /// Uncertainty of the fused shape, from the base to the tip.
 pub type Uncertainties<const N: usize> = Vec<Uncertainty, N>;
 
-/// Conditions of one segment that make its estimate less certain.
+/// Conditions of one segment that degrade its estimate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[expect(clippy::struct_excessive_bools, reason = "independent conditions")]
 pub struct Condition {
     /// The arm was bent or moving in the tare: the bend sensors set the zeros of the IMUs.
     pub tare_bad: bool,
-    /// The IMU is not read, frozen, or reads what the arm cannot have done.
+    /// The IMU is not read, frozen, or reads an implausible heading.
     pub imu_absent: bool,
     /// The IMU has had a new zero within the last minute, or may have: it was absent.
     pub imu_restarted: bool,
-    /// A bend sensor is missing or left out, or has had a new zero within the last minute.
+    /// A bend sensor is missing or excluded, or has had a new zero within the last minute.
     pub bend_distrusted: bool,
-    /// IMUs and bend sensors disagree by more than the innovation gate.
+    /// The innovation gate rejects the bend sensors: they disagree with the IMUs.
     pub gated: bool,
 }
 
 impl Condition {
-    /// Whether any of them holds.
+    /// Returns `true` if any of the conditions holds.
     #[must_use]
     pub const fn is_degraded(self) -> bool {
         self.tare_bad || self.imu_absent || self.imu_restarted || self.bend_distrusted || self.gated
@@ -174,7 +177,7 @@ pub type Conditions<const N: usize> = Vec<Condition, N>;
 pub struct Contact {
     /// Largest change of the residual within half a second, in percent of the threshold.
     pub score_percent: u16,
-    /// From a score over 100 until the change is undone, or for a minute.
+    /// Contact: from a score over 100 until the change has reverted, a minute at most.
     pub in_contact: bool,
 }
 

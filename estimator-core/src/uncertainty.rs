@@ -8,7 +8,7 @@ use crate::numeric::q::Q;
 use crate::numeric::scalar::Scalar;
 use crate::types::{SegmentShape, Uncertainty};
 
-/// Uncertainties of the segments, and the chain that works them out.
+/// Uncertainties of the segments, and the state of their propagation along the chain.
 #[derive(Debug, Clone)]
 pub struct ShapeUncertainty<const N: usize> {
     propagation: CovariancePropagation<N>,
@@ -24,19 +24,19 @@ impl<const N: usize> Default for ShapeUncertainty<N> {
 }
 
 impl<const N: usize> ShapeUncertainty<N> {
-    /// Nothing known.
+    /// Before the first sample.
     pub const fn new() -> Self {
         let unknown = Uncertainty { theta: None, end: None };
         Self { propagation: CovariancePropagation::new(), before: None, newest: [unknown; N] }
     }
 
-    /// Of segment `i`, as newly as it was worked out.
+    /// Newest uncertainty of segment `i`.
     pub fn of(&self, i: usize) -> Option<&Uncertainty> {
         self.newest.get(i)
     }
 
-    /// Takes segment `i`, the one behind that of the last call or the first: its `shape` and the covariance of its heading
-    /// with all `headings`.
+    /// Propagates over segment `i`, which follows that of the last call or is the first: its `shape` and the covariance
+    /// of its heading with all `headings`.
     pub fn step<S: Scalar>(
         &mut self,
         i: usize,

@@ -1,4 +1,4 @@
-//! Angles as whole numbers: exact, and wrapped only where that is meant.
+//! Angles as integers: exact, and wrapped only where specified.
 
 use std::f64::consts::{PI, TAU};
 
@@ -12,7 +12,7 @@ const UNIT: f64 = TAU / 4_294_967_296.0;
 /// 2.8 nrad.
 const ATAN2_ERROR: f64 = 2.0 * UNIT;
 
-/// How far apart two directions are, rad.
+/// Distance between two directions, rad.
 fn apart(one: f64, other: f64) -> f64 {
     let turns = (one - other) / TAU;
     ((turns - turns.round()) * TAU).abs()
@@ -59,7 +59,7 @@ proptest! {
     #[test]
     fn turns_are_whole_turns_and_a_phase(bits in -(1_i64 << 62)..1 << 62) {
         let turns = Turns::from_bits(bits);
-        prop_assert_eq!((i64::from(turns.whole()) << 32) + i64::from(turns.phase().bits()), bits);
+        prop_assert_eq!((i64::from(turns.whole_turns()) << 32) + i64::from(turns.phase().bits()), bits);
     }
 
     #[test]
@@ -84,9 +84,9 @@ proptest! {
     fn an_angle_keeps_its_turns_beside_the_remainder(bits in -(1_i64 << 50)..1 << 50) {
         let turns = Turns::from_bits(bits);
         let (float, fixed) = (Angle::<f64>::from(turns), Angle::<Q>::from(turns));
-        prop_assert_eq!((float.turns, fixed.turns), (turns.whole(), turns.whole()));
-        prop_assert!((float.rest - turns.phase().rad()).abs() < 1e-15);
-        prop_assert!((fixed.rest.to_f64() - turns.phase().rad()).abs() < 7.7e-9);
+        prop_assert_eq!((float.whole_turns, fixed.whole_turns), (turns.whole_turns(), turns.whole_turns()));
+        prop_assert!((float.remainder - turns.phase().rad()).abs() < 1e-15);
+        prop_assert!((fixed.remainder.to_f64() - turns.phase().rad()).abs() < 7.7e-9);
         prop_assert!((float.rad() - turns.rad()).abs() < 1e-15 * turns.rad().abs().max(1.0));
     }
 }
@@ -144,11 +144,11 @@ fn the_mean_of_the_longest_sums_is_exact() {
 
 #[test]
 fn the_value_of_an_angle_is_the_whole_angle_until_q_ends() {
-    let angle = |turns| Angle { rest: Q::from_f64(0.25), turns };
+    let angle = |turns| Angle { remainder: Q::from_f64(0.25), whole_turns: turns };
     // Half a step of 2⁻²⁶ for 0.25, and four times that of 2π.
     assert!((angle(-4).value().to_f64() - (0.25 - 4.0 * TAU)).abs() < 5.0 * 7.5e-9);
     assert_eq!(angle(6).value(), Q::MAX);
     assert!(angle(-6).value().to_f64() < -31.0);
-    let float = Angle { rest: 0.25, turns: 1000 };
+    let float = Angle { remainder: 0.25, whole_turns: 1000 };
     assert!((float.value() - (0.25 + 1000.0 * TAU)).abs() < 1e-11);
 }

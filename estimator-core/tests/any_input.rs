@@ -1,4 +1,4 @@
-//! Any input is survived, whichever drift correction and number.
+//! Any input is survived, with either drift correction and with every number type.
 
 mod common;
 
@@ -67,7 +67,7 @@ fn gapped_samples() -> impl Strategy<Value = Vec<Sample<3>>> {
     })
 }
 
-/// Every number that an estimator says of these samples behind the moving-average anchor.
+/// All numbers that an estimator with the moving-average anchor computes from these samples.
 fn numbers<S: FusedOps>(samples: &[Sample<3>], tare_samples: u32) -> Vec<f64> {
     numbers_by::<S>(samples, tare_samples, None)
 }
@@ -114,7 +114,7 @@ fn numbers_by<S: FusedOps>(
     numbers
 }
 
-/// Whether `update` gives the very same shapes of these samples as `update_full` and `shape`.
+/// Returns `true` if `update` computes the same shapes of these samples as `update_full` and `shape`.
 fn the_updates_agree<S: FusedOps>(samples: &[Sample<3>], tare_samples: u32) -> bool {
     let segments = segments::<S>();
     let table = ArmConfig { tare_samples, anchor: ANCHOR, ..ArmConfig::uncalibrated(&segments) };
@@ -151,7 +151,7 @@ proptest! {
         prop_assert!(numbers.into_iter().all(f64::is_finite));
     }
 
-    /// The filter takes the same decisions whatever the number is.
+    /// The filter takes the same decisions for every number type.
     #[test]
     fn with_the_bias_filter_any_input_is_survived_in_fixed_point(samples in gapped_samples(), tare in 0_u32..20) {
         let filter = Some(BiasFilterConfig::BNO055);

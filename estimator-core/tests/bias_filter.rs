@@ -43,7 +43,7 @@ fn fused(estimate: &Estimate<Q, N>) -> [f64; N] {
     core::array::from_fn(|i| estimate.segments[i].fusion.map_or(f64::NAN, |link| link.theta.rad().to_degrees()))
 }
 
-/// Whether the tip's error is within the 95 % ellipse of its covariance.
+/// Returns `true` if the tip's error is within the 95 % ellipse of its covariance.
 fn is_within_ellipse([xx, xy, yy]: [f64; 3], [dx, dy]: [f64; 2]) -> bool {
     (yy * dx * dx - 2.0 * xy * dx * dy + xx * dy * dy) / (xx * yy - xy * xy) < 5.99
 }
@@ -93,7 +93,8 @@ fn largest(values: [f64; N]) -> f64 {
     values.into_iter().map(f64::abs).fold(0.0, f64::max)
 }
 
-/// The IMUs alone would be off by 30° at each segment then, and the bend sensors and the anchor by 2° and the map's 1.5°.
+/// The IMUs alone would be off by 30° at each segment then, and the bend sensors and the anchor by 2° and the map's
+/// 1.5°.
 #[test]
 fn after_ten_minutes_of_drift_the_shape_is_nearer_than_the_anchor_brings_it() {
     let segments = segments();
@@ -256,7 +257,7 @@ fn a_bend_sensor_that_breaks_away_moves_nothing() {
     assert!(largest(worst) < 2.5, "{worst:?}");
 }
 
-/// Whether the tare of such an arm is found bad, and its largest error after ten minutes.
+/// Validity check of an arm's tare (`true`: bad), and the arm's largest error after ten minutes.
 fn tared(mut arm: Arm) -> (bool, f64) {
     let segments = segments();
     let config = config(&segments, 10.0);

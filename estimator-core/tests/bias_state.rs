@@ -237,6 +237,6 @@ fn a_segment_beyond_the_arm_changes_nothing() {
     let mut driven = Driven::<Q>::new();
     let before = (driven.x(), driven.p());
     driven.state.predict(N, &config(), Q::from_f64(OFFSET), 2_000_000);
-    driven.state.doubt(N, 0, Q::from_f64(1.0));
+    driven.state.inflate_variance(N, 0, Q::from_f64(1.0));
     assert_eq!((driven.x(), driven.p()), before);
 }

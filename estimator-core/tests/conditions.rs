@@ -1,4 +1,4 @@
-//! What the bias filter reports of sensors, and what must not disturb it.
+//! Conditions of sensors that the bias filter reports, and disturbances that must not affect it.
 
 mod common;
 
@@ -9,7 +9,7 @@ use estimator_core::{Conditions, Estimator, ImuReading, Phase, Q, Sample};
 struct Run {
     /// Largest error of a bend angle in the last minute, degrees.
     worst_deg: f64,
-    /// Largest variance of a bend angle in the last sample, as the estimator holds it.
+    /// Largest scaled variance of a bend angle in the last sample.
     variance: f64,
     conditions: Conditions<N>,
 }

@@ -81,7 +81,7 @@ fn a_push_on_one_of_two_alike_is_contact_of_both_within_half_a_second() {
         estimator.update_full(&sample(pushed(*k)));
         estimator.contacts().iter().all(|contact| contact.in_contact)
     });
-    assert!(found.is_some(), "10 degrees of push are none");
+    assert!(found.is_some(), "a push of 10 degrees is not detected");
 }
 
 #[test]
@@ -143,8 +143,8 @@ fn limited_segments() -> [SegmentConfig<f64>; 2] {
     [first, SegmentConfig { coupled_to: Some(CoupledSegment { segment: 0, ratio }), contact, ..second }]
 }
 
-/// Contact of each segment at the end of a swing and of a push of `pushed` values, each of which bends the second segment by
-/// 1° more.
+/// Contact of each segment at the end of a swing and of a push of `pushed` values, each of which bends the second
+/// segment by 1° more.
 fn told_after(estimator: &mut Estimator<f64, 2, 100>, pushed: u32) -> [bool; 2] {
     for k in 0..40_u32 {
         let swing = f64::from(k.min(20));

@@ -17,12 +17,12 @@ fn quadratic<S: FusedOps>(c2: f64, c1: f64, c0: f64, volts: [f64; 2]) -> BendMap
     BendMap::Quadratic(QuadraticMap::from_volts(c2, c1, c0, volts))
 }
 
-/// The counts at which such a sensor says `theta`, to a count (0.8 mrad).
+/// Counts of such a sensor at the bend angle `theta`, rounded to a count (0.8 mrad).
 fn counts(theta: f64) -> u16 {
     ((theta + 1.5) / 3.3 * 4095.0).round() as u16
 }
 
-/// What such a sensor says at these counts.
+/// Bend angle of such a sensor at these counts, rad.
 fn bent(counts: u16) -> f64 {
     f64::from(counts) * 3.3 / 4095.0 - 1.5
 }
@@ -61,8 +61,12 @@ fn sample<const N: usize>(theta: f64) -> Sample<N> {
     sample
 }
 
-/// Which segments' θ a method knows.
-fn knows<const N: usize>(estimator: &Estimator<f64, N, 10>, estimate: &Estimate<f64, N>, method: Method) -> Vec<bool> {
+/// Availability of each segment's θ by a method.
+fn is_known<const N: usize>(
+    estimator: &Estimator<f64, N, 10>,
+    estimate: &Estimate<f64, N>,
+    method: Method,
+) -> Vec<bool> {
     estimator.shape(estimate, method).iter().map(|segment| segment.theta.is_some()).collect()
 }
 
@@ -133,10 +137,10 @@ fn a_missing_imu_leaves_two_angles_unknown_for_that_sample_only() {
     without.imu[1] = None;
     for (sample, known) in [(sample(0.2), [true; 4]), (without, [true, false, false, true]), (sample(0.4), [true; 4])] {
         let estimate = estimator.update_full(&sample);
-        assert_eq!(knows(&estimator, &estimate, Method::ImuO), known);
-        assert_eq!(knows(&estimator, &estimate, Method::ImuC), known);
-        assert_eq!(knows(&estimator, &estimate, Method::Bend), [true; 4]);
-        assert_eq!(knows(&estimator, &estimate, Method::Fusion), [true; 4]);
+        assert_eq!(is_known(&estimator, &estimate, Method::ImuO), known);
+        assert_eq!(is_known(&estimator, &estimate, Method::ImuC), known);
+        assert_eq!(is_known(&estimator, &estimate, Method::Bend), [true; 4]);
+        assert_eq!(is_known(&estimator, &estimate, Method::Fusion), [true; 4]);
         let read: Vec<_> = estimate.segments.iter().map(|segment| segment.imu_read).collect();
         assert_eq!(read, sample.imu.map(|imu| imu.is_some()));
     }
@@ -162,7 +166,7 @@ fn a_rejected_quaternion_is_a_missing_reading() {
     let mut zeroed = sample(0.3);
     zeroed.imu[1] = Some(ImuReading::from_bno055([0; 4]));
     let estimate = estimator.update_full(&zeroed);
-    assert_eq!(knows(&estimator, &estimate, Method::ImuO), [true, false]);
+    assert_eq!(is_known(&estimator, &estimate, Method::ImuO), [true, false]);
     assert!(!estimate.segments[1].imu_read);
 }
 
@@ -186,10 +190,10 @@ fn imus_are_silent_until_the_last_sample_of_the_tare() {
     let mut estimator = Estimator::<f64, 2, 10>::new(&table).expect("a valid table");
     for known in [false, false, true, true] {
         let estimate = estimator.update_full(&sample(0.1));
-        assert_eq!(knows(&estimator, &estimate, Method::ImuO), [known; 2]);
-        assert_eq!(knows(&estimator, &estimate, Method::ImuC), [known; 2]);
-        assert_eq!(knows(&estimator, &estimate, Method::Bend), [true; 2]);
-        assert_eq!(knows(&estimator, &estimate, Method::Fusion), [true; 2]);
+        assert_eq!(is_known(&estimator, &estimate, Method::ImuO), [known; 2]);
+        assert_eq!(is_known(&estimator, &estimate, Method::ImuC), [known; 2]);
+        assert_eq!(is_known(&estimator, &estimate, Method::Bend), [true; 2]);
+        assert_eq!(is_known(&estimator, &estimate, Method::Fusion), [true; 2]);
     }
 }
 
@@ -225,7 +229,7 @@ fn a_segment_without_bend_sensors_has_its_raw_imus_and_a_fusion_of_them() {
     let mut drifted = sample(0.2);
     drifted.imu = [0.5, 1.2].map(|rad| Some(heading(rad)));
     let estimate = estimator.update_full(&drifted);
-    assert_eq!(knows(&estimator, &estimate, Method::Bend), [true, false]);
+    assert_eq!(is_known(&estimator, &estimate, Method::Bend), [true, false]);
     let bare = estimate.segments[1];
     assert_eq!(bare.bend_sensors_read, 0);
     for angle in [bare.imu_o, bare.imu_c.map(|link| link.theta), bare.fusion.map(|fused| fused.theta)] {
@@ -241,7 +245,7 @@ fn a_table_without_bend_sensors_says_imu_o_alone() {
     let table = table(&segments);
     let mut estimator = Estimator::<f64, 2, 10>::new(&table).expect("a valid table");
     let estimate = estimator.update_full(&sample(0.2));
-    let known = Method::ALL.map(|method| knows(&estimator, &estimate, method)[0]);
+    let known = Method::ALL.map(|method| is_known(&estimator, &estimate, method)[0]);
     assert_eq!(known, [false, true, false, false]);
 }
 
@@ -317,7 +321,7 @@ fn a_map_of_a_narrow_range_loses_no_digits_in_fixed_point() {
 
 #[test]
 fn counts_beyond_a_whole_turn_of_the_map_are_no_reading() {
-    // A sensor of 0.2 V: at the rails its map says 4 turns.
+    // A sensor of 0.2 V: at the rails its map is at 4 turns.
     let map = quadratic::<Q>(0.0, 15.0, -30.0, [1.9, 2.1]);
     assert_eq!((map.angle(0), map.angle(4095)), (None, None));
     let volts = |counts: u16| f64::from(counts) * 3.3 / 4095.0;

@@ -71,7 +71,7 @@ proptest! {
         let _ = heading(parts);
     }
 
-    /// Yaw alone: the heading is exactly what the registers say, to the quantisation of 2⁻¹⁴ (a half over the shorter
+    /// Yaw alone: the heading is that of the registers, to the quantisation of 2⁻¹⁴ (a half over the shorter
     /// of two parts' derivative: 2⁻¹⁴ rad each).
     #[test]
     fn registers_of_a_bno055_are_turned_clockwise(yaw in -PI..PI) {
@@ -95,8 +95,8 @@ proptest! {
         }
     }
 
-    /// The mean of sines and cosines in floats. Float arcs err by 2e-10, atan2 by two units; readings within a radian of
-    /// each other keep the mean vector longer than ½, which doubles the error of its parts.
+    /// The mean of sines and cosines in floats. Float arcs err by 2e-10, atan2 by two units; readings within a radian
+    /// of each other keep the mean vector longer than ½, which doubles the error of its parts.
     #[test]
     fn a_float_tare_is_the_circular_mean(around in -PI..PI, off in prop::collection::vec(-0.5..0.5, 1..50)) {
         prop_assert!(tare_error::<f64>(around, &off) <= 2.0 * UNIT + UNIT / 2.0 + 4e-10);
@@ -109,7 +109,7 @@ proptest! {
     }
 }
 
-/// How far the tare of readings at these distances from a direction is from their circular mean, rad.
+/// Deviation of the tare from the circular mean of readings at these distances from a direction, rad.
 fn tare_error<S: FusedOps>(around: f64, off: &[f64]) -> f64 {
     let mut imu = HeadingTracker::<S>::new(off.len() as u32, Turns::ZERO);
     let readings: Vec<_> = off.iter().map(|off| around + off).collect();

@@ -53,7 +53,7 @@ proptest! {
         prop_assert!(error <= if rad.abs() <= 1.5 { FIXED_ERROR } else { FIXED_ERROR_FAR }, "{} at {} rad", error, rad);
     }
 
-    /// A bend sensor may say any angle without turns.
+    /// A bend sensor may read any angle without turns.
     #[test]
     fn an_angle_without_turns_is_reduced(rad in -31.9..31.9_f64) {
         let float = UnitArc::<f64>::new(Angle::from(rad));
@@ -79,8 +79,8 @@ proptest! {
         prop_assert_eq!(tip, Vector2::new(Q::from_bits(0), length));
     }
 
-    /// P_W,i = P_W,i−1 + R(Θ_i−1) P_i by cumulated headings. 16 arcs of up to 0.2 m err by 2e-10 each, and each error in
-    /// a direction turns all that follows.
+    /// P_W,i = P_W,i−1 + R(Θ_i−1) P_i by cumulated headings. 16 arcs of up to 0.2 m err by 2e-10 each, and each error
+    /// in a direction turns all that follows.
     #[test]
     fn a_chain_is_the_sum_of_rotated_links(links in prop::collection::vec((0.01..0.2, 0.0..0.05, any::<bool>(), -3.0..3.0_f64), 1..=16)) {
         let link = |&(length, offset, start, theta)| Some(link::<f64>(theta, &segment(length, offset, start)));
@@ -144,7 +144,7 @@ fn a_float_arc_does_not_step_at_its_seams() {
     }
 }
 
-/// Each side is rounded by itself.
+/// Each side is rounded independently.
 #[test]
 fn a_fixed_point_arc_does_not_step_at_its_seams() {
     for seam in [0.0, 2.0, -2.0, PI, -PI, TAU, -TAU, 3.0 * PI, 4.0 * PI] {
@@ -156,8 +156,8 @@ fn a_fixed_point_arc_does_not_step_at_its_seams() {
 #[test]
 fn whole_turns_beside_the_remainder_join_where_it_wraps() {
     for turns in [-1000, -1, 0, 5, 1000] {
-        let below = UnitArc::new(Angle { rest: Q::from_f64(PI - 1e-8), turns });
-        let above = UnitArc::new(Angle { rest: Q::from_f64(1e-8 - PI), turns: turns + 1 });
+        let below = UnitArc::new(Angle { remainder: Q::from_f64(PI - 1e-8), whole_turns: turns });
+        let above = UnitArc::new(Angle { remainder: Q::from_f64(1e-8 - PI), whole_turns: turns + 1 });
         let step = differ(numbers(below), numbers(above));
         assert!(step <= 2.0 * LSB + FIXED_ERROR, "a step of {step} after {turns} turns");
     }
@@ -176,7 +176,7 @@ fn a_vanishing_arc_is_exact() {
     }
 }
 
-/// Each side is rounded by itself.
+/// Each side is rounded independently.
 #[test]
 fn a_link_does_not_step_where_its_polynomials_end() {
     let sides = |seam: f64| [seam - LSB, seam, seam + LSB];
@@ -190,7 +190,7 @@ fn a_link_does_not_step_where_its_polynomials_end() {
     }
 }
 
-/// Where a segment ends that is bent by a quarter turn, and by how much a straight one of 1 m leads on from there.
+/// End of a segment that is bent by a quarter turn, and chord of a straight segment of 1 m that follows it, m.
 fn quarter_turn(start: bool) -> [Vector2<f64>; 2] {
     let links = [link(FRAC_PI_2, &segment(0.1, 0.02, start)), link(0.0, &segment(1.0, 0.0, false))];
     let ends: Vec<_> =

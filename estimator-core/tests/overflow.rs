@@ -13,7 +13,7 @@ use num_traits::Zero;
 /// Tests run in threads; the count is common to them.
 static TURN: Mutex<()> = Mutex::new(());
 
-/// How many saturations `work` counts.
+/// Number of saturations that `work` causes.
 fn counted(work: impl FnOnce()) -> u32 {
     let _turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
     let before = saturations();
@@ -88,7 +88,7 @@ fn a_session_with_turns_and_turns_of_drift_counts_nothing() {
     assert_eq!(counted(|| run(1900, 1100)), 0);
 }
 
-/// An hour of swings, rests and outages with the bias filter, and what it gives of them.
+/// An hour of swings, rests and outages with the bias filter, and its estimates.
 fn run_bias_filter() {
     let segments = common::segments::<Q>();
     let config = common::config(&segments, 10.0);

@@ -8,7 +8,7 @@ use proptest::prelude::*;
 
 const LSB: f64 = 1.0 / 67_108_864.0;
 const ONE: i128 = 1 << Q::FRACTION_BITS;
-/// Half a unit of 2⁻³² turns, rad: what rounding to a whole number of them costs.
+/// Rounding error of a conversion to 2⁻³² turns: half a unit, rad.
 const HALF_TURN_UNIT: f64 = TAU / 8_589_934_592.0;
 
 /// The nearest Q to a count of units, of any size.
@@ -136,7 +136,7 @@ proptest! {
         prop_assert!(error <= LSB / 2.0 + HALF_TURN_UNIT + 1.4e-9, "{} rad", error);
     }
 
-    /// `rest` may be half a step off 2π·turns' own rounding; the quotient is as good as 26 bits allow.
+    /// `remainder` may be half a step off the rounding of 2π·`whole_turns`; the quotient is as good as 26 bits allow.
     #[test]
     fn the_share_of_an_unwrapped_angle_is_that_of_floats(rest in -3.1..3.1, turns in prop_oneof![-9..0, 1..9, 100..10_000]) {
         let exact = <f64 as FusedOps>::share_of_unwrapped(rest, turns);

@@ -1,4 +1,4 @@
-//! Brings the board up: clocks, pins and drivers, in the order that they need.
+//! Initialisation of the board: clocks, pins and drivers, in the order of their dependencies.
 
 use atsam3x8e_hal::adc::{self, Adc};
 use atsam3x8e_hal::backup::Backup;
@@ -10,7 +10,7 @@ use atsam3x8e_hal::twi::Twi;
 use atsam3x8e_hal::uart::{self, Rx, Tx};
 use atsam3x8e_hal::watchdog::{self, Watchdog};
 use atsam3x8e_hal::{clock, crash, eefc, gpio, reset};
-use board_core::Boots;
+use board_core::BootCounter;
 use board_core::imus::Imus;
 use board_core::tca9548a::{self, Tca9548a};
 use embedded_hal::digital::PinState;
@@ -21,29 +21,29 @@ use crate::panic::outputs_safe;
 use crate::parameters::{
     BAUD, BEND_CHANNELS, PWM_COUNTS, RECEIVE_BYTES, SCAN_US, STORAGE, TICK_HZ, TRANSMIT_BYTES, WATCHDOG_MS,
 };
-use crate::{identity, kept};
+use crate::{device_info, retained};
 
 /// The multiplexer's RESET, on D22.
 type MuxReset = gpio::Pin<'B', 26, gpio::Output>;
 
-/// Memory that the peripherals read and write by themselves.
+/// DMA buffers of the peripherals.
 pub struct Buffers {
     /// One scan of the ADC.
     pub scan: [u16; BEND_SENSORS],
-    /// Frames on their way to the line.
+    /// Frames to send.
     pub transmit: [u8; TRANSMIT_BYTES],
-    /// Bytes that came from the line.
+    /// Received bytes.
     pub receive: [u8; RECEIVE_BYTES],
 }
 
 impl Buffers {
-    /// Empty ones.
+    /// Empty buffers.
     pub const fn new() -> Self {
         Self { scan: [0; BEND_SENSORS], transmit: [0; TRANSMIT_BYTES], receive: [0; RECEIVE_BYTES] }
     }
 }
 
-/// What the tasks share out among themselves.
+/// Drivers and data for the tasks.
 pub struct Board {
     pub watchdog: Watchdog,
     pub trigger: Trigger,
@@ -55,11 +55,11 @@ pub struct Board {
     pub tx: Tx,
     pub rx: Rx,
     pub backup: Backup,
-    pub boots: Boots,
+    pub boots: BootCounter,
     pub hello: Hello,
 }
 
-/// Why the board does not come up. Each is a fault of the hardware or of [`parameters`](crate::parameters).
+/// Errors of the initialisation. Each is a fault of the hardware or of [`parameters`](crate::parameters).
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
     #[error("clock: {0}")]
@@ -78,12 +78,12 @@ pub enum Error {
     Flash(#[from] eefc::Error),
 }
 
-/// Takes the chip and gives the board, vented and with its trigger running.
+/// Initialises the chip; returns the board, vented and with its trigger running.
 pub fn set_up(device: Peripherals, buffers: &'static mut Buffers) -> Result<Board, Error> {
     crash::on_fault(outputs_safe);
-    // First of all, so that whatever hangs below is cut off.
+    // First, so that it resets the board if anything below hangs.
     let watchdog = Watchdog::start(device.WDT, WATCHDOG_MS)?;
-    let cause = identity::reset_cause(reset::cause(&device.RSTC));
+    let cause = device_info::reset_cause(reset::cause(&device.RSTC));
     let clocks = clock::configure(device.PMC, &device.EFC0, &device.EFC1)?;
     let (a, b, c) = (device.PIOA.split(clocks), device.PIOB.split(clocks), device.PIOC.split(clocks));
 
@@ -102,9 +102,9 @@ pub fn set_up(device: Peripherals, buffers: &'static mut Buffers) -> Result<Boar
     let chip = flash.unique_id()?;
     let mut backup = Backup::new(device.GPBR);
     let last_panic = crash::take();
-    let boots = Boots::start(kept::read(&backup), cause, last_panic.is_some());
-    kept::write(&mut backup, &boots);
-    let hello = identity::hello(chip, cause, boots.number(), last_panic.as_ref());
+    let boots = BootCounter::start(retained::read(&backup), cause, last_panic.is_some());
+    retained::write(&mut backup, &boots);
+    let hello = device_info::hello(chip, cause, boots.number(), last_panic.as_ref());
 
     let (rx, tx) = (a.pa8.into_peripheral_a(), a.pa9.into_peripheral_a());
     let uart = uart::new(device.UART, rx, tx, BAUD, &mut buffers.transmit, &mut buffers.receive, clocks);

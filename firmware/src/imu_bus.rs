@@ -1,4 +1,4 @@
-//! TWI1, with what [`board_core`] asks of the IMUs' bus.
+//! TWI1 as the IMUs' bus of [`board_core`].
 
 use atsam3x8e_hal::pac::TWI1;
 use atsam3x8e_hal::tc::Mono;

@@ -1,46 +1,43 @@
 //! The arm's firmware for the Arduino Due.
 //!
 //! A timer triggers the ADC 100 times a second, by hardware and without jitter. 200 µs later, when the scan of the twelve
-//! bend sensors is in memory, its interrupt is the tick: everything else follows from there.
+//! bend sensors is in memory, its interrupt is the tick, which starts everything else.
 //!
-//! | task | priority | period | bound, µs | longest measured, µs | what |
+//! | task | priority | period | bound, µs | longest measured, µs | work |
 //! |---|---|---|---|---|---|
-//! | `twi1` | 4 | a byte on the I²C bus | 5 | 1.5 | wakes the bus |
-//! | `time` | 4 | a timer's alarm | 5 | 2.4 | wakes who waited |
+//! | `twi1` | 4 | a byte on the I²C bus | 5 | 1.5 | the IMUs' bus |
+//! | `time` | 4 | a timer's alarm | 5 | 2.4 | delays and deadlines |
 //! | `tick` | 3 | 10 ms | 100 | 53 | scan, pressures, watchdog |
-//! | `requests` | 2 | 10 ms | 1000 | 385 | what the host asks |
-//! | `shape` | 1 | 10 ms | 6000 | 4471 | IMUs (4 ms at most), estimator, messages |
-//! | `idle` | 0 | | | | sleeps |
+//! | `commands` | 2 | 10 ms | 1000 | 385 | requests of the host |
+//! | `estimation` | 1 | 10 ms | 6000 | 4471 | IMUs (4 ms at most), estimator, messages |
+//! | `idle` | 0 | | | | sleep |
 //!
-//! From a task's interrupt to its end, with what preempts it, and for `shape` from the tick. `cargo xtask bench` measures it
-//! on the emulated board, in a run with faults and floods of requests, and holds it against the bounds.
+//! Times are from a task's interrupt to its end, preemption included, and for `estimation` from the tick. `cargo xtask bench`
+//! measures them on the emulated board, in a run with faults and floods of requests, and checks them against the bounds.
 //!
-//! The watchdog is fed in `tick`, and only while all tasks report in time. Every panic and fault vents the arm first.
+//! The watchdog is fed in `tick`, and only while all tasks meet their deadlines. Every panic and fault vents the arm first.
 #![no_std]
 #![no_main]
 
 mod board;
-mod identity;
+mod command_task;
+mod cpu_load;
+mod device_info;
+mod downlink;
+mod estimation;
 mod imu_bus;
-mod kept;
-mod load;
 mod panic;
 mod parameters;
-mod requests;
-mod shape;
+mod retained;
+mod supervision;
 mod table;
 mod tick;
-mod voice;
 
-use board_core::Supervisor;
 use defmt_rtt as _;
-
-/// Whether every task still reports in time.
-static SUPERVISOR: Supervisor = Supervisor::new();
 
 defmt::timestamp!("{=u64:us}", atsam3x8e_hal::tc::Mono::now_us());
 
-/// The tasks and what they share; what they do is in the module of the same name.
+/// The tasks and their shared state; the work of each is in the module of its name.
 #[rtic::app(device = atsam3x8e_hal::pac, dispatchers = [SSC, HSMCI])]
 mod app {
     use core::mem::MaybeUninit;
@@ -48,49 +45,49 @@ mod app {
     use atsam3x8e_hal::pac::TWI1;
     use atsam3x8e_hal::tc::{Mono, prelude::*};
     use atsam3x8e_hal::{reset, twi};
-    use board_core::{Actuator, Arm, Schedule};
+    use board_core::{Actuator, BoardEstimator, Schedule};
     use rtic_sync::signal::{Signal, SignalReader};
 
     use crate::board::{self, Buffers};
-    use crate::load;
+    use crate::command_task::{CommandTask, Control};
+    use crate::cpu_load;
+    use crate::downlink::TelemetrySender;
+    use crate::estimation::EstimationTask;
     use crate::parameters::LIMITS_PA;
-    use crate::requests::{Control, Requests};
-    use crate::shape::Shape;
     use crate::table::TABLE;
     use crate::tick::{Tick, Ticker};
-    use crate::voice::Voice;
 
     #[shared]
     struct Shared {
         actuator: Actuator,
         control: Control,
-        voice: Voice,
+        sender: TelemetrySender,
     }
 
     #[local]
     struct Local {
         ticker: Ticker,
-        requests: Requests,
-        requests_ticks: SignalReader<'static, Tick>,
-        shape: Shape,
-        shape_ticks: SignalReader<'static, Tick>,
+        command_task: CommandTask,
+        command_ticks: SignalReader<'static, Tick>,
+        estimation_task: EstimationTask,
+        estimation_ticks: SignalReader<'static, Tick>,
     }
 
     #[init(local = [
         buffers: Buffers = Buffers::new(),
-        for_requests: Signal<Tick> = Signal::new(),
-        for_shape: Signal<Tick> = Signal::new(),
-        arm: MaybeUninit<Arm> = MaybeUninit::uninit(),
+        for_commands: Signal<Tick> = Signal::new(),
+        for_estimation: Signal<Tick> = Signal::new(),
+        estimator: MaybeUninit<BoardEstimator> = MaybeUninit::uninit(),
     ])]
     fn init(cx: init::Context) -> (Shared, Local) {
         let board = match board::set_up(cx.device, cx.local.buffers) {
             Ok(board) => board,
             Err(error) => panic!("the board does not come up: {error}"),
         };
-        defmt::info!("boot {} of {}", board.boots.number(), board.hello.firmware.as_str());
-        let (to_requests, requests_ticks) = cx.local.for_requests.split();
-        let (to_shape, shape_ticks) = cx.local.for_shape.split();
         let safe_mode = board.boots.safe_mode();
+        log_boot(&board.hello, safe_mode);
+        let (to_commands, command_ticks) = cx.local.for_commands.split();
+        let (to_estimation, estimation_ticks) = cx.local.for_estimation.split();
         let ticker = Ticker {
             trigger: board.trigger,
             start_us: board.start_us,
@@ -99,25 +96,45 @@ mod app {
             watchdog: board.watchdog,
             backup: board.backup,
             boots: board.boots,
-            followers: [to_requests, to_shape],
-            late: None,
+            subscribers: [to_commands, to_estimation],
+            missed_deadline: None,
         };
-        let shape = Shape::new(board.imus, cx.local.arm.write(Arm::new(&TABLE)), board.hello, safe_mode);
-        // They wait for their first tick, and then for ever; there is room for each once.
-        let _ = requests::spawn();
-        let _ = shape::spawn();
-        let control = Control { schedule: Schedule::default(), tare: false, hello: false, damaged_frames: 0 };
+        let estimator = cx.local.estimator.write(BoardEstimator::new(&TABLE));
+        let estimation_task = EstimationTask::new(board.imus, estimator, board.hello, safe_mode);
+        // Each is spawned once and never ends, so that there is room for it.
+        let _ = commands::spawn();
+        let _ = estimation::spawn();
+        let control =
+            Control { schedule: Schedule::default(), tare_requested: false, hello_requested: false, damaged_frames: 0 };
         (
-            Shared { actuator: Actuator::new(LIMITS_PA), control, voice: Voice::new(board.tx) },
-            Local { ticker, requests: Requests::new(board.rx), requests_ticks, shape, shape_ticks },
+            Shared { actuator: Actuator::new(LIMITS_PA), control, sender: TelemetrySender::new(board.tx) },
+            Local {
+                ticker,
+                command_task: CommandTask::new(board.rx),
+                command_ticks,
+                estimation_task,
+                estimation_ticks,
+            },
         )
     }
 
-    /// Sleeps while there is nothing to do.
+    /// Logs the boot, its cause, and the crash before it.
+    fn log_boot(hello: &telemetry::Hello, safe_mode: bool) {
+        let (firmware, revision) = (hello.firmware.as_str(), hello.revision.as_str());
+        defmt::info!("boot {} of firmware {} ({}), reset by {}", hello.boot, firmware, revision, hello.reset);
+        if let Some(last_panic) = &hello.last_panic {
+            defmt::warn!("crash before this boot: {}", last_panic.as_str());
+        }
+        if safe_mode {
+            defmt::warn!("safe mode after repeated crashes: the pressures stay at zero");
+        }
+    }
+
+    /// Sleeps while no task runs.
     #[idle]
     fn idle(_: idle::Context) -> ! {
         loop {
-            load::sleep();
+            cpu_load::sleep();
         }
     }
 
@@ -133,21 +150,21 @@ mod app {
         twi::on_interrupt::<TWI1>();
     }
 
-    /// The timer of all waiting tasks.
+    /// The timer of all delays.
     #[task(binds = TC1, priority = 4)]
     fn time(_: time::Context) {
         Mono::on_interrupt();
     }
 
-    /// What the host asks.
-    #[task(priority = 2, shared = [actuator, control, voice], local = [requests, requests_ticks])]
-    async fn requests(cx: requests::Context) {
+    /// Requests of the host.
+    #[task(priority = 2, shared = [actuator, control, sender], local = [command_task, command_ticks])]
+    async fn commands(cx: commands::Context) {
         let mut shared = cx.shared;
         loop {
-            let tick = cx.local.requests_ticks.wait().await;
-            let (actuator, control, voice) = (&mut shared.actuator, &mut shared.control, &mut shared.voice);
-            if cx.local.requests.run(tick.number, actuator, control, voice) {
-                // The answer goes out, and the arm vents meanwhile.
+            let tick = cx.local.command_ticks.wait().await;
+            let (actuator, control, sender) = (&mut shared.actuator, &mut shared.control, &mut shared.sender);
+            if cx.local.command_task.run(tick.number, actuator, control, sender) {
+                // Time to send the reply and to vent the arm.
                 Mono::delay(50u64.millis()).await;
                 reset::reset();
             }
@@ -155,13 +172,13 @@ mod app {
     }
 
     /// IMUs, estimator, messages.
-    #[task(priority = 1, shared = [actuator, control, voice], local = [shape, shape_ticks])]
-    async fn shape(cx: shape::Context) {
+    #[task(priority = 1, shared = [actuator, control, sender], local = [estimation_task, estimation_ticks])]
+    async fn estimation(cx: estimation::Context) {
         let mut shared = cx.shared;
         loop {
-            let tick = cx.local.shape_ticks.wait().await;
-            let (actuator, control, voice) = (&mut shared.actuator, &mut shared.control, &mut shared.voice);
-            cx.local.shape.run(tick, actuator, control, voice).await;
+            let tick = cx.local.estimation_ticks.wait().await;
+            let (actuator, control, sender) = (&mut shared.actuator, &mut shared.control, &mut shared.sender);
+            cx.local.estimation_task.run(tick, actuator, control, sender).await;
         }
     }
 }

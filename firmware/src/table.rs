@@ -1,4 +1,4 @@
-//! The arm's table, baked from its TOML file when the firmware is built.
-#![expect(clippy::unreadable_literal, reason = "nobody reads the build's output")]
+//! The arm's table, compiled from its TOML file when the firmware is built.
+#![expect(clippy::unreadable_literal, reason = "generated code")]
 
 include!(concat!(env!("OUT_DIR"), "/table.rs"));

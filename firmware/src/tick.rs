@@ -1,31 +1,31 @@
-//! The tick: takes the scan, moves the pressures, feeds the watchdog, and sets the other tasks off.
+//! The tick: reads the scan, sets the pressures, feeds the watchdog, and starts the other tasks.
 
 use atsam3x8e_hal::adc::Adc;
 use atsam3x8e_hal::backup::Backup;
 use atsam3x8e_hal::pwm::Pwm;
 use atsam3x8e_hal::tc::{Mono, Trigger};
 use atsam3x8e_hal::watchdog::Watchdog;
-use board_core::{Actuator, Boots, Late, Task};
+use board_core::{Actuator, BootCounter, DeadlineMissed, Task};
 use rtic::Mutex;
 use rtic_sync::signal::SignalWriter;
 use telemetry::{BEND_SENSORS, REGULATORS, TICK_US};
 
-use crate::SUPERVISOR;
-use crate::kept;
 use crate::parameters::BEND_POSITIONS;
+use crate::retained;
+use crate::supervision::SUPERVISOR;
 
-/// What a tick hands on to the tasks that follow it.
+/// Input of the other tasks in one tick.
 #[derive(Clone, Copy)]
 pub struct Tick {
-    /// Its number since boot.
+    /// Number of the tick since boot.
     pub number: u32,
     /// Time of the ADC's trigger, µs.
     pub time_us: u64,
-    /// Counts of the bend sensors 1a, 1b, … 6b; `None`: the scan is not whole.
+    /// Counts of the bend sensors 1a, 1b, … 6b; `None`: the scan is incomplete.
     pub scan: Option<[u16; BEND_SENSORS]>,
 }
 
-/// What the tick needs.
+/// State of the tick.
 pub struct Ticker {
     pub trigger: Trigger,
     /// Time of the trigger's first edge, µs.
@@ -34,15 +34,15 @@ pub struct Ticker {
     pub regulators: Pwm<REGULATORS>,
     pub watchdog: Watchdog,
     pub backup: Backup,
-    pub boots: Boots,
-    /// Those who follow.
-    pub followers: [SignalWriter<'static, Tick>; 2],
-    /// A task was late: the watchdog is not fed again.
-    pub late: Option<Late>,
+    pub boots: BootCounter,
+    /// The tasks that run after each tick.
+    pub subscribers: [SignalWriter<'static, Tick>; 2],
+    /// A task missed its deadline: the watchdog is not fed again.
+    pub missed_deadline: Option<DeadlineMissed>,
 }
 
 impl Ticker {
-    /// One tick.
+    /// Runs one tick.
     pub fn run(&mut self, mut actuator: impl Mutex<T = Actuator>) {
         if !self.trigger.on_interrupt() {
             return;
@@ -61,31 +61,31 @@ impl Ticker {
         // The only error is a duty over the period, which `duties` does not give.
         let _ = self.regulators.set_duties(duties);
 
-        for follower in &mut self.followers {
-            follower.write(Tick { number, time_us, scan });
+        for subscriber in &mut self.subscribers {
+            subscriber.write(Tick { number, time_us, scan });
         }
-        kept::write_uptime(&mut self.backup, self.boots.uptime(number));
+        retained::write_uptime(&mut self.backup, self.boots.uptime(number));
         SUPERVISOR.report(Task::Tick, number);
         self.supervise(number);
     }
 
     fn supervise(&mut self, tick: u32) {
-        if self.late.is_some() {
+        if self.missed_deadline.is_some() {
             return;
         }
         match SUPERVISOR.check(tick) {
             Ok(()) => self.watchdog.feed(),
-            Err(late) => {
-                let Late(task) = late;
+            Err(missed) => {
+                let DeadlineMissed(task) = missed;
                 defmt::error!("task {} is late", defmt::Debug2Format(&task));
-                atsam3x8e_hal::crash::record(format_args!("{late}"));
-                self.late = Some(late);
+                atsam3x8e_hal::crash::record(format_args!("{missed}"));
+                self.missed_deadline = Some(missed);
             }
         }
     }
 }
 
-/// A scan in the order of the sensors.
+/// Sorts a scan in the order of the sensors.
 fn in_order(scan: [u16; BEND_SENSORS]) -> [u16; BEND_SENSORS] {
     BEND_POSITIONS.map(|position| scan[position])
 }

@@ -146,7 +146,7 @@ mod tests {
     use super::{Recorded, Spoiler};
 
     fn spoiled(spoil: fn(&mut Spoiler)) -> [Vec<Recorded>; 2] {
-        let simulation = Simulation::new(Scenario::One, 1, 10.0, 10.0).expect("a session");
+        let simulation = Simulation::new(Scenario::FreeSwing, 1, 10.0, 10.0).expect("a session");
         let clean: Vec<Recorded> = simulation.collect();
         let mut samples = clean.clone();
         spoil(&mut Spoiler { samples: &mut samples, from: 50, rate_hz: 10.0 });

@@ -113,8 +113,8 @@ pub fn replay(
     rows: impl Iterator<Item = Row>,
     mut visit: impl FnMut(&Row, &Outcome<Q>),
 ) -> Result<(), FileError> {
-    let baked = table.bake::<Q>(rate_hz)?;
-    let config = baked.config();
+    let compiled = table.compile::<Q>(rate_hz)?;
+    let config = compiled.config();
     let mut replayer = Replayer::new(&config);
     for row in rows {
         visit(&row, &replayer.step(&row));
@@ -132,8 +132,8 @@ pub fn replay_smoothed<R: Iterator<Item = Row>>(
     rows: impl Fn() -> R,
     mut visit: impl FnMut(&Row, &Outcome<Q>),
 ) -> Result<(), FileError> {
-    let baked = table.bake::<Q>(rate_hz)?;
-    let config = baked.config();
+    let compiled = table.compile::<Q>(rate_hz)?;
+    let config = compiled.config();
     let mut forward = ForwardPass::new(&config);
     rows().for_each(|row| forward.add(&row));
     let mut smoothing = SmoothingPass::new(&config, forward.finish());

@@ -17,13 +17,13 @@ fn runs(scenario: Scenario) -> [ContactSession; 3] {
 
 #[test]
 fn a_free_arm_is_never_touched_in_three_quarters_of_an_hour() {
-    let alarms = runs(Scenario::One).map(|run| run.alarms());
+    let alarms = runs(Scenario::FreeSwing).map(|run| run.alarms());
     assert_eq!(alarms, [0; SEEDS.len()]);
 }
 
 #[test]
 fn nine_in_ten_pushes_over_ten_degrees_are_found_within_half_a_second() {
-    let pushes = runs(Scenario::Two).map(|run| run.pushes());
+    let pushes = runs(Scenario::Push).map(|run| run.pushes());
     let [found, all] = [|of: &Found| of.found, |of: &Found| of.all].map(|of| pushes.iter().map(of).sum::<usize>());
     assert!(all > 50 && found * 10 > all * 9, "{found} of {all}");
 }

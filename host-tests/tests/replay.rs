@@ -8,9 +8,9 @@ use std::path::{Path, PathBuf};
 use estimator_core::{FusedOps, Q};
 use proprio_analysis::Outcome;
 use proprio_analysis::estimates::{write_header, write_row};
-use proprio_analysis::metrics::Score;
+use proprio_analysis::metrics::ErrorMetrics;
 use proprio_analysis::replay::replay;
-use proprio_session::{NamedTable, NoProgress};
+use proprio_session::{LoadedTable, NoProgress};
 
 const SESSIONS: [&str; 4] = ["scenario-1", "scenario-2", "scenario-3", "board-rate"];
 
@@ -36,7 +36,7 @@ fn reference_table() -> PathBuf {
 fn outcomes<S: FusedOps>(session: &Path) -> Vec<Outcome<S>> {
     let mut outcomes = Vec::new();
     let path = reference_table();
-    let table = NamedTable::load(&path).expect("the table is good");
+    let table = LoadedTable::load(&path).expect("the table is good");
     replay::<S>(session, &table, &mut NoProgress, |_, outcome| {
         outcomes.push(outcome.clone());
         Ok(())
@@ -114,11 +114,11 @@ fn fixed_point_stays_with_the_float_reference_in_every_session() {
 
 #[test]
 fn a_session_of_the_board_keeps_its_quaternions_to_the_bit() {
-    let run = proprio_simulation::Simulation::new(rig_twin::Scenario::One, 24, 10.0, 100.0).expect("a valid run");
+    let run = proprio_simulation::Simulation::new(rig_twin::Scenario::FreeSwing, 24, 10.0, 100.0).expect("a valid run");
     let recorded: Vec<_> =
         run.map(|sample| sample.quaternions.map(|read| read.map(estimator_core::ImuReading::from_bno055))).collect();
     let path = reference_table();
-    let table = NamedTable::load(&path).expect("the table is good");
+    let table = LoadedTable::load(&path).expect("the table is good");
     let mut rows = 0;
     replay::<Q>(&session("board-rate"), &table, &mut NoProgress, |row, _| {
         let read = row.sample.imu.iter().flatten();
@@ -139,14 +139,14 @@ fn the_real_recording_misses_the_tip_by_the_known_floor() {
         return;
     }
     let path = here("tables/trunk-planar.toml");
-    let table = NamedTable::load(&path).expect("the table is good");
-    let mut score = Score::new(table.file.length_mm());
+    let table = LoadedTable::load(&path).expect("the table is good");
+    let mut score = ErrorMetrics::new(table.file.length_mm());
     replay::<Q>(&recording, &table, &mut NoProgress, |row, outcome| {
         score.add(row, outcome);
         Ok(())
     })
     .expect("the recording is good");
-    let [bend, imu_o, _, _] = score.figures();
+    let [bend, imu_o, _, _] = score.metrics();
     let rmse_mm = imu_o.tip_rmse_mm.expect("the recording has truth");
     assert!((rmse_mm - 9.25).abs() < 0.02, "{rmse_mm} mm");
     assert_eq!(bend.tip_rmse_mm, None, "the arm has no bend sensors");

@@ -5,14 +5,14 @@ use std::path::Path;
 use calibration_tables::ArmFile;
 use host_tests::parallel::in_parallel;
 use host_tests::twin::{TwinSession, replay_smoothed};
-use proprio_analysis::metrics::Score;
+use proprio_analysis::metrics::ErrorMetrics;
 use proprio_calibration::calibrate::{CalibrationOptions, calibrate};
-use proprio_session::{NamedTable, NoProgress, OutputFile};
+use proprio_session::{LoadedTable, NoProgress, OutputFile};
 use proprio_simulation::{ImuColumns, SessionWriter, Simulation};
 use rig_twin::{Motion, Scenario, Setup};
 
 const ARMS: [u64; 6] = [1, 2, 3, 4, 5, 6];
-const SCENARIOS: [Scenario; 3] = [Scenario::One, Scenario::Two, Scenario::Three];
+const SCENARIOS: [Scenario; 3] = [Scenario::FreeSwing, Scenario::Push, Scenario::Obstacle];
 
 fn setup(arm_seed: u64, scenario: Scenario, seed: u64) -> Setup {
     Setup { arm_seed, scenario, motion: Motion::Swings, seed: 100 * arm_seed + seed }
@@ -27,18 +27,18 @@ fn table(arm_seed: u64, folder: &Path) -> ArmFile {
     samples.for_each(|sample| writer.write(&sample).expect("a temporary file can be written"));
     writer.into_inner().finish().expect("a temporary file can be renamed");
     let arm = Path::new(env!("CARGO_MANIFEST_DIR")).join("../calibration-tables/arms/planar-6.toml");
-    let arm = NamedTable::load(&arm).expect("the reference arm's description");
+    let arm = LoadedTable::load(&arm).expect("the reference arm's description");
     calibrate(&[sweep], &arm, CalibrationOptions::default(), &mut NoProgress).expect("a sweep calibrates").table
 }
 
 /// RMSE of the tip by fusion and smoothed, mm, and the share of true tips inside the smoothed ellipses, %.
 fn figures(table: &ArmFile, setup: &Setup) -> [f64; 3] {
     let session = TwinSession::new(setup, 900.0, 10.0).expect("a rate and a duration");
-    let mut score = Score::new(table.length_mm());
+    let mut score = ErrorMetrics::new(table.length_mm());
     replay_smoothed(table, 10.0, || session.rows(), |row, outcome| score.add(row, outcome)).expect("a table");
     let smoothed = score.smoothed().expect("there is truth");
     let inside = smoothed.uncertainty.and_then(|uncertainty| uncertainty.tip_inside_percent);
-    [score.figures()[3].tip_rmse_mm, smoothed.figures.tip_rmse_mm, inside].map(|figure| figure.expect("there is truth"))
+    [score.metrics()[3].tip_rmse_mm, smoothed.metrics.tip_rmse_mm, inside].map(|figure| figure.expect("there is truth"))
 }
 
 #[test]
@@ -60,7 +60,7 @@ fn on_arms_of_the_twin_smoothed_tips_are_nearer_to_the_truth_and_their_ellipses_
 fn the_last_estimate_of_a_session_is_that_of_the_estimator_with_its_covariance() {
     let table = Path::new(env!("CARGO_MANIFEST_DIR")).join("../calibration-tables/planar-6.toml");
     let table = ArmFile::load(&table).expect("the reference table");
-    let session = TwinSession::new(&setup(0, Scenario::Two, 2), 900.0, 10.0).expect("a rate and a duration");
+    let session = TwinSession::new(&setup(0, Scenario::Push, 2), 900.0, 10.0).expect("a rate and a duration");
     for length in [300, 2048, 2049, 4000, 6500, 9000] {
         let mut last = None;
         let rows = || session.rows().take(length);

@@ -23,9 +23,9 @@ impl Lag {
     }
 }
 
-/// Play operator: follows its input only when pushed by one of its edges, `half_width` away.
-pub(crate) fn play(value: f64, input: f64, half_width: f64) -> f64 {
-    value.clamp(input - half_width, input + half_width)
+/// Play operator: the output follows the input only while the input pushes an edge, `radius` away.
+pub(crate) fn play(value: f64, input: f64, radius: f64) -> f64 {
+    value.clamp(input - radius, input + radius)
 }
 
 /// A pressure regulator.
@@ -40,7 +40,7 @@ impl Regulator {
         Self { parameters, pressure: Lag::new(0.0, parameters.lag_s, GRID_S) }
     }
 
-    /// Pressure in Pa after one more grid step at `duty`. No number counts as 0, others are clamped to 0 … 1.
+    /// Pressure in Pa after one more grid step at `duty`, which is clamped to 0 … 1; NaN counts as 0.
     pub(crate) fn step(&mut self, duty: f64) -> f64 {
         let duty = if duty.is_nan() { 0.0 } else { duty.clamp(0.0, 1.0) };
         let RegulatorParameters { gain, offset_pa, .. } = self.parameters;

@@ -5,7 +5,7 @@ use crate::arm::ImuParameters;
 use crate::constants::{ACCELERATION_LAG_S, DRIFT_SESSION_SIGMA, FUSION_S, QUATERNION_UNIT_STEPS};
 use crate::gauss_markov::GaussMarkov;
 use crate::noise::{Noise, Seeds, Source};
-use crate::shape::EndPose;
+use crate::pose::EndPose;
 use core::f64::consts::PI;
 
 /// One unit at a segment's end.

@@ -5,10 +5,10 @@ use crate::constants::{
     CAMERA_HEADING_NOISE_RAD, CAMERA_HIDDEN_SHARE, CAMERA_PLACE_NOISE_M, CAMERA_STAMP_NOISE_S, GRID_S, SEGMENTS,
 };
 use crate::noise::{Noise, Seeds, Source};
-use crate::shape::EndPose;
+use crate::pose::EndPose;
 use core::f64::consts::TAU;
 
-/// What the camera saw, in its own frame: x to the right and y up in the picture, headings clockwise from y, within ±π.
+/// One picture in the camera's frame: x to the right and y up, headings clockwise from y, within ±π.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame {
     /// Time by the camera's clock, s.
@@ -32,12 +32,12 @@ impl Camera {
         Self { frames: 0, noise: Noise::of_session(Seeds { arm: 0, session: seed }, Source::Camera, 0) }
     }
 
-    /// When the next frame is taken, by the rig's clock: at a grid point, where the truth is of that moment.
+    /// Time of the next frame by the rig's clock, s: a grid point, at which the truth is exact.
     pub fn next_s(&self) -> f64 {
         (self.frames as f64 / (CAMERA_FRAMES_PER_S * GRID_S)).round() * GRID_S
     }
 
-    /// Takes that frame of the arm as it is then; `None`: the frame was dropped.
+    /// Takes the next frame of the arm; `None`: the frame was dropped.
     pub fn take(&mut self, truth: [EndPose; SEGMENTS]) -> Option<Frame> {
         let taken_s = self.next_s();
         self.frames += 1;

@@ -1,12 +1,12 @@
-//! Every number of the reference arm, its rig and its programs of motion, with unit and source. Sizes of the flaws of all other
-//! arms are in `flaws`.
+//! Every number of the reference arm, its rig and its programs of motion, with unit and source. Sizes of the flaws of
+//! all other arms are in `flaws`.
 //!
 //! "paper" is arXiv 2511.01165. "assumed" marks what no source gives; those were chosen so that the residual of the
 //! V–Orient maps and the drift come out near the paper's.
 
 use core::f64::consts::PI;
 
-use crate::shape::EndPose;
+use crate::pose::EndPose;
 
 /// One degree in radians.
 pub(crate) const DEGREE_RAD: f64 = PI / 180.0;
@@ -25,14 +25,14 @@ pub const REGULATORS: usize = 2 * MODULES;
 /// ChaCha seed of the reference arm's tolerances (assumed).
 pub(crate) const REFERENCE_ARM_SEED: u64 = 3;
 
-/// Where tolerances are cut off: a maker sorts out what lies beyond (assumed).
+/// Limit of a tolerance, in sigma: a maker rejects parts beyond it (assumed).
 pub(crate) const TOLERANCE_LIMIT_SIGMA: f64 = 3.0;
 
 // Time.
 
 /// Grid of the physics (assumed: a fiftieth of the fastest lag).
 pub(crate) const GRID_S: f64 = 0.002;
-/// How far before a grid point a sum of steps counts as having reached it, so that rounding never costs a step (assumed).
+/// Margin at which a sum of steps has reached a grid point, so that rounding never costs a step (assumed).
 pub(crate) const GRID_SLACK_S: f64 = 1e-9;
 /// Longest single step; longer ones are cut to it (assumed: bounds the time a call can take).
 pub(crate) const LONGEST_STEP_S: f64 = 3600.0;
@@ -72,7 +72,7 @@ pub(crate) const FULL_BEND_RAD: f64 = 63.0 * DEGREE_RAD;
 pub(crate) const STIFFENING: f64 = 0.15;
 /// Spread of the segments' gains, one sigma (assumed).
 pub(crate) const GAIN_SIGMA: f64 = 0.03;
-/// Half width of the actuator's play (assumed).
+/// Radius of the actuator's play (assumed).
 pub(crate) const ACTUATOR_PLAY_RAD: f64 = 1.5 * DEGREE_RAD;
 /// Time constant of the silicone's prompt response (assumed).
 pub(crate) const ACTUATOR_LAG_S: f64 = 0.20;
@@ -115,7 +115,7 @@ pub(crate) const SLOW_PERIODS: f64 = 12.0;
 pub(crate) const FAST_PERIODS: f64 = 0.25;
 /// Pauses in a round, after which they repeat.
 pub(crate) const PAUSES: usize = 32;
-/// Time in which a pause comes, and in which it goes (assumed).
+/// Time of the transition to a pause, and of that back (assumed).
 pub(crate) const PAUSE_BLEND_S: f64 = 4.0;
 /// Range of the swings between two rests (assumed).
 pub(crate) const REST_SPELL_S: (f64, f64) = (20.0, 120.0);
@@ -146,7 +146,7 @@ pub(crate) const TOTAL_HEADING_RAD: f64 = 190.0 * DEGREE_RAD;
 pub(crate) const PUSH_PAUSE_S: (f64, f64) = (3.0, 10.0);
 /// Range of a push's duration (assumed).
 pub(crate) const PUSH_DURATION_S: (f64, f64) = (1.5, 6.0);
-/// Time in which a push comes, and in which it goes (assumed).
+/// Rise time of a push, and its fall time (assumed).
 pub(crate) const PUSH_RISE_S: f64 = 0.5;
 /// Range of the bend that a push adds to its segment (assumed).
 pub(crate) const PUSH_BEND_RAD: (f64, f64) = (8.0 * DEGREE_RAD, 25.0 * DEGREE_RAD);
@@ -174,7 +174,8 @@ pub(crate) const OBSTACLE_PLACE: f64 = 0.30;
 
 /// Half width of the curvature's peak at a contact, a share of the curve's length (assumed).
 pub(crate) const CONTACT_HALF_WIDTH: f64 = 0.28;
-/// Half width of the bend that a contact causes elsewhere, a share of the curve's length (assumed: nearly the whole curve).
+/// Half width of the bend that a contact causes elsewhere, a share of the curve's length (assumed: nearly the whole
+/// curve).
 pub(crate) const REACTION_HALF_WIDTH: f64 = 0.48;
 
 // Bend sensors.
@@ -185,11 +186,11 @@ pub(crate) const STRIP_LENGTH: f64 = 0.05588 / CURVE_LENGTH_M;
 pub(crate) const STRIP_START: (f64, f64) = ((1.0 - STRIP_LENGTH) / 2.0, 0.02);
 /// Share of a strip's sensitivity that lies in its near half, mean and sigma (assumed).
 pub(crate) const STRIP_BALANCE: (f64, f64) = (0.5, 0.03);
-/// Half widths of the strip's plays, its memory of direction (assumed).
+/// Radii of the strip's plays, its hysteresis (assumed).
 pub(crate) const MEMORY_PLAY_RAD: [f64; 3] = [5.0 * DEGREE_RAD, 13.0 * DEGREE_RAD, 28.0 * DEGREE_RAD];
 /// Shares of the plays in the strip's response (assumed: strips repeat to 2.5°).
 pub(crate) const MEMORY_SHARE: [f64; 3] = [0.12, 0.10, 0.08];
-/// Spread of a sensor's memory over the sensors, one sigma (assumed).
+/// Spread of the hysteresis over the sensors, one sigma (assumed).
 pub(crate) const MEMORY_SIGMA: f64 = 0.25;
 /// Time constant of the strip's relaxation: its resistance overshoots, then settles (assumed).
 pub(crate) const STRIP_RELAXATION_S: f64 = 6.0;
@@ -208,9 +209,9 @@ pub(crate) const PRE_BEND_RAD: (f64, f64) = (110.0 * DEGREE_RAD, 4.0 * DEGREE_RA
 pub(crate) const RIPPLE_RAD: f64 = 3.5 * DEGREE_RAD;
 /// Range of the ripple's period over the bend; every strip cracks in its own way (assumed).
 pub(crate) const RIPPLE_PERIOD_RAD: (f64, f64) = (56.0 * DEGREE_RAD, 74.0 * DEGREE_RAD);
-/// Bend that both strips of a segment mistake for something they feel alike, one on each side: warmth, squeeze, stretch;
-/// RMS. It is in each map's residual and cancels in their mean (assumed: errors of 4.72° that did not cancel would make
-/// the paper's bend sensors miss the tip by twice the 24.6 mm that it gives).
+/// Common-mode error of the strips on both sides of a segment, by warmth, squeeze or stretch, as bend; RMS. It is in
+/// each map's residual and cancels in their mean (assumed: errors of 4.72° that did not cancel would result in twice
+/// the paper's tip error of the bend sensors, 24.6 mm).
 pub(crate) const COMMON_MODE_RAD: f64 = 4.0 * DEGREE_RAD;
 /// Time constant of that error (assumed).
 pub(crate) const COMMON_MODE_S: f64 = 40.0;
@@ -218,7 +219,8 @@ pub(crate) const COMMON_MODE_S: f64 = 40.0;
 pub(crate) const FLAT_OHM: f64 = 25e3;
 /// Spread of the flat resistance, one sigma, a share (Spectra Symbol datasheet: ±30 % at three sigma).
 pub(crate) const FLAT_SIGMA: f64 = 0.10;
-/// Growth of the resistance with bend, a share of the flat one a radian, mean and sigma (datasheet: at least 2 × at 180°).
+/// Growth of the resistance with bend, a share of the flat one a radian, mean and sigma (datasheet: at least 2 × at
+/// 180°).
 pub(crate) const GAUGE_PER_RAD: (f64, f64) = (0.70, 0.06);
 /// Fixed resistor of the divider, to the supply (assumed: near the strip's mid resistance).
 pub(crate) const DIVIDER_OHM: f64 = 47e3;
@@ -242,7 +244,8 @@ pub(crate) const DRIFT_RAD_PER_S: [f64; SEGMENTS] = [
 pub(crate) const DRIFT_SESSION_SIGMA: f64 = 0.02;
 /// Random walk of the drift rate, one sigma after one second (assumed: 1° of heading in 900 s).
 pub(crate) const DRIFT_WALK_RAD_PER_S: f64 = 6.4e-5 * DEGREE_RAD;
-/// Spread of the gyroscopes' sensitivity over the units, one sigma, a share (assumed: what MEMS gyroscopes are sold with).
+/// Spread of the gyroscopes' sensitivity over the units, one sigma, a share (assumed: what MEMS gyroscopes are sold
+/// with).
 pub(crate) const GYRO_SENSITIVITY_SIGMA: f64 = 0.01;
 /// White noise of a heading, one sigma (assumed).
 pub(crate) const HEADING_NOISE_RAD: f64 = 0.1 * DEGREE_RAD;
@@ -267,9 +270,9 @@ pub(crate) const CAMERA_DROPPED_SHARE: f64 = 0.03;
 pub(crate) const CAMERA_HIDDEN_SHARE: f64 = 0.005;
 /// Noise of a frame's time stamp, one sigma (assumed).
 pub(crate) const CAMERA_STAMP_NOISE_S: f64 = 0.002;
-/// What the camera's clock shows when the rig's shows 0 (assumed: seconds since 1970, as most computers count).
+/// Time of the camera's clock at time 0 of the rig's (assumed: seconds since 1970, as most computers count).
 pub(crate) const CAMERA_CLOCK_AHEAD_S: f64 = 1_760_000_000.0;
-/// How much faster the camera's clock runs, a share (assumed: two quartzes).
+/// Rate error of the camera's clock, a share (assumed: two quartzes).
 pub(crate) const CAMERA_CLOCK_FAST: f64 = 80e-6;
 /// Pose of the arm's base in the camera's frame (assumed: placed by hand).
 pub(crate) const CAMERA_BASE: EndPose = EndPose { x_m: 0.310, y_m: -0.240, heading_rad: 4.0 * DEGREE_RAD };

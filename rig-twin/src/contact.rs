@@ -1,6 +1,7 @@
 //! Contacts: the sticks of scenario II and the obstacle of scenario III.
 //!
-//! Both are told by what they do to the curvature, not by forces: a touch adds a peak of curvature at one place of a segment.
+//! Both are modelled by their effect on the curvature, not by forces: a touch adds a peak of curvature at one place of
+//! a segment.
 
 use crate::constants::{
     CONNECTOR_LENGTH_M, CONTACT_HALF_WIDTH, CURVE_LENGTH_M, OBSTACLE_LEVER_M, OBSTACLE_NEXT_SHARE, OBSTACLE_PLACE,
@@ -8,9 +9,10 @@ use crate::constants::{
     PUSH_NEIGHBOUR_SHARE, PUSH_PAUSE_S, PUSH_PLACE, PUSH_RISE_S, REACTION_HALF_WIDTH, REST_S, SEGMENTS,
 };
 use crate::noise::{Noise, Seeds, Source};
-use crate::program::{Scenario, smooth_step};
+use crate::scenario::Scenario;
+use crate::smooth_step::smooth_step;
 
-/// What a contact adds to one segment's curve.
+/// Effect of a contact on one segment's curve.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Touch {
     pub(crate) bend_rad: f64,
@@ -42,15 +44,15 @@ impl Touch {
 /// One push of a stick in scenario II.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Push {
-    /// When the stick touches the arm, s.
+    /// Start of the contact, s.
     pub start_s: f64,
-    /// How long it touches the arm, s.
+    /// Duration of the contact, s.
     pub duration_s: f64,
-    /// The segment it pushes, counted from 0.
+    /// The pushed segment, counted from 0.
     pub segment: usize,
-    /// Where along the segment's curve, a share of its length.
+    /// Place along the segment's curve, a share of its length.
     pub place: f64,
-    /// The bend it adds to that segment at full strength, rad, clockwise positive.
+    /// Bend added to that segment at full strength, rad, clockwise positive.
     pub bend_rad: f64,
 }
 
@@ -87,7 +89,7 @@ impl Push {
     }
 }
 
-/// The obstacle of scenario III: a post beside the arm that its fourth segment meets.
+/// The obstacle of scenario III: a post next to the arm that its fourth segment meets.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Obstacle {
     /// 1 to the right of the arm, −1 to its left.
@@ -101,8 +103,8 @@ impl Obstacle {
         Self { side: noise.sign(), distance_m: noise.between(OBSTACLE_X_M) }
     }
 
-    /// The arm below the contact is turned back until it is level with the post, or slides; the contact's segment and the next
-    /// wrap around it. `free_rad` are the bends without the obstacle.
+    /// The arm below the contact is turned back until it is level with the post, or slides; the contact's segment and
+    /// the next wrap around it. `free_rad` are the bends without the obstacle.
     fn touches(&self, free_rad: &[f64; SEGMENTS]) -> [Touch; SEGMENTS] {
         let depth_m = (self.side * chord_x_m(&free_rad[..OBSTACLE_SEGMENT]) - self.distance_m).max(0.0);
         let wanted_rad = depth_m / OBSTACLE_LEVER_M;
@@ -121,7 +123,8 @@ impl Obstacle {
     }
 }
 
-/// Roughly how far across the base's axis a chain of bends ends: each segment as long as its arc, at its mean heading.
+/// Approximate distance of a chain's end across the base's axis, m: each segment as long as its arc, at its mean
+/// heading.
 fn chord_x_m(bends_rad: &[f64]) -> f64 {
     let mut heading_rad = 0.0;
     let mut x_m = 0.0;
@@ -132,7 +135,7 @@ fn chord_x_m(bends_rad: &[f64]) -> f64 {
     x_m
 }
 
-/// All that touches the arm in a session.
+/// Contacts of the arm in a session.
 #[derive(Clone, Debug)]
 pub(crate) enum Contacts {
     None,
@@ -143,13 +146,13 @@ pub(crate) enum Contacts {
 impl Contacts {
     pub(crate) fn new(scenario: Scenario, seeds: Seeds) -> Self {
         match scenario {
-            Scenario::Sweep | Scenario::One => Self::None,
-            Scenario::Two => Self::Sticks { seeds, begun: Vec::new(), next: Push::new(seeds, 0, REST_S) },
-            Scenario::Three => Self::Obstacle(Obstacle::new(seeds)),
+            Scenario::Sweep | Scenario::FreeSwing => Self::None,
+            Scenario::Push => Self::Sticks { seeds, begun: Vec::new(), next: Push::new(seeds, 0, REST_S) },
+            Scenario::Obstacle => Self::Obstacle(Obstacle::new(seeds)),
         }
     }
 
-    /// What touches each segment at `time_s`, for the bends that the arm would have if free.
+    /// Touch of each segment at `time_s`, for the bends of the free arm.
     pub(crate) fn touches(&mut self, time_s: f64, free_rad: &[f64; SEGMENTS]) -> [Touch; SEGMENTS] {
         match self {
             Self::None => [Touch::NONE; SEGMENTS],

@@ -1,4 +1,4 @@
-//! Bend sensors: Spectra Symbol strips with a memory, in dividers that a 12-bit ADC reads.
+//! Bend sensors: Spectra Symbol strips with hysteresis and creep, in dividers that a 12-bit ADC reads.
 
 use crate::actuator::{Lag, play};
 use crate::arm::{PairParameters, StripParameters};
@@ -7,7 +7,7 @@ use crate::gauss_markov::GaussMarkov;
 use crate::noise::{Noise, Seeds, Source};
 use crate::shape::Curve;
 
-/// Error that both strips of a segment have beyond the bend, as bend of the strip.
+/// Common error of both strips of a segment, as bend of the strip.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct PairError {
     /// The same resistance on both sides: the pair's readings err in opposite directions, and the
@@ -17,7 +17,7 @@ pub(crate) struct PairError {
     pub(crate) shared_rad: f64,
 }
 
-/// Source of the errors that the two strips of a segment have together.
+/// Source of the common errors of the two strips of a segment.
 #[derive(Clone, Debug)]
 pub(crate) struct PairErrors {
     opposed: GaussMarkov,
@@ -27,7 +27,7 @@ pub(crate) struct PairErrors {
 }
 
 impl PairErrors {
-    /// That of segment `segment`, counted from 0, stepped with the IMUs' fusion.
+    /// Errors of segment `segment`, counted from 0, stepped with the IMUs' fusion.
     pub(crate) fn new(parameters: PairParameters, segment: usize, seeds: Seeds) -> Self {
         let PairParameters { opposed_rms_rad, shared_rms_rad, time_s, offset_rad, bend_rad_per_k } = parameters;
         let opposed = Noise::of_session(seeds, Source::CommonMode, segment);
@@ -64,11 +64,11 @@ pub(crate) struct BendSensor {
 }
 
 impl BendSensor {
-    /// Sensor `index` in the order 1a, 1b, 2a, …; the session's seed gives what it remembers from its storage.
+    /// Sensor `index` in the order 1a, 1b, 2a, …; the session's seed draws its stored creep and hysteresis.
     pub(crate) fn new(parameters: StripParameters, index: usize, seeds: Seeds) -> Self {
         let mut session = Noise::of_session(seeds, Source::BendSensor, index);
         let mut slow = Noise::of_session(seeds, Source::SlowCreep, index);
-        let memory = parameters.play_rad.map(|half_width| session.between((-half_width, half_width)));
+        let memory = parameters.play_rad.map(|radius| session.between((-radius, radius)));
         let [fast_stored, slow_stored] = parameters.stored_bend_rad;
         let stored = [fast_stored * session.gaussian(), slow_stored * slow.gaussian()];
         let mut sensor = Self {
@@ -107,8 +107,8 @@ impl BendSensor {
         response += creep_share[1] * self.creep[1].follow(sensed_rad);
         response -= relaxation_share * self.relaxation.follow(sensed_rad);
         let mut prompt_share = 1.0 - creep_share[0] - creep_share[1] + relaxation_share;
-        for ((memory, share), half_width) in self.memory.iter_mut().zip(memory_share).zip(play_rad) {
-            *memory = play(*memory, sensed_rad, half_width);
+        for ((memory, share), radius) in self.memory.iter_mut().zip(memory_share).zip(play_rad) {
+            *memory = play(*memory, sensed_rad, radius);
             response += share * *memory;
             prompt_share -= share;
         }

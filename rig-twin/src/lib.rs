@@ -1,43 +1,44 @@
 //! Soft arms and their sensors, simulated: the reference arm, and a family of others.
 //!
-//! Three modules of two segments bend in a plane under six pressure regulators; twelve bend sensors and six BNO055 units watch
-//! them with the flaws that real ones have. The same seed gives the same bits on every platform: all random numbers come from
-//! `ChaCha` streams, all transcendental functions from `libm`, and time is a fixed grid.
+//! Three modules of two segments bend in a plane under six pressure regulators. Twelve bend sensors and six BNO055
+//! units measure them with the flaws of real sensors. The same seed results in the same bits on every platform: all
+//! random numbers come from `ChaCha` streams, all transcendental functions from `libm`, and time is a fixed grid.
 //!
 //! Angles are rad, clockwise positive (towards +x); lengths are m; y is along the base's tangent.
 //!
 //! # The family
 //!
-//! [`Setup::arm_seed`] selects the arm. 0 is the reference arm; any other seed draws an arm of its own: lengths and curvature,
-//! regulators and actuators, strips, IMUs. `flaws.rs` has the size of every flaw with its source. What differs between sessions
-//! (turn-on biases, temperature, stored creep, offsets of the strips, noise) comes from [`Setup::seed`]. [`Motion`] selects how
-//! the arm moves: swings as in the paper, or rests, leans, one module alone, slow, fast, starts that are bent or moving.
-//! [`HeadingDrift`] adds the drift of a real IMU.
+//! [`Setup::arm_seed`] selects the arm. 0 is the reference arm; any other seed draws an arm of its own: lengths and
+//! curvature, regulators and actuators, strips, IMUs. `flaws.rs` has the size of every flaw with its source.
+//! [`Setup::seed`] draws the properties of a session (turn-on biases, temperature, stored creep, offsets of the strips,
+//! noise). [`Motion`] selects the motion: swings as in the paper, or rests, leans, one module alone, slow, fast, starts
+//! that are bent or moving. [`HeadingDrift`] adds the drift of a real IMU.
 //!
-//! # What is wrong with the reference arm
+//! # Flaws of the reference arm
 //!
-//! - Segments do not bend with constant curvature, least of all where something touches them, and they stretch a little: exact
-//!   bend angles put through constant-curvature kinematics miss the true tip by 2 to 5 mm.
-//! - Bend sensors have a tolerance each, a memory of direction, an overshoot that relaxes, creep, a ripple that no quadratic
-//!   follows, something that both of a segment feel alike, and 2 counts of noise: the best quadratic misses by 4.7° on average.
-//!   Sensor b is mounted the other way round, so its counts fall where those of a rise, and what both feel alike cancels.
-//! - IMU headings start anywhere and drift: units 1 to 6 by 0.010, −0.008, 0.014, 0.011, −0.011 and 0.050 °/s, of which the last
-//!   is 45° in 900 s. Each session varies these by some percent and lets them wander; acceleration adds a degree or two, and the
-//!   gyroscopes' sensitivities differ by 1 %.
+//! - Segments do not bend with constant curvature, least of all in contact, and they stretch a little: with exact bend
+//!   angles, constant-curvature kinematics have a tip error of 2 to 5 mm.
+//! - Bend sensors have tolerances, hysteresis, an overshoot that relaxes, creep, a ripple that a quadratic cannot fit,
+//!   a common-mode error of both sensors of a segment, and 2 counts of noise: the best quadratic has a mean error of
+//!   4.7°. Sensor b is mounted the other way round, so that its counts fall where those of a rise, and the common-mode
+//!   error cancels.
+//! - IMU headings start at random and drift: units 1 to 6 by 0.010, −0.008, 0.014, 0.011, −0.011 and 0.050 °/s, of
+//!   which the last is 45° in 900 s. The rates vary by some percent between sessions and have a random walk;
+//!   acceleration adds a degree or two, and the gyroscopes' sensitivities differ by 1 %.
 //!
-//! Tolerances belong to the arm and are the same in every session, so a calibration on [`Scenario::Sweep`] holds for all sessions.
-//! The flaws' sizes were chosen to come near the paper's figures for maps and drift: that results on the twin resemble the
-//! paper's is no evidence for either.
+//! Tolerances belong to the arm and are the same in every session, so a calibration on [`Scenario::Sweep`] holds for
+//! all sessions. The flaws' sizes were chosen so that the errors of maps and drift are near the paper's: agreement of
+//! results on the twin with the paper's is no evidence for either.
 //!
-//! Contacts are told by what they do to the curvature; there are no forces.
+//! Contacts are modelled by their effect on the curvature; there are no forces.
 //!
 //! # Example
 //!
 //! ```
-//! use rig_twin::{Program, Rig, Scenario};
+//! use rig_twin::{MotionProgram, Rig, Scenario};
 //!
-//! let (scenario, seed) = (Scenario::One, 7);
-//! let program = Program::new(scenario, seed);
+//! let (scenario, seed) = (Scenario::FreeSwing, 7);
+//! let program = MotionProgram::new(scenario, seed);
 //! let mut rig = Rig::new(scenario, seed);
 //! for _ in 0..2000 {
 //!     rig.step(0.01, program.duties(rig.time_s()));
@@ -59,10 +60,13 @@ mod gauss_markov;
 mod heading_drift;
 mod motion;
 mod noise;
+mod pose;
 mod program;
 mod rig;
+mod scenario;
 mod setup;
 mod shape;
+mod smooth_step;
 mod temperature;
 
 pub use camera::{Camera, Frame};
@@ -70,7 +74,8 @@ pub use constants::{BEND_SENSORS, REGULATORS, SEGMENTS};
 pub use contact::Push;
 pub use heading_drift::HeadingDrift;
 pub use motion::Motion;
-pub use program::{Program, Scenario};
+pub use pose::EndPose;
+pub use program::MotionProgram;
 pub use rig::Rig;
+pub use scenario::Scenario;
 pub use setup::Setup;
-pub use shape::EndPose;

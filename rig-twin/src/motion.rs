@@ -1,13 +1,13 @@
-//! Motions: how the swings of a scenario are changed, paced and interrupted.
+//! Motions: changes, pace and interruptions of a scenario's swings.
 
 use crate::constants::{
     FAST_PERIODS, LEAN_DRIVE, LEAN_PAUSE_LOG_S, LEAN_SPELL_S, LEAN_SWING_SHARE, MODULES, PAUSE_BLEND_S, PAUSES,
     REST_DRIVE, REST_PAUSE_LOG_S, REST_SPELL_S, REST_VENTED_SHARE, SLOW_PERIODS,
 };
 use crate::noise::Noise;
-use crate::program::smooth_step;
+use crate::smooth_step::smooth_step;
 
-/// How the arm moves in a session.
+/// Motion of the arm in a session.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Motion {
     /// Swings of all modules without a pause, after 5 s at rest.
@@ -39,7 +39,7 @@ impl Motion {
         }
     }
 
-    /// Whether the session begins with the arm straight and at rest.
+    /// Returns `true` if the session begins with the arm straight and at rest.
     pub(crate) fn starts_at_rest(self) -> bool {
         !matches!(self, Self::BentStart | Self::MovingStart)
     }
@@ -63,7 +63,8 @@ pub(crate) struct Pauses {
 }
 
 impl Pauses {
-    /// Those of a motion, none in most. `side` is the one that the lower modules lean to; 0 leaves it to chance.
+    /// Pauses of a motion; `None` for most motions. `side` is the one to which the lower modules lean; 0: a random
+    /// side.
     pub(crate) fn new(motion: Motion, side: f64, noise: &mut Noise) -> Option<Self> {
         let (spell_s, pause_log_s, swing_share) = match motion {
             Motion::Rests => (REST_SPELL_S, REST_PAUSE_LOG_S, 0.0),
@@ -82,7 +83,7 @@ impl Pauses {
         Some(Self { round: round.collect(), round_s, swing_share })
     }
 
-    /// Drives at `t_s` after the first rest, of which `swings` would be those without a pause.
+    /// Drives at `t_s` after the first rest; `swings` are the drives without a pause.
     pub(crate) fn interrupt(&self, t_s: f64, swings: [f64; MODULES]) -> [f64; MODULES] {
         let in_round_s = t_s % self.round_s;
         let next = self.round.partition_point(|pause| pause.end_s <= in_round_s);
@@ -96,8 +97,8 @@ impl Pauses {
     }
 }
 
-/// Drives of all modules at which the arm leans by a size within `range`: the lower ones to `side`, the others, or all where
-/// `side` is 0, to a side each.
+/// Drives of all modules at which the arm leans by a size within `range`: the lower ones to `side`, the others, or all
+/// where `side` is 0, to a side each.
 pub(crate) fn leaning_pose(range: (f64, f64), side: f64, noise: &mut Noise) -> [f64; MODULES] {
     core::array::from_fn(|module| {
         let drawn = noise.sign();

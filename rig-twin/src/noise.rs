@@ -1,4 +1,4 @@
-//! Random numbers: one ChaCha stream for each source, so that no reading disturbs another.
+//! Random numbers: one ChaCha stream for each source, so that readings are independent of each other.
 
 use crate::constants::{REFERENCE_ARM_SEED, TOLERANCE_LIMIT_SIGMA};
 use core::f64::consts::TAU;
@@ -12,7 +12,7 @@ pub(crate) struct Seeds {
     pub(crate) session: u64,
 }
 
-/// What the numbers are for. Each source, and each of its devices, has a stream of its own.
+/// Source of random numbers. Each source, and each of its devices, has a stream of its own.
 #[derive(Clone, Copy)]
 pub(crate) enum Source {
     Actuator,
@@ -48,7 +48,7 @@ impl Noise {
         Self::new(key(seed, domain), source, device)
     }
 
-    /// What differs between sessions, and from arm to arm.
+    /// Properties of a session, different for each arm.
     pub(crate) fn of_session(seeds: Seeds, source: Source, device: usize) -> Self {
         let mut key = key(seeds.session, 0);
         key[16..24].copy_from_slice(&seeds.arm.to_le_bytes());

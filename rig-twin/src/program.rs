@@ -1,4 +1,4 @@
-//! Programs of motion: what a scenario commands of the regulators.
+//! Programs of motion: the regulators' duties over time in a scenario.
 
 use crate::constants::{
     CONTACT_DRIVE, CONTACT_PERIODS_S, ENVELOPE, ENVELOPE_PERIODS, FADE_IN_S, FREE_DRIVE, FREE_PERIODS_S, FULL_BEND_RAD,
@@ -8,25 +8,14 @@ use crate::constants::{
 use crate::contact::Obstacle;
 use crate::motion::{Motion, Pauses, leaning_pose};
 use crate::noise::{Noise, Source};
+use crate::scenario::Scenario;
 use crate::setup::Setup;
+use crate::smooth_step::smooth_step;
 use core::f64::consts::TAU;
-
-/// What touches the arm in a session, and how large its swings are.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Scenario {
-    /// Calibration: every module swings slowly through its whole range, free.
-    Sweep,
-    /// I: free swings.
-    One,
-    /// II: swings, while a stick pushes the arm now and then.
-    Two,
-    /// III: swings against an obstacle that the arm wraps around.
-    Three,
-}
 
 /// The motion of a session: duties of the regulators over time.
 #[derive(Clone, Debug)]
-pub struct Program {
+pub struct MotionProgram {
     motion: Motion,
     swings: [Swing; MODULES],
     heading_limit_rad: f64,
@@ -35,7 +24,7 @@ pub struct Program {
     start_pose: [f64; MODULES],
 }
 
-impl Program {
+impl MotionProgram {
     /// The motion of `scenario` in the session of `seed` on the reference arm.
     pub fn new(scenario: Scenario, seed: u64) -> Self {
         Self::of(&Setup::new(scenario, seed))
@@ -46,11 +35,11 @@ impl Program {
         let (scenario, seeds) = (setup.scenario, setup.seeds());
         let (drive, periods_s) = match scenario {
             Scenario::Sweep => (SWEEP_DRIVE, SWEEP_PERIODS_S),
-            Scenario::One => (FREE_DRIVE, FREE_PERIODS_S),
-            Scenario::Two | Scenario::Three => (CONTACT_DRIVE, CONTACT_PERIODS_S),
+            Scenario::FreeSwing => (FREE_DRIVE, FREE_PERIODS_S),
+            Scenario::Push | Scenario::Obstacle => (CONTACT_DRIVE, CONTACT_PERIODS_S),
         };
         let periods_s = (setup.motion.periods() * periods_s.0, setup.motion.periods() * periods_s.1);
-        let side = if scenario == Scenario::Three { Obstacle::new(seeds).side } else { 0.0 };
+        let side = if scenario == Scenario::Obstacle { Obstacle::new(seeds).side } else { 0.0 };
         let mut schedule = Noise::of_session(seeds, Source::Schedule, 0);
         let moving = (setup.motion == Motion::OneModule).then(|| schedule.pick(MODULES));
         let heading_limit_rad = if scenario == Scenario::Sweep { f64::INFINITY } else { TOTAL_HEADING_RAD };
@@ -69,7 +58,8 @@ impl Program {
         }
     }
 
-    /// Duties of the regulators at `t_s` seconds, each 0 … 1: module 1 right, left, module 2 right, left, module 3 right, left.
+    /// Duties of the regulators at `t_s` seconds, each 0 … 1: module 1 right, left, module 2 right, left, module 3
+    /// right, left.
     pub fn duties(&self, t_s: f64) -> [f64; REGULATORS] {
         if !t_s.is_finite() || (self.motion.starts_at_rest() && t_s <= REST_S) {
             return [0.0; REGULATORS];
@@ -140,10 +130,4 @@ impl Wave {
     fn phase_rad(&self, t_s: f64) -> f64 {
         self.rate_rad_per_s * t_s + self.start_rad
     }
-}
-
-/// From 0 at 0 to 1 at 1, level at both ends and beyond.
-pub(crate) fn smooth_step(share: f64) -> f64 {
-    let share = share.clamp(0.0, 1.0);
-    share * share * (3.0 - 2.0 * share)
 }

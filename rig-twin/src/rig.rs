@@ -10,20 +10,22 @@ use crate::constants::{
 use crate::contact::{Contacts, Push};
 use crate::flex::{BendSensor, PairError, PairErrors};
 use crate::noise::{Noise, Source};
-use crate::program::{Program, Scenario};
+use crate::pose::EndPose;
+use crate::program::MotionProgram;
+use crate::scenario::Scenario;
 use crate::setup::Setup;
-use crate::shape::{Curve, EndPose, poses};
+use crate::shape::{Curve, poses};
 use crate::temperature::Temperature;
 use core::array::from_fn;
 
 /// The simulated arm with its regulators, bend sensors and IMUs.
 ///
-/// The arm's tolerances depend on the arm's seed alone, so a calibration from one session holds in another of the same arm. The
-/// session's seed gives what differs between sessions: noise, contacts, power-up headings, turn-on biases, temperature, and what
-/// the strips remember from their storage.
+/// The arm's tolerances depend on the arm's seed alone, so that a calibration from one session holds in another of the
+/// same arm. The session's seed draws the properties of a session: noise, contacts, power-up headings, turn-on biases,
+/// temperature, and the stored creep of the strips.
 #[derive(Clone, Debug)]
 pub struct Rig {
-    /// Since the start of the session; negative before it.
+    /// Time since the start of the session in grid steps; negative before it.
     grid_points: i64,
     pending_s: f64,
     regulators: [Regulator; REGULATORS],
@@ -40,7 +42,7 @@ pub struct Rig {
 }
 
 impl Rig {
-    /// The reference arm at rest, vented and straight, in the session of `seed`. The scenario decides what touches the arm.
+    /// The reference arm at rest, vented and straight, in the session of `seed`. The scenario selects the contacts.
     pub fn new(scenario: Scenario, seed: u64) -> Self {
         Self::of(&Setup::new(scenario, seed))
     }
@@ -49,7 +51,7 @@ impl Rig {
     pub fn of(setup: &Setup) -> Self {
         let mut rig = Self::at_rest(setup);
         if !setup.motion.starts_at_rest() {
-            let program = Program::of(setup);
+            let program = MotionProgram::of(setup);
             rig.grid_points = -(LEAD_IN_S / GRID_S) as i64;
             while rig.grid_points < 0 {
                 rig.advance(program.duties(rig.time_s()));
@@ -80,10 +82,12 @@ impl Rig {
         }
     }
 
-    /// Lets `dt_s` seconds pass at these duties, 0 … 1: module 1 right, left, module 2 right, left, module 3 right, left.
+    /// Advances by `dt_s` seconds at these duties, 0 … 1: module 1 right, left, module 2 right, left, module 3 right,
+    /// left.
     ///
-    /// The physics advances on a grid of 2 ms and the remainder is carried, so that the state does not depend on how time is
-    /// cut. A step that is not positive does nothing; one above an hour counts as an hour. A duty that is no number counts as 0.
+    /// The physics advances on a grid of 2 ms and the remainder is carried over, so that the state does not depend on
+    /// the sizes of the steps. A step that is not positive has no effect; one above an hour counts as an hour. A duty
+    /// of NaN counts as 0.
     pub fn step(&mut self, dt_s: f64, duties: [f64; REGULATORS]) {
         if dt_s > 0.0 {
             self.pending_s += dt_s.min(LONGEST_STEP_S);
@@ -133,12 +137,12 @@ impl Rig {
         from_fn(|index| self.convert(index))
     }
 
-    /// One fresh conversion of one bend sensor, counted from 0 in the order of [`adc_counts`](Self::adc_counts): what a
-    /// converter does that takes one channel after the other.
+    /// One fresh conversion of one bend sensor, counted from 0 in the order of [`adc_counts`](Self::adc_counts), for a
+    /// converter that samples one channel after the other.
     ///
     /// # Panics
     ///
-    /// Where there is no such sensor.
+    /// If `sensor` is not below [`BEND_SENSORS`].
     pub fn convert(&mut self, sensor: usize) -> u16 {
         self.bend_sensors[sensor].convert(&mut self.converter_noise)
     }
@@ -148,7 +152,7 @@ impl Rig {
         from_fn(|segment| self.imus[segment].quaternion())
     }
 
-    /// What contacts add to each segment's bend angle now, rad; 0 where the arm is free.
+    /// Bend angle that contacts add to each segment now, rad; 0 without contact.
     pub fn contact_bends_rad(&self) -> [f64; SEGMENTS] {
         self.curves.map(|curve| curve.touch.bend_rad)
     }

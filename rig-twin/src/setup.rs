@@ -1,31 +1,31 @@
-//! Configuration of a session: which arm, what touches it, how it moves, and the session's seed.
+//! Configuration of a session: arm, scenario, motion, and the session's seed.
 
 use crate::motion::Motion;
 use crate::noise::Seeds;
-use crate::program::Scenario;
+use crate::scenario::Scenario;
 
 /// Configuration of a session.
 ///
-/// The same setup gives the same session, to the bit.
+/// The same setup results in the same session, to the bit.
 ///
 /// ```
-/// use rig_twin::{Program, Rig, Scenario, Setup};
+/// use rig_twin::{MotionProgram, Rig, Scenario, Setup};
 ///
-/// let setup = Setup { arm_seed: 5, ..Setup::new(Scenario::Two, 7) };
-/// let (mut rig, program) = (Rig::of(&setup), Program::of(&setup));
+/// let setup = Setup { arm_seed: 5, ..Setup::new(Scenario::Push, 7) };
+/// let (mut rig, program) = (Rig::of(&setup), MotionProgram::of(&setup));
 /// rig.step(0.01, program.duties(rig.time_s()));
-/// assert_ne!(rig.truth(), Rig::new(Scenario::Two, 7).truth(), "arm 5 is not the reference arm");
+/// assert_ne!(rig.truth(), Rig::new(Scenario::Push, 7).truth(), "arm 5 is not the reference arm");
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Setup {
     /// Seed of the arm's tolerances, the same in all of its sessions; 0 is the reference arm.
     pub arm_seed: u64,
-    /// What touches the arm, and the size of its swings.
+    /// Contacts of the arm, and the amplitude of its swings.
     pub scenario: Scenario,
-    /// How the arm moves.
+    /// Motion of the arm.
     pub motion: Motion,
-    /// Seed of what differs between sessions: motion, contacts, power-up headings, turn-on biases,
-    /// temperature, stored creep, noise. Two arms share no random numbers in sessions of one seed.
+    /// Seed of the session's motion, contacts, power-up headings, turn-on biases, temperature, stored creep and noise.
+    /// Two arms share no random numbers in sessions of one seed.
     pub seed: u64,
 }
 

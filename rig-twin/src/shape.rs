@@ -9,17 +9,7 @@
 use crate::arm::CurveParameters;
 use crate::constants::{FULL_SCALE_PA, SEGMENTS, SIMPSON_INTERVALS};
 use crate::contact::Touch;
-
-/// World position and heading of a segment's end.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct EndPose {
-    /// Across the base's axis, to the right, m.
-    pub x_m: f64,
-    /// Along the base's axis, m.
-    pub y_m: f64,
-    /// Direction of the tangent, clockwise from the base's y axis, rad, not wrapped.
-    pub heading_rad: f64,
-}
+use crate::pose::EndPose;
 
 /// One segment's curve at one moment.
 #[derive(Clone, Copy, Debug)]
@@ -43,7 +33,7 @@ impl Curve {
         self.stretch = self.parameters.stretch_at_full_pressure * (right_pa + left_pa) / (2.0 * FULL_SCALE_PA);
     }
 
-    /// How far the tangent has turned at the share `along` of the curve, rad.
+    /// Angle of the tangent relative to the start, at the share `along` of the curve, rad.
     pub(crate) fn turned_rad(&self, along: f64) -> f64 {
         let slope = along * (along - 1.0);
         let bulge = along * (1.0 + along * (2.0 * along - 3.0));
@@ -77,16 +67,8 @@ impl Curve {
     }
 }
 
-impl EndPose {
-    /// This pose moved along its tangent.
-    fn ahead(self, distance_m: f64) -> Self {
-        let (sin, cos) = libm::sincos(self.heading_rad);
-        Self { x_m: self.x_m + distance_m * sin, y_m: self.y_m + distance_m * cos, ..self }
-    }
-}
-
-/// Poses of all segments' ends, the base at the origin. The connector follows the curve in segments 1, 3, 5 and precedes it in
-/// 2, 4, 6 (the reference arm).
+/// Poses of all segments' ends, the base at the origin. The connector follows the curve in segments 1, 3, 5 and
+/// precedes it in 2, 4, 6 (the reference arm).
 pub(crate) fn poses(curves: &[Curve; SEGMENTS]) -> [EndPose; SEGMENTS] {
     let mut end = EndPose::default();
     let mut poses = [end; SEGMENTS];

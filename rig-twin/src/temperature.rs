@@ -20,7 +20,7 @@ pub(crate) struct Temperature {
 }
 
 impl Temperature {
-    /// That of a session, stepped every `period_s`. The electronics may be warm already.
+    /// The temperature of a session, stepped every `period_s`. The electronics may be warm already.
     pub(crate) fn new(seeds: Seeds, period_s: f64) -> Self {
         let mut noise = Noise::of_session(seeds, Source::Temperature, 0);
         Self {

@@ -1,61 +1,40 @@
-//! The receiving side: bytes in, in any cut, and messages out.
+//! Decoder: bytes in pieces of any length in, messages out.
 
 use core::marker::PhantomData;
 
 use heapless::Vec;
 
-use crate::frame::{Frame, MAX_FRAME, PROTOCOL_VERSION};
+use crate::constants::MAX_FRAME;
+use crate::decode_error::DecodeError;
+use crate::frame::Frame;
 use crate::payload::Payload;
 
-/// Why a frame gave no message. The decoder goes on with the next.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
-pub enum DecodeError {
-    /// Its distances or its CRC-32 are wrong, or it is too short.
-    #[error("a frame was damaged on the line and is skipped")]
-    Damaged,
-    /// It is longer than any frame of this version: its zero was damaged, or it is of another version.
-    #[error("a frame is longer than {MAX_FRAME} bytes and is skipped")]
-    Oversize,
-    /// It is whole, but of another version of the protocol.
-    #[error("a frame is of protocol version {0}, not {PROTOCOL_VERSION}: use host tool and firmware of one release")]
-    Version(u8),
-    /// It is whole, but its topic is not known here.
-    #[error("a frame has the unknown topic {0}: host tool or firmware is the newer one; it is skipped")]
-    Topic(u8),
-    /// It is whole and its topic known, but not its body's form.
-    #[error("a frame of topic {0} has a body of another schema: use host tool and firmware of one release")]
-    Body(u8),
-    /// It is a whole request with this number, but its command is not known here: refuse it.
-    #[error("request {0} has an unknown command: use host tool and firmware of one release")]
-    Request(u32),
-}
-
-/// What has been received, in frames. Every count stays at its largest value.
+/// Counts of received frames. Each saturates.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Counts {
     /// Frames that gave a message.
     pub received: u32,
-    /// Runs of bytes between two zeros that are no whole frame.
+    /// Runs of bytes between two zeros that are no valid frame.
     pub damaged: u32,
-    /// Frames that the other side numbered and that never came whole: damaged, or not sent.
+    /// Frames that the sender numbered and that never arrived whole: damaged, or dropped before transmission.
     ///
-    /// A gap of up to 32 767 frames is counted; where the number went back instead, nothing is. Where it went back by up
-    /// to 256, a piece of the stream has come twice, and what follows is counted from its end. Numbers start anew at each
-    /// boot: a [`Hello`](crate::Hello) of another boot takes back what was counted since the `Hello` before it.
+    /// A gap of up to 32 767 sequence numbers is counted, a step back is not. After a step back of up to 256 a piece of the
+    /// stream was received twice, and counting resumes at its end. Sequence numbers restart at each boot: a
+    /// [`Hello`](crate::Hello) of another boot discards the count since the previous `Hello`.
     pub lost: u32,
-    /// Whole frames of another version.
-    pub foreign: u32,
-    /// Whole frames of this version whose topic or body is not known here.
+    /// Valid frames of another version.
+    pub wrong_version: u32,
+    /// Valid frames of this version with an unknown topic or body.
     pub unknown: u32,
 }
 
-/// Frames that the number may go back by without a restart.
+/// Largest step back of the sequence number without a restart, frames.
 const REPEATED: u16 = 256;
 
 /// Finds frames in a stream of bytes: of [`Message`](crate::Message)s on the host, of [`Request`](crate::Request)s on the
 /// board.
 ///
-/// After noise, cuts and insertions it goes on behind the next zero. Where it joins a stream in the middle of a frame,
+/// After noise, cuts and insertions it resynchronises at the next zero. If it joins a stream in the middle of a frame,
 /// the rest of that frame counts as damaged. See the [crate's example](crate).
 #[derive(Debug)]
 pub struct Decoder<P> {
@@ -75,7 +54,7 @@ impl<P: Payload> Decoder<P> {
     /// A decoder at the start of a stream.
     #[must_use]
     pub const fn new() -> Self {
-        let counts = Counts { received: 0, damaged: 0, lost: 0, foreign: 0, unknown: 0 };
+        let counts = Counts { received: 0, damaged: 0, lost: 0, wrong_version: 0, unknown: 0 };
         Self {
             block: Vec::new(),
             oversize: false,
@@ -87,13 +66,13 @@ impl<P: Payload> Decoder<P> {
         }
     }
 
-    /// What has been received so far.
+    /// Counts of received frames so far.
     #[must_use]
     pub const fn counts(&self) -> Counts {
         self.counts
     }
 
-    /// Takes one byte; says what the frame was that it ends.
+    /// Decodes one byte; returns the payload or the error of the frame that it ends, if it ends one.
     pub fn push(&mut self, byte: u8) -> Option<Result<P, DecodeError>> {
         if byte != 0 {
             self.oversize |= self.block.push(byte).is_err();
@@ -106,7 +85,7 @@ impl<P: Payload> Decoder<P> {
         let count = match payload {
             Ok(_) => &mut self.counts.received,
             Err(DecodeError::Damaged | DecodeError::Oversize) => &mut self.counts.damaged,
-            Err(DecodeError::Version(_)) => &mut self.counts.foreign,
+            Err(DecodeError::Version(_)) => &mut self.counts.wrong_version,
             Err(DecodeError::Topic(_) | DecodeError::Body(_) | DecodeError::Request(_)) => &mut self.counts.unknown,
         };
         *count = count.saturating_add(1);

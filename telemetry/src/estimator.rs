@@ -1,10 +1,11 @@
-//! Between messages and `estimator-core`: the one way for board and host.
+//! Conversions between messages and `estimator-core`'s types, the same on board and host.
 
 use estimator_core::{Contact, ImuReading, Q, SegmentShape, Shape, VARIANCE_SCALE};
 
-use crate::message::{Estimate, SEGMENTS, Sample, SegmentEstimate, SegmentUncertainty, Uncertainty};
+use crate::constants::SEGMENTS;
+use crate::message::{Estimate, Sample, SegmentEstimate, SegmentUncertainty, Uncertainty};
 
-/// For an estimator with room for any number of segments; what it has no room for is left out.
+/// For an estimator of any number of segments; readings of segments that it does not have are left out.
 impl<const N: usize> From<&Sample> for estimator_core::Sample<N> {
     fn from(sample: &Sample) -> Self {
         let mut raw = Self::missing(sample.time_us);
@@ -17,14 +18,14 @@ impl<const N: usize> From<&Sample> for estimator_core::Sample<N> {
 }
 
 impl Estimate {
-    /// The shape by [`Method::Fusion`](estimator_core::Method::Fusion), whose angles have no whole turns, after the
+    /// Converts the shape by [`Method::Fusion`](estimator_core::Method::Fusion), whose angles have no whole turns, after the
     /// sample of this tick.
     #[must_use]
     pub fn of<const N: usize>(tick: u32, shape: &Shape<Q, N>) -> Self {
         let mut segments = [None; SEGMENTS];
         for (segment, SegmentShape { theta, end }) in segments.iter_mut().zip(shape) {
             *segment = theta.zip(*end).map(|(theta, end)| SegmentEstimate {
-                theta: theta.rest.to_bits(),
+                theta: theta.remainder.to_bits(),
                 end: [end.x.to_bits(), end.y.to_bits()],
             });
         }
@@ -33,8 +34,8 @@ impl Estimate {
 }
 
 impl Uncertainty {
-    /// How far the shape after the sample of this tick may be off, and what touches the arm. Of what the table does not say
-    /// how to tell, nothing is known.
+    /// Converts the covariances and contacts after the sample of this tick. A table without `[uncertainty]` or `[contact]`
+    /// leaves them unknown.
     #[must_use]
     pub fn of(tick: u32, errors: &[estimator_core::Uncertainty], contacts: &[Contact]) -> Self {
         let mut segments = [SegmentUncertainty::default(); SEGMENTS];
@@ -44,20 +45,20 @@ impl Uncertainty {
         }
         for (segment, contact) in segments.iter_mut().zip(contacts) {
             segment.contact_percent = contact.score_percent.min(u8::MAX.into()) as u8;
-            segment.is_touched = contact.in_contact;
+            segment.in_contact = contact.in_contact;
         }
         Self { tick, segments }
     }
 }
 
 impl SegmentUncertainty {
-    /// Variance of θ_i, rad². For reports.
+    /// Variance of θ_i, rad², for reports.
     #[must_use]
     pub fn theta_rad2(&self) -> Option<f64> {
         self.theta.map(variance)
     }
 
-    /// Covariance xx, xy, yy of the segment's end in {W}, m². For reports.
+    /// Covariance xx, xy, yy of the segment's end in {W}, m², for reports.
     #[must_use]
     pub fn end_m2(&self) -> Option<[f64; 3]> {
         self.end.map(|end| end.map(variance))
@@ -68,10 +69,10 @@ fn variance(bits: i32) -> f64 {
     Q::from_bits(bits).to_f64() / VARIANCE_SCALE
 }
 
-/// Which segments something touches.
+/// Contact of each segment.
 #[must_use]
-pub fn touched(contacts: &[Contact]) -> [bool; SEGMENTS] {
-    let mut touched = [false; SEGMENTS];
-    touched.iter_mut().zip(contacts).for_each(|(touched, contact)| *touched = contact.in_contact);
-    touched
+pub fn contact_flags(contacts: &[Contact]) -> [bool; SEGMENTS] {
+    let mut flags = [false; SEGMENTS];
+    flags.iter_mut().zip(contacts).for_each(|(flag, contact)| *flag = contact.in_contact);
+    flags
 }

@@ -5,14 +5,9 @@
 
 use crc::{CRC_32_ISO_HDLC, Crc};
 
-use crate::decoder::DecodeError;
+use crate::constants::{MAX_FRAME, PROTOCOL_VERSION};
+use crate::decode_error::DecodeError;
 use crate::payload::Payload;
-
-/// Version of this protocol: the first byte of every frame. Frame, COBS and CRC stay as they are in every version.
-pub const PROTOCOL_VERSION: u8 = 2;
-
-/// Length of the longest frame in bytes, its zero included.
-pub const MAX_FRAME: usize = 255;
 
 /// The CRC-32 of zip and Ethernet. Its table takes 1 KiB of flash; without it a byte costs 64 instructions, not 8.
 static CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);

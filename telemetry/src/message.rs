@@ -1,55 +1,46 @@
-//! What board and host say to each other.
+//! Messages from the board and requests from the host.
 //!
-//! Units on the wire are SI: µs, rad, m, Pa. Angles and lengths are the estimator's own bits, so that nothing is lost.
+//! Units on the wire are SI: µs, rad, m, Pa. Angles and lengths are the bits of the estimator's fixed-point numbers, so that
+//! nothing is lost.
+
+use core::fmt;
 
 use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
 
+use crate::constants::{BEND_SENSORS, REGULATORS, SEGMENTS};
 use crate::wire::{EstimateWire, SampleWire, UncertaintyWire};
-
-/// Time between two ticks of the board, µs.
-pub const TICK_US: u64 = 10_000;
-
-/// Ticks a second: the rate of samples and estimates, unless the host requests a lower one.
-pub const TICK_HZ: f64 = 1e6 / TICK_US as f64;
-
-/// Segments of the arm.
-pub const SEGMENTS: usize = 6;
-
-/// Bend sensors of the arm, in the order 1a, 1b, 2a … 6b.
-pub const BEND_SENSORS: usize = 12;
-
-/// Pressure regulators of the arm: module 1 right, left, module 2 right, left, module 3 right, left.
-pub const REGULATORS: usize = 6;
 
 /// A short text, cut where it is too long.
 pub type Text<const N: usize> = heapless::String<N>;
 
-/// What the board says.
+/// A message from the board.
 #[derive(Debug, Clone, PartialEq, Schema)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Message {
-    /// Who it is; on request and once a second.
+    /// Identity of the board and its boot; on request and once a second.
     Hello(Hello),
-    /// What it read in one tick.
+    /// Readings of all sensors in one tick.
     Sample(Sample),
-    /// What the estimator made of it.
+    /// Shape of the arm, estimated from a sample.
     Estimate(Estimate),
-    /// How it is.
+    /// State of sensors and pressures, counters and timing.
     Health(Health),
-    /// What has happened.
+    /// A change of state.
     Event(Event),
-    /// The answer to a request.
+    /// Reply to a request.
     Reply(Reply),
-    /// How far an estimate may be off.
+    /// Covariance of an estimate, and contact.
     Uncertainty(Uncertainty),
 }
 
-/// Who the board is and how it came up.
+/// Identity of the board and its firmware, and the cause of its boot.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, Schema)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Hello {
     /// Version of this protocol.
     pub protocol: u8,
-    /// Hash of the messages' schema.
+    /// Hash of the messages' layout: [`SCHEMA`](crate::SCHEMA).
     pub schema: u32,
     /// Version of the firmware.
     pub firmware: Text<16>,
@@ -61,20 +52,21 @@ pub struct Hello {
     pub table: u32,
     /// Unique number of its chip.
     pub chip: [u8; 16],
-    /// What started it.
+    /// Cause of the last reset.
     pub reset: ResetCause,
     /// Number of this boot since power-on.
     pub boot: u32,
-    /// What the last panic or fault before this boot said.
+    /// Message of the last panic or fault before this boot.
     pub last_panic: Option<Text<96>>,
 }
 
-/// What started the board (datasheet, RSTC_SR).
+/// Cause of a reset (datasheet, RSTC_SR).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, Schema)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum ResetCause {
-    /// Power came on.
+    /// Power-on.
     PowerOn,
-    /// Back from the backup mode.
+    /// Return from the backup mode.
     Backup,
     /// The watchdog.
     Watchdog,
@@ -84,16 +76,17 @@ pub enum ResetCause {
     Pin,
 }
 
-/// What the board read in one tick: all that a replay needs.
+/// Raw readings of one tick: everything that a replay needs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[serde(into = "SampleWire", from = "SampleWire")]
 pub struct Sample {
     /// Number of the tick since boot.
     pub tick: u32,
     /// Time of the tick since boot, µs.
     pub time_us: u64,
-    /// Goes up by one where the estimator started anew before this sample: at boot it is 0, then once for each tare.
-    pub tare: u8,
+    /// Number of tares since boot, modulo 256. A change marks the first sample after the estimator's restart.
+    pub tare_epoch: u8,
     /// Raw ADC counts; `None`: not read.
     pub bend: [Option<u16>; BEND_SENSORS],
     /// Raw quaternion w, x, y, z of each IMU, in units of 2⁻¹⁴; `None`: not read.
@@ -102,9 +95,10 @@ pub struct Sample {
 
 /// The arm's shape by the Kalman filters, in the bits of `estimator_core::Q`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[serde(into = "EstimateWire", from = "EstimateWire")]
 pub struct Estimate {
-    /// Number of the tick whose sample it was made of.
+    /// Number of the tick of its sample.
     pub tick: u32,
     /// The segments, from the base; `None`: not known yet.
     pub segments: [Option<SegmentEstimate>; SEGMENTS],
@@ -112,6 +106,7 @@ pub struct Estimate {
 
 /// One segment's estimate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct SegmentEstimate {
     /// Bend angle θ_i, rad, in units of 2⁻²⁶.
     pub theta: i32,
@@ -119,60 +114,82 @@ pub struct SegmentEstimate {
     pub end: [i32; 2],
 }
 
-/// How far an estimate may be off and what touches the arm, in the bits of `estimator_core::Q`, whose variances are 64 times
-/// as large as they are.
+/// Covariance of an estimate and contact along the arm, in the bits of `estimator_core::Q`; variances are scaled by 64.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[serde(into = "UncertaintyWire", from = "UncertaintyWire")]
 pub struct Uncertainty {
-    /// Number of the tick whose estimate it is of.
+    /// Number of the tick of its estimate.
     pub tick: u32,
     /// The segments, from the base.
     pub segments: [SegmentUncertainty; SEGMENTS],
 }
 
-/// What is known of one segment's error, and whether something touches it.
+/// Variances of one segment's estimate, and its contact.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct SegmentUncertainty {
     /// Variance of θ_i, rad², in units of 2⁻³²; `None`: not known.
     pub theta: Option<i32>,
     /// Covariance xx, xy, yy of the segment's end in {W}, m², in units of 2⁻³²; `None`: not known.
     pub end: Option<[i32; 3]>,
-    /// The largest change within half a second, in percent of what a free arm does not exceed; stays at its largest value.
+    /// Largest change of the residual within half a second, in percent of the free arm's limit; saturates at 255.
     pub contact_percent: u8,
-    /// Whether something touches it: from over 100 % on, until the change is undone, or for a minute.
-    pub is_touched: bool,
+    /// In contact: from more than 100 % on, until the change is reversed, or for a minute.
+    pub in_contact: bool,
 }
 
-/// State of one sensor.
+/// State of one sensor. JSON, diagnostics and `Display` have the names that version 0.1 gave the states.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, Schema)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum SensorState {
-    /// It reads well.
+    /// Readings are valid.
     Ok,
-    /// It does not answer, or reads at a rail.
-    Off,
-    /// It repeats itself while others move.
+    /// No response, or a reading at a rail.
+    #[serde(rename = "Off")]
+    NoResponse,
+    /// The same reading again and again while other sensors move.
     Stuck,
-    /// What it says cannot be.
-    Garbage,
-    /// What it says contradicts the others.
-    Wrong,
-    /// It answers too late.
-    Slow,
-    /// It comes and goes.
+    /// Readings outside of the sensor's range.
+    #[serde(rename = "Garbage")]
+    Invalid,
+    /// Readings that contradict the other sensors. Reserved: no firmware sends it.
+    #[serde(rename = "Wrong")]
+    Inconsistent,
+    /// Readings after the deadline.
+    #[serde(rename = "Slow")]
+    Timeout,
+    /// Readings with gaps. Reserved: no firmware sends it.
     Intermittent,
 }
 
-/// State of one sensor, and how often it failed since boot.
+impl fmt::Display for SensorState {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            Self::Ok => "Ok",
+            Self::NoResponse => "Off",
+            Self::Stuck => "Stuck",
+            Self::Invalid => "Garbage",
+            Self::Inconsistent => "Wrong",
+            Self::Timeout => "Slow",
+            Self::Intermittent => "Intermittent",
+        })
+    }
+}
+
+/// State of one sensor and its missed readings.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, Schema)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct SensorHealth {
     /// State now.
     pub state: SensorState,
-    /// Ticks without a good reading since boot; stays at its largest value.
+    /// Ticks without a valid reading since boot; saturates.
     pub missed: u16,
 }
 
 /// State of the pressures.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, Schema)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Actuation {
     /// Vented, until it is armed.
     Disarmed,
@@ -184,8 +201,9 @@ pub enum Actuation {
     Ramping,
 }
 
-/// How the board is.
+/// State of sensors and pressures, counters since boot, and timing since the last message.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, Schema)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Health {
     /// Number of the last tick.
     pub tick: u32,
@@ -194,16 +212,16 @@ pub struct Health {
     /// Each IMU.
     pub imu: [SensorHealth; SEGMENTS],
     /// Longest time from a tick's trigger to its estimate since the last message, µs.
-    pub longest_tick_us: u32,
-    /// Longest time that the six IMUs took since the last message, µs from the tick's trigger.
+    pub max_estimate_latency_us: u32,
+    /// Longest time from a tick's trigger to the last IMU's reading since the last message, µs.
     pub longest_imu_read_us: u32,
-    /// Share of the processor's time that was used since the last message, 0.1 %.
+    /// CPU load since the last message, 0.1 %.
     pub load_permille: u16,
-    /// Ticks since boot that came before the one before was done.
+    /// Ticks since boot that began before the previous one was done.
     pub overruns: u32,
     /// ADC scans since boot that were late or out of order.
     pub stale_scans: u32,
-    /// Frames since boot that found the line full.
+    /// Frames since boot that were dropped because the transmit buffer was full.
     pub dropped_frames: u32,
     /// Frames since boot that were received damaged.
     pub damaged_frames: u32,
@@ -217,40 +235,43 @@ pub struct Health {
     pub pressures_pa: [u32; REGULATORS],
 }
 
-/// What has happened.
+/// A change of state.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, Schema)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Event {
-    /// An IMU, counted from 0, changed its state.
+    /// New state of an IMU, counted from 0.
     Imu(u8, SensorState),
-    /// A bend sensor, counted from 0, changed its state.
+    /// New state of a bend sensor, counted from 0.
     Bend(u8, SensorState),
-    /// The pressures changed their state.
+    /// New state of the pressures.
     Actuation(Actuation),
-    /// The I²C bus was found stuck and cleared.
+    /// The I²C bus was stuck and has recovered.
     BusRecovery,
-    /// The estimator started anew, before the sample of this tick.
+    /// The estimator was restarted before the sample of this tick.
     Tare(u32),
-    /// Contact has begun or ended somewhere with the sample of this tick: whether something touches each segment.
+    /// Contact began or ended with the sample of this tick; the flags are the contact of each segment.
     Contact(u32, [bool; SEGMENTS]),
 }
 
-/// What the host asks.
+/// A request from the host.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, Schema)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Request {
     /// The host's number of the request. A retried request keeps its number and acts once; numbers go up.
     pub id: u32,
-    /// What to do.
+    /// The command to execute.
     pub command: Command,
 }
 
-/// What the board can do.
+/// A command to the board.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, Schema)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Command {
-    /// Nothing but answer, with a [`Hello`] behind it.
+    /// Reply, then send a [`Hello`].
     Ping,
-    /// Start the estimator anew: the arm is in its reference pose.
+    /// Restart the estimator: the arm is in its reference pose.
     Tare,
-    /// Send every n-th of the messages that tell of every tick; 0: none.
+    /// Set the rates of the periodic messages.
     Rates(Rates),
     /// Let the pressures move.
     Arm,
@@ -262,8 +283,9 @@ pub enum Command {
     Reboot,
 }
 
-/// How often messages are sent, in ticks of 10 ms; 0: never.
+/// Periods of the periodic messages, in ticks of 10 ms; 0: never.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, Schema)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Rates {
     /// Ticks from one sample to the next.
     pub sample: u16,
@@ -277,38 +299,42 @@ pub struct Rates {
 
 /// Set-points with a deadline.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, Schema)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct SetPressures {
-    /// Pressure of each regulator over the atmosphere's, Pa.
+    /// Gauge pressure of each regulator, Pa.
     pub pressures_pa: [u32; REGULATORS],
-    /// How long they stand without a new request, ms; then they are held, lowered and vented.
+    /// Time until the deadline, ms; after it the pressures are held, lowered and vented.
     pub valid_ms: u16,
 }
 
-/// The answer to a request.
+/// Reply to a request.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, Schema)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Reply {
     /// The request's number.
     pub id: u32,
-    /// Whether it was done.
+    /// Outcome of the request.
     pub outcome: Outcome,
 }
 
-/// Whether a request was done.
+/// Outcome of a request.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, Schema)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Outcome {
-    /// It was done.
+    /// It was executed.
     Ack,
-    /// It was not, and nothing has changed.
+    /// It was refused, and nothing has changed.
     Nack(Refusal),
 }
 
-/// Why a request was refused.
+/// Reason for a refusal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, Schema, thiserror::Error)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Refusal {
-    /// The frame was whole but its body is no request of this protocol's version.
+    /// The frame is valid but its body is no request of this protocol's version.
     #[error("the board does not know this request: host and firmware are of different versions")]
     Unknown,
-    /// Its number is lower than one already seen.
+    /// Its number is lower than that of an earlier request.
     #[error("the request is older than one already done")]
     Late,
     /// A pressure is over the regulator's range.

@@ -1,11 +1,11 @@
-//! What a frame carries: the topics of both directions, and the messages' bodies.
+//! Payload of a frame: the topics of both directions and the messages' bodies.
 
 use serde::{Deserialize, Serialize};
 
-use crate::decoder::DecodeError;
+use crate::decode_error::DecodeError;
 use crate::message::{Message, Request};
 
-/// Numbers of the kinds of messages. A number is never used again for another kind.
+/// Numbers of the kinds of messages. A number is never reused for another kind.
 pub mod topic {
     /// [`Hello`](crate::Hello), from the board.
     pub const HELLO: u8 = 1;
@@ -25,21 +25,21 @@ pub mod topic {
     pub const REQUEST: u8 = 0x80;
 }
 
-/// What one side sends and the other receives: the board's [`Message`], the host's [`Request`].
+/// Payload of one direction: the board's [`Message`], the host's [`Request`].
 pub trait Payload: Sized {
-    /// The kind of message that it is.
+    /// Number of the kind of message.
     fn topic(&self) -> u8;
 
-    /// Writes the body and returns its length; `None` where it does not fit.
+    /// Writes the body and returns its length in bytes; `None` if it does not fit.
     fn write(&self, body: &mut [u8]) -> Option<usize>;
 
-    /// Reads a body, all of it.
+    /// Reads a whole body.
     ///
     /// # Errors
     /// [`DecodeError::Topic`], [`DecodeError::Body`] or [`DecodeError::Request`].
     fn read(topic: u8, body: &[u8]) -> Result<Self, DecodeError>;
 
-    /// The number of the sender's boot, where the message says it.
+    /// Number of the sender's boot, if the message contains it.
     fn boot(&self) -> Option<u32> {
         None
     }
@@ -116,7 +116,7 @@ fn write<T: Serialize>(value: &T, body: &mut [u8]) -> Option<usize> {
     postcard::to_slice(value, body).ok().map(|used| used.len())
 }
 
-/// The value that `body` holds, where it holds nothing else.
+/// Reads a value that takes all of `body`.
 fn read<'b, T: Deserialize<'b>>(body: &'b [u8]) -> Option<T> {
     postcard::take_from_bytes(body).ok().and_then(|(value, rest)| rest.is_empty().then_some(value))
 }

@@ -24,7 +24,7 @@ pub struct Reset {
 /// use virtual_due::{CYCLES_PER_SECOND, Machine, WiredRig};
 ///
 /// let elf = std::fs::read("firmware.elf")?;
-/// let mut machine = Machine::new(&elf, WiredRig::new(Scenario::One, 1))?;
+/// let mut machine = Machine::new(&elf, WiredRig::new(Scenario::FreeSwing, 1))?;
 /// machine.run_for(2 * CYCLES_PER_SECOND);
 /// println!("{} instructions, pc {:#x}", machine.instructions(), machine.pc());
 /// # Ok::<(), Box<dyn std::error::Error>>(())

@@ -1,21 +1,45 @@
-//! `cargo demo`: the main job from end to end. The firmware runs on the emulated board, and what it streams is replayed.
+//! `cargo demo`: the main job from end to end. The firmware runs on the emulated board, and its stream is replayed.
 
 use crate::board;
 use crate::tool::{Tool, cargo};
 
-/// Board time of the run, s: the paper's.
-const SECONDS: &str = "900";
+/// Board time of the run, s, where `--seconds` gives no other.
+const DEFAULT_SECONDS: u32 = 150;
 
 /// Runs in `target/demo`.
-pub fn run() -> Result<(), String> {
+pub fn run(arguments: &[String]) -> Result<(), String> {
+    let seconds = seconds(arguments)?;
     board::add_target()?;
-    let tool = Tool::build("demo")?;
-    tool.take("calibration-tables/planar-6.toml", "table.toml")?;
-    let session = tool.path("session.csv");
-    println!("\nThe firmware on the virtual Due, scenario I:");
+    // One build for both programs, so that each crate is compiled once.
     cargo(
-        &["run", "--quiet", board::ANY_RUST, "--package", "board-tests", "--bin", "demo", "--", &session, SECONDS],
+        &[
+            "build",
+            board::ANY_RUST,
+            "--package",
+            "proprio",
+            "--package",
+            "board-tests",
+            "--bin",
+            "proprio",
+            "--bin",
+            "demo",
+        ],
         &[],
     )?;
+    let tool = Tool::built("demo")?;
+    tool.take("calibration-tables/planar-6.toml", "table.toml")?;
+    println!("\nThe firmware on the virtual Due, scenario I:");
+    tool.run_other("demo", &[&tool.path("session.csv"), &seconds.to_string()])?;
     tool.run("replay session.csv --table table.toml")
+}
+
+fn seconds(arguments: &[String]) -> Result<u32, String> {
+    match arguments {
+        [] => Ok(DEFAULT_SECONDS),
+        [flag, value] if flag == "--seconds" => match value.parse() {
+            Ok(seconds @ 10..=86_400) => Ok(seconds),
+            _ => Err(format!("--seconds {value}: give the board's time in whole seconds, 10 to 86400")),
+        },
+        _ => Err("usage: cargo demo [--seconds N]".to_owned()),
+    }
 }

@@ -3,21 +3,28 @@
 mod accept;
 mod bench;
 mod board;
+mod commands;
 mod demo;
+mod pictures;
 mod results;
+mod style;
 mod tool;
 
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    let command = std::env::args().nth(1);
-    let done = match command.as_deref() {
-        Some("demo") => demo::run(),
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let command = arguments.first().map(String::as_str);
+    let done = match command {
+        Some("demo") => demo::run(arguments.get(1..).unwrap_or_default()),
         Some("accept") => accept::run(),
         Some("verify") => board::verify(),
         Some("bench") => bench::run(),
         Some("results") => results::run(),
-        _ => Err("usage: cargo xtask demo | verify | bench | results | accept".to_owned()),
+        Some("style") => style::run(),
+        Some("commands") => commands::run(),
+        Some("pictures") => pictures::run(),
+        _ => Err("usage: cargo xtask demo | verify | bench | results | commands | pictures | accept".to_owned()),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

@@ -1,4 +1,4 @@
-//! `cargo xtask results`: writes `docs/RESULTS.md` and `docs/FAULTS-OF-SESSIONS.md`.
+//! `cargo xtask results`: writes `docs/explanation/results.md` and `docs/explanation/faults-of-sessions.md`.
 
 use crate::tool::cargo;
 

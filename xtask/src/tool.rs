@@ -7,7 +7,8 @@ use std::process::Command;
 
 /// The tool, and the folder that it works in.
 pub struct Tool {
-    binary: PathBuf,
+    /// The folder of the built programs.
+    programs: PathBuf,
     folder: PathBuf,
 }
 
@@ -16,15 +17,22 @@ pub fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().map(Path::to_owned).unwrap_or_default()
 }
 
+/// The folder that cargo builds in.
+pub fn target() -> PathBuf {
+    env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), |path| root().join(path))
+}
+
 impl Tool {
     /// Builds the tool, and makes its folder `name` below `target`.
     pub fn build(name: &str) -> Result<Self, String> {
-        cargo(&["build", "--release", "--package", "proprio"], &[])?;
-        let target = env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), |path| root().join(path));
-        let tool = Self {
-            binary: target.join("release").join(format!("proprio{}", env::consts::EXE_SUFFIX)),
-            folder: target.join(name),
-        };
+        cargo(&["build", "--package", "proprio"], &[])?;
+        Self::built(name)
+    }
+
+    /// The tool as it was built, with its folder `name` below `target`.
+    pub fn built(name: &str) -> Result<Self, String> {
+        let target = target();
+        let tool = Self { programs: target.join("debug"), folder: target.join(name) };
         fs::create_dir_all(&tool.folder).map_err(|error| format!("{}: {error}", tool.folder.display()))?;
         Ok(tool)
     }
@@ -32,7 +40,14 @@ impl Tool {
     /// Runs the tool with arguments as they are typed, and shows them.
     pub fn run(&self, arguments: &str) -> Result<(), String> {
         println!("\n$ proprio {arguments}");
-        check(Command::new(&self.binary).current_dir(&self.folder).args(arguments.split_whitespace()))
+        let arguments: Vec<&str> = arguments.split_whitespace().collect();
+        self.run_other("proprio", &arguments)
+    }
+
+    /// Runs another program of this workspace in the folder.
+    pub fn run_other(&self, program: &str, arguments: &[&str]) -> Result<(), String> {
+        let program = self.programs.join(format!("{program}{}", env::consts::EXE_SUFFIX));
+        check(Command::new(program).current_dir(&self.folder).args(arguments))
     }
 
     /// A file of the folder.

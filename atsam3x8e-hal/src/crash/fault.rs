@@ -4,12 +4,12 @@ use core::arch::naked_asm;
 
 use super::{SAFE_STATE, record, stop_or_reset};
 
-/// What the handler needs of the stack, with room to spare.
+/// Stack of the handler, bytes, with a margin.
 const ROOM: u32 = 1024;
 
-/// Entered by the processor. The stack may be the fault's cause, so that nothing is pushed before it is known to have
-/// [`ROOM`]; where it has not, it starts again at its top, since nothing returns to it. Else it stays: the frame lies on it,
-/// perhaps at its very top. The frame's address goes on as an argument.
+/// Entry from the processor. The stack may be the fault's cause, so that nothing is pushed before it is known to have
+/// [`ROOM`]; if it has not, the stack pointer is set to its top, since nothing returns to the old stack. Otherwise it is
+/// unchanged: the frame is on it, perhaps at its very top. The frame's address is the argument of the next function.
 #[unsafe(naked)]
 #[unsafe(no_mangle)]
 #[unsafe(link_section = ".HardFault.atsam3x8e_hal")]
@@ -37,7 +37,7 @@ unsafe extern "C" fn HardFault() -> ! {
 
 /// The eight words that the processor stacks (ARMv7-M B1.5.6).
 const FRAME_BYTES: u32 = 32;
-/// Place of the return address among them.
+/// Offset of the return address in them.
 const FRAME_PC: u32 = 24;
 
 extern "C" fn hard_fault(frame: u32) -> ! {
@@ -67,7 +67,7 @@ fn stacked_pc(frame: u32, cfsr: u32) -> Option<u32> {
     Some(unsafe { pc.read_volatile() })
 }
 
-/// Whether a whole frame lies in the chip's RAM: SRAM0 (64 KiB), or SRAM1 (32 KiB) with the contiguous alias below it
+/// Returns whether a whole frame is in the chip's RAM: SRAM0 (64 KiB), or SRAM1 (32 KiB) with the contiguous alias below it
 /// (datasheet chapter 7).
 fn is_in_ram(frame: u32) -> bool {
     let fits = |start: u32, end: u32| (start..=end - FRAME_BYTES).contains(&frame);

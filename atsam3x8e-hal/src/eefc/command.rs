@@ -1,6 +1,7 @@
 //! Commands of a flash controller, executed from RAM.
 
-use super::Error;
+use super::error::Error;
+use super::layout::BANKS;
 use crate::pac;
 
 /// FKEY of the command register (datasheet chapter 18, EEFC_FCR).
@@ -36,10 +37,10 @@ pub(super) fn execute(efc: &pac::efc0::RegisterBlock, command: Command, argument
     Ok(efc.frr.read().bits())
 }
 
-/// The first four words of the bank while it shows the identifier, in place of the program.
+/// Reads the first four words of the bank while it shows the identifier instead of the program.
 pub(super) fn read_unique_id(efc: &pac::efc0::RegisterBlock) -> Result<[u32; 4], Error> {
     let mut words = [0; 4];
-    let [first_bank, _] = super::BANKS;
+    let [first_bank, _] = BANKS;
     // SAFETY: the addresses are those of the first bank, of its controller, and of four words to write to.
     let status = unsafe { read_words(first_bank.start as *const u32, words.as_mut_ptr(), efc.fcr.as_ptr(), POLLS) };
     check(status)?;

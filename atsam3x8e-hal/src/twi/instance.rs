@@ -9,7 +9,7 @@ use super::transfer::Transfer;
 use crate::gpio::{self, PeripheralA, Pin};
 use crate::pac;
 
-/// What a driver and its interrupt handler share.
+/// State shared by a driver and its interrupt handler.
 #[derive(Debug)]
 pub struct Shared {
     pub(super) transfer: Transfer,
@@ -31,7 +31,7 @@ pub trait Sealed {
     fn registers() -> &'static pac::twi0::RegisterBlock;
     fn shared() -> &'static Mutex<RefCell<Shared>>;
 
-    /// Whether both lines are high. PDSR shows the pads also while the TWI has them (datasheet 31.5.8).
+    /// Returns whether both lines are high. PDSR shows the pads also while the TWI has them (datasheet 31.5.8).
     fn lines_are_high() -> bool {
         let lines = 1 << Self::SDA | 1 << Self::SCL;
         gpio::port(Self::PORT).pdsr.read().bits() & lines == lines

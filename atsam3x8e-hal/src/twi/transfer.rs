@@ -1,9 +1,8 @@
-//! One transfer as a state machine: what to do next for a status of the peripheral. It touches no register.
+//! State machine of one transfer: the next action for a status of the peripheral. It accesses no register.
 //!
-//! Its bytes are in a buffer of its own, so that a future dropped in the middle leaves the interrupt handler nothing that
-//! dangles.
+//! It has its own copy of the bytes, so that the interrupt handler has no dangling pointer after a future was dropped.
 
-use super::Error;
+use super::error::Error;
 
 /// Bytes of one write or one read.
 pub const MAX_TRANSFER: usize = 32;
@@ -25,7 +24,7 @@ enum State {
     Finished(Result<(), Error>),
 }
 
-/// What the interrupt handler does.
+/// Action of the interrupt handler.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Action {
     None,
@@ -115,7 +114,7 @@ impl Transfer {
         matches!(self.state, State::Finished(_))
     }
 
-    /// How it ended; `None`: it has not.
+    /// Result; `None`: the transfer has not ended.
     pub(super) fn result(&self) -> Option<Result<(), Error>> {
         match self.state {
             State::Finished(result) => Some(result),
@@ -196,7 +195,7 @@ impl Transfer {
         Action::None
     }
 
-    /// Which byte was refused. While the address is on the wire, the first byte of a write waits in THR.
+    /// Error of a NACK, by the byte that got it. While the address is on the wire, the first byte of a write is in THR.
     fn nack(&self) -> Error {
         match (self.read, self.internal_address_size) {
             (true, 0) => Error::NackAddress,
@@ -242,7 +241,7 @@ mod tests {
         transfer.next(NACK | TXCOMP | TXRDY);
         assert_eq!(transfer.result(), Some(Err(Error::NackData)));
 
-        // The only byte of a write: TXRDY has said that the address was acknowledged.
+        // The only byte of a write: TXRDY has shown that the address was acknowledged.
         let mut transfer = Transfer::write(0x70, &[1]).expect("one byte fits");
         transfer.first_byte();
         transfer.next(TXRDY);

@@ -1,7 +1,9 @@
 //! The bus clock's dividers.
 
-use super::BUS_HZ;
 use crate::clock::MCK_HZ;
+
+/// Clock of the bus, Hz.
+pub const BUS_HZ: u32 = 400_000;
 
 /// CWGR for [`BUS_HZ`].
 pub(super) const CLOCK_WAVEFORM: u32 = clock_waveform(MCK_HZ, BUS_HZ).expect("84 MHz has dividers for 400 kHz");

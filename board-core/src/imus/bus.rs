@@ -1,4 +1,4 @@
-//! The bus and its multiplexer as the IMUs share them: who answered, and when the bus is to be cleared.
+//! The bus and its multiplexer, shared by the IMUs: polls, and recovery of the bus.
 
 use crate::bno055::{Answer, Bno055};
 use crate::tca9548a::{Channel, MuxError, Tca9548a};
@@ -14,86 +14,86 @@ pub struct BusStuck;
 
 /// An I²C controller that can free its bus from a device that holds SDA low.
 pub trait BusRecovery {
-    /// Gives up what the controller was doing, clocks the bus up to nine times, sends a STOP (UM10204, 3.1.16), and sets
-    /// the controller up again. Takes bounded time and may be dropped; harmless on a bus that is free.
+    /// Aborts the controller's transfer, clocks the bus up to nine times, sends a STOP (UM10204, 3.1.16), and sets the
+    /// controller up again. Takes bounded time and may be dropped; harmless on a bus that is free.
     ///
     /// # Errors
     ///
-    /// [`BusStuck`] where SDA or SCL is still low.
+    /// [`BusStuck`] if SDA or SCL is still low.
     fn recover(&mut self) -> impl Future<Output = Result<(), BusStuck>>;
 }
 
-/// What came of asking an IMU.
+/// Result of polling an IMU.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Asked {
-    /// It answered.
-    Answered(Answer),
-    /// It does not acknowledge.
-    Refused,
-    /// The bus failed in its transaction.
-    Failed,
-    /// The multiplexer could not be spoken to.
-    Unreached,
+pub(super) enum Poll {
+    /// The IMU answered.
+    Data(Answer),
+    /// The IMU does not acknowledge.
+    Nack,
+    /// The bus failed in the IMU's transaction.
+    BusError,
+    /// The multiplexer failed.
+    MuxError,
 }
 
 #[derive(Debug)]
 pub(super) struct Bus<I, R> {
     i2c: I,
     mux: Tca9548a<R>,
-    /// A transaction was cut off or ended in a bus error, and the bus was not cleared since.
-    in_doubt: bool,
-    /// The bus was cleared, and nobody has answered since.
-    on_trial: bool,
-    /// The bus was cleared and has proved good, and nobody was told.
-    cleared: bool,
+    /// A transaction was cut off or ended in a bus error, and the bus was not recovered since.
+    needs_recovery: bool,
+    /// Recovered, not yet confirmed by an answer.
+    recovery_unconfirmed: bool,
+    /// Recovery confirmed, event not yet sent.
+    recovery_to_report: bool,
     recoveries: u32,
 }
 
 impl<I: I2c + BusRecovery, R: OutputPin> Bus<I, R> {
     pub(super) fn new(i2c: I, mux: Tca9548a<R>) -> Self {
-        Self { i2c, mux, in_doubt: false, on_trial: false, cleared: false, recoveries: 0 }
+        Self { i2c, mux, needs_recovery: false, recovery_unconfirmed: false, recovery_to_report: false, recoveries: 0 }
     }
 
-    /// Lets `imu`, which is on `channel`, make its step.
-    pub(super) async fn ask(&mut self, imu: &mut Bno055, channel: Channel, tick: u32) -> Asked {
-        self.in_doubt = true;
+    /// Polls `imu` on `channel`: one step of its driver.
+    pub(super) async fn poll(&mut self, imu: &mut Bno055, channel: Channel, tick: u32) -> Poll {
+        self.needs_recovery = true;
         let step = async |i2c: &mut I| imu.step(i2c, tick).await;
-        let asked = match self.mux.with_channel(&mut self.i2c, channel, step).await {
-            Ok(answer) => Asked::Answered(answer),
-            Err(MuxError::Device(error)) if matches!(error.kind(), ErrorKind::NoAcknowledge(_)) => Asked::Refused,
-            Err(MuxError::Device(_)) => return Asked::Failed,
-            Err(MuxError::Mux(_) | MuxError::NotTaken(_)) => return Asked::Unreached,
+        let poll = match self.mux.with_channel(&mut self.i2c, channel, step).await {
+            Ok(answer) => Poll::Data(answer),
+            Err(MuxError::Device(error)) if matches!(error.kind(), ErrorKind::NoAcknowledge(_)) => Poll::Nack,
+            Err(MuxError::Device(_)) => return Poll::BusError,
+            Err(MuxError::Mux(_) | MuxError::NotTaken(_)) => return Poll::MuxError,
         };
-        self.in_doubt = false;
-        if core::mem::take(&mut self.on_trial) {
-            self.cleared = true;
+        self.needs_recovery = false;
+        if core::mem::take(&mut self.recovery_unconfirmed) {
+            self.recovery_to_report = true;
             self.recoveries = self.recoveries.saturating_add(1);
         }
-        asked
+        poll
     }
 
-    /// Whether the bus is to be cleared before anyone is asked.
-    pub(super) fn is_in_doubt(&self) -> bool {
-        self.in_doubt
+    /// Returns whether the bus must be recovered before the next poll.
+    pub(super) fn needs_recovery(&self) -> bool {
+        self.needs_recovery
     }
 
-    /// Clears the bus and disconnects all channels; false where a line stays low.
+    /// Recovers the bus and disconnects all channels; false if a line stays low.
     ///
-    /// A device can only be clocked free while its channel is connected, so that the clocks come first. What they do not
-    /// free is cut off with its channel.
+    /// A device can only be clocked free while its channel is connected, so that the clocks come first. A device that
+    /// they do not free is disconnected with its channel.
     pub(super) async fn recover(&mut self) -> bool {
         let freed = self.i2c.recover().await.is_ok();
-        // A pin that fails leaves the multiplexer as unknown as it was.
+        // After a failure of the pin the multiplexer's channel stays unknown.
         let _ = self.mux.reset();
         let is_free = freed || self.i2c.recover().await.is_ok();
-        self.in_doubt = !is_free;
-        self.on_trial |= is_free;
+        self.needs_recovery = !is_free;
+        self.recovery_unconfirmed |= is_free;
         is_free
     }
 
-    /// Whether the bus was cleared since the last call.
-    pub(super) fn take_cleared(&mut self) -> bool {
-        core::mem::take(&mut self.cleared)
+    /// Returns whether a recovery was confirmed since the last call.
+    pub(super) fn take_recovery(&mut self) -> bool {
+        core::mem::take(&mut self.recovery_to_report)
     }
 
     pub(super) fn recoveries(&self) -> u32 {

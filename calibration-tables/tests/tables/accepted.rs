@@ -1,8 +1,8 @@
-//! What is read, and what stands in for keys that are left out.
+//! Accepted files, and the defaults of omitted keys.
 
 use std::path::Path;
 
-use calibration_tables::{ArmFile, ChangeKeys, CoupledKeys, FileError, Side};
+use calibration_tables::{ArmFile, ChangeToml, CoupledToml, FileError, Side};
 use estimator_core::{CoupledSegment, Coupling, Q, Response};
 
 use super::common::{DESCRIPTION, TABLE, edited, parse};
@@ -132,8 +132,8 @@ fn the_embedded_description_is_an_arm_description() {
 fn segments_without_limits_have_the_thresholds_of_the_arm() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../host-tests/tables");
     let text = std::fs::read_to_string(folder.join("version-0.1.toml")).expect("the table is committed");
-    let baked = parse(&text).bake::<Q>(100.0).expect("it is a table");
-    let config = baked.config();
+    let compiled = parse(&text).compile::<Q>(100.0).expect("it is a table");
+    let config = compiled.config();
     assert!(config.segments.iter().all(|segment| segment.contact.is_none()));
     let contact = config.contact.expect("it is in the file");
     assert!((contact.coupling.rad().to_degrees() - 4.0).abs() < 1e-6);
@@ -144,11 +144,11 @@ fn the_segment_with_more_play_and_lag_is_compared_with_the_other_behind_them() {
     let text = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("planar-6.toml"))
         .expect("the reference table is committed");
     let mut table = parse(&text);
-    let limit = ChangeKeys { change_deg: 4.0, motion_deg: 8.0 };
-    let coupled = CoupledKeys { lag_s: 0.1, play_deg: -1.0, limit: Some(limit), ..CoupledKeys::with_ratio(1, 0.9) };
+    let limit = ChangeToml { change_deg: 4.0, motion_deg: 8.0 };
+    let coupled = CoupledToml { lag_s: 0.1, play_deg: -1.0, limit: Some(limit), ..CoupledToml::with_ratio(1, 0.9) };
     table.segments[1].coupled_to = Some(coupled);
-    let baked = table.bake::<Q>(100.0).expect("it is a table");
-    let limits = baked.config().segments[1].contact.expect("it has a limit");
+    let compiled = table.compile::<Q>(100.0).expect("it is a table");
+    let limits = compiled.config().segments[1].contact.expect("it has a limit");
     let Coupling { lead, own, ratio_left, .. } = limits.coupling.expect("it is coupled");
     // A lag of one value: 1 − 1/e.
     assert_eq!((lead.play, lead.share), (0, 41_427));

@@ -1,8 +1,8 @@
-//! Arm descriptions and tables as their users write them: what is read, what is refused and how, and what is baked.
+//! Arm descriptions and tables as users write them: accepted and rejected files, and their compilation.
 
 mod accepted;
-mod baked;
 mod common;
+mod compiled;
 mod refused;
 mod round_trip;
 mod tuning;

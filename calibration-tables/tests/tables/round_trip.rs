@@ -1,8 +1,8 @@
 //! A file is written and read without loss: every number to its last bit, every name to its last character.
 
 use calibration_tables::{
-    AnchorKeys, ArmFile, BendKeys, ChangeKeys, ContactKeys, CoupledKeys, DriftKeys, DriftKind, DriftTuningKeys,
-    NoiseKeys, PlayKeys, RmseKeys, SegmentKeys, Side, Stopped, TareKeys, TuningKeys, UncertaintyKeys,
+    AnchorToml, ArmFile, BendToml, ChangeToml, ContactToml, CoupledToml, DriftKind, DriftToml, DriftTuningToml,
+    NoiseToml, PlayToml, RmseToml, SegmentToml, Side, StopReason, TareToml, TuningToml, UncertaintyToml,
 };
 use proptest::option;
 use proptest::prelude::*;
@@ -14,30 +14,30 @@ fn magnitude(powers: std::ops::Range<f64>) -> impl Strategy<Value = f64> {
 }
 
 /// A map that only rises or only falls: its angles at both ends, and a curvature that leaves a slope at both.
-fn monotonic_map() -> impl Strategy<Value = BendKeys> {
+fn monotonic_map() -> impl Strategy<Value = BendToml> {
     map_over((0.0..3.0_f64, 0.2..3.3_f64).prop_map(|(lo, width)| [lo, (lo + width).min(3.3)]))
 }
 
-fn map_over(volts: impl Strategy<Value = [f64; 2]>) -> impl Strategy<Value = BendKeys> {
+fn map_over(volts: impl Strategy<Value = [f64; 2]>) -> impl Strategy<Value = BendToml> {
     let angles = (-3.0..3.0_f64, prop_oneof![-3.0..-0.05_f64, 0.05..3.0_f64]);
     let curve = -0.9..0.9_f64;
     (volts, angles, curve, option::of(0.0..360.0_f64)).prop_map(|([lo, hi], (at_lo, rise), curve, rmse_deg)| {
         let width = hi - lo;
         let c2 = curve * rise / (width * width);
         let c1 = rise / width - c2 * (lo + hi);
-        BendKeys { c0: at_lo - (c2 * lo + c1) * lo, c1, c2, rmse_deg, volts: Some([lo, hi]), curve: None, memory: None }
+        BendToml { c0: at_lo - (c2 * lo + c1) * lo, c1, c2, rmse_deg, volts: Some([lo, hi]), curve: None, memory: None }
     })
 }
 
-/// A map that does not say its voltages, and so holds over all of them.
-fn bare_map() -> impl Strategy<Value = BendKeys> {
-    map_over(Just([0.0, 3.3])).prop_map(|map| BendKeys { volts: None, ..map })
+/// A map without `volts`, which is therefore valid over the whole range.
+fn bare_map() -> impl Strategy<Value = BendToml> {
+    map_over(Just([0.0, 3.3])).prop_map(|map| BendToml { volts: None, ..map })
 }
 
-fn noise() -> impl Strategy<Value = NoiseKeys> {
+fn noise() -> impl Strategy<Value = NoiseToml> {
     let q = prop_oneof![Just(0.0), magnitude(-300.0..6.0)];
     let h = || 0.5..1.25_f64;
-    (q, magnitude(-7.0..1.0), magnitude(-4.9..4.9), h(), h()).prop_map(|(q, r_bend, ratio, h_imu, h_bend)| NoiseKeys {
+    (q, magnitude(-7.0..1.0), magnitude(-4.9..4.9), h(), h()).prop_map(|(q, r_bend, ratio, h_imu, h_bend)| NoiseToml {
         q,
         r_imu: r_bend * ratio,
         r_bend,
@@ -46,15 +46,15 @@ fn noise() -> impl Strategy<Value = NoiseKeys> {
     })
 }
 
-fn segment() -> impl Strategy<Value = SegmentKeys> {
+fn segment() -> impl Strategy<Value = SegmentToml> {
     let lengths = (0.1..500.0_f64, prop_oneof![Just(0.0), Just(-0.0), 0.0..500.0_f64]);
     let bend = option::of(prop::collection::vec(prop_oneof![monotonic_map(), bare_map()], 0..=2));
     let play = (0.0..180.0_f64, -1.0..1.0_f64);
-    let play = play.prop_map(|(radius_deg, weight)| PlayKeys { radius_deg, weight });
+    let play = play.prop_map(|(radius_deg, weight)| PlayToml { radius_deg, weight });
     let hysteresis = prop::collection::vec(play, 0..=3);
     let side = prop_oneof![Just(Side::Start), Just(Side::End)];
     (lengths, side, bend, hysteresis, option::of(noise()), option::of(noise())).prop_map(
-        |((length_mm, offset_mm), offset_at, bend, hysteresis, orient, coord)| SegmentKeys {
+        |((length_mm, offset_mm), offset_at, bend, hysteresis, orient, coord)| SegmentToml {
             length_mm,
             offset_mm,
             offset_at,
@@ -70,12 +70,12 @@ fn segment() -> impl Strategy<Value = SegmentKeys> {
     )
 }
 
-fn drift() -> impl Strategy<Value = DriftKeys> {
+fn drift() -> impl Strategy<Value = DriftToml> {
     let kind = prop_oneof![Just(DriftKind::Anchor), Just(DriftKind::Kalman), Just(DriftKind::Observer)];
     let headings = (0.0..30.0_f64, 0.0..10.0_f64, 1e-4..0.2_f64, 1e-3..1.0_f64, 1e-5..0.01_f64);
     (kind, headings, 0.0..20.0_f64, 64.0..1e6_f64).prop_map(|(kind, headings, offset_deg, offset_s)| {
         let (start_deg, straightness_deg, rate_deg_per_s, angle_random_walk, rate_random_walk) = headings;
-        DriftKeys {
+        DriftToml {
             kind,
             start_deg,
             straightness_deg,
@@ -88,17 +88,17 @@ fn drift() -> impl Strategy<Value = DriftKeys> {
     })
 }
 
-fn change() -> impl Strategy<Value = ChangeKeys> {
-    (0.1..90.0_f64, 0.0..90.0_f64).prop_map(|(change_deg, motion_deg)| ChangeKeys { change_deg, motion_deg })
+fn change() -> impl Strategy<Value = ChangeToml> {
+    (0.1..90.0_f64, 0.0..90.0_f64).prop_map(|(change_deg, motion_deg)| ChangeToml { change_deg, motion_deg })
 }
 
-fn contact() -> impl Strategy<Value = ContactKeys> {
-    (0.1..90.0_f64, 0.1..90.0_f64).prop_map(|(bend_deg, coupling_deg)| ContactKeys { bend_deg, coupling_deg })
+fn contact() -> impl Strategy<Value = ContactToml> {
+    (0.1..90.0_f64, 0.1..90.0_f64).prop_map(|(bend_deg, coupling_deg)| ContactToml { bend_deg, coupling_deg })
 }
 
-fn uncertainty() -> impl Strategy<Value = UncertaintyKeys> {
+fn uncertainty() -> impl Strategy<Value = UncertaintyToml> {
     (0.0..9.0_f64, 0.0..10.0_f64, 0.0..9.0_f64, 0.0..9.0_f64, 0.0..9.0_f64, 0.0..100.0_f64).prop_map(
-        |(theta_deg, bias_share, bend_deg, contact_deg, heading_deg, end_mm)| UncertaintyKeys {
+        |(theta_deg, bias_share, bend_deg, contact_deg, heading_deg, end_mm)| UncertaintyToml {
             theta_deg,
             bias_share,
             retired: IgnoredAny,
@@ -110,10 +110,10 @@ fn uncertainty() -> impl Strategy<Value = UncertaintyKeys> {
     )
 }
 
-/// Segments of which each may bend like the first.
-fn segments() -> impl Strategy<Value = Vec<SegmentKeys>> {
+/// Segments, each of which may be coupled to the first.
+fn segments() -> impl Strategy<Value = Vec<SegmentToml>> {
     let coupled = (-7.9..7.9_f64, option::of(-7.9..7.9_f64), -10.0..10.0_f64, -30.0..30.0_f64, option::of(change()));
-    let coupled = coupled.prop_map(|(ratio, ratio_left, lag_s, play_deg, limit)| CoupledKeys {
+    let coupled = coupled.prop_map(|(ratio, ratio_left, lag_s, play_deg, limit)| CoupledToml {
         segment: 1,
         ratio,
         ratio_left,
@@ -122,14 +122,14 @@ fn segments() -> impl Strategy<Value = Vec<SegmentKeys>> {
         limit,
     });
     let later = (segment(), option::of(coupled), option::of(change()));
-    let later = later.prop_map(|(segment, coupled_to, contact)| SegmentKeys { coupled_to, contact, ..segment });
+    let later = later.prop_map(|(segment, coupled_to, contact)| SegmentToml { coupled_to, contact, ..segment });
     (segment(), prop::collection::vec(later, 0..16))
         .prop_map(|(first, later)| std::iter::once(first).chain(later).collect())
 }
 
-fn rmse() -> impl Strategy<Value = RmseKeys> {
+fn rmse() -> impl Strategy<Value = RmseToml> {
     (magnitude(-300.0..9.0), magnitude(-3.0..9.0), prop_oneof![Just(0.0), 0.0..180.0_f64]).prop_map(
-        |(position_rmse_mm, tip_rmse_mm, heading_rmse_deg)| RmseKeys {
+        |(position_rmse_mm, tip_rmse_mm, heading_rmse_deg)| RmseToml {
             position_rmse_mm,
             tip_rmse_mm,
             heading_rmse_deg,
@@ -137,10 +137,10 @@ fn rmse() -> impl Strategy<Value = RmseKeys> {
     )
 }
 
-fn drift_tuning() -> impl Strategy<Value = DriftTuningKeys> {
+fn drift_tuning() -> impl Strategy<Value = DriftTuningToml> {
     let pair = || [magnitude(-5.0..1.0), magnitude(-5.0..1.0)];
     (any::<u32>(), pair(), pair(), pair(), pair(), pair()).prop_map(
-        |(runs, rate_deg_per_s, rate_random_walk, angle_random_walk, offset_deg, offset_s)| DriftTuningKeys {
+        |(runs, rate_deg_per_s, rate_random_walk, angle_random_walk, offset_deg, offset_s)| DriftTuningToml {
             runs: runs.into(),
             rate_deg_per_s,
             rate_random_walk_deg_per_s_sqrt_s: rate_random_walk,
@@ -151,25 +151,31 @@ fn drift_tuning() -> impl Strategy<Value = DriftTuningKeys> {
     )
 }
 
-fn tuning() -> impl Strategy<Value = TuningKeys> {
+fn tuning() -> impl Strategy<Value = TuningToml> {
     let sessions = prop::collection::vec(any::<String>(), 1..4);
-    let stopped = prop_oneof![Just(Stopped::Converged), Just(Stopped::Interrupted)];
+    let stop_reason = prop_oneof![Just(StopReason::Converged), Just(StopReason::Interrupted)];
     let iterations = (0..=300_u64, 0..=300_u64);
     let extended = (option::of(1.0..1e9_f64), option::of(drift_tuning()));
-    (sessions, iterations, stopped, extended, [rmse(), rmse(), rmse(), rmse()]).prop_map(
-        |(sessions, (iterations, kept), stopped, extended, [before, after, held_back_before, held_back_after])| {
-            TuningKeys {
+    (sessions, iterations, stop_reason, extended, [rmse(), rmse(), rmse(), rmse()]).prop_map(
+        |(
+            sessions,
+            (iterations, best_iteration),
+            stop_reason,
+            extended,
+            [before, after, validation_before, validation_after],
+        )| {
+            TuningToml {
                 sessions,
-                iterations: iterations.max(kept),
-                kept,
-                stopped,
-                variances: extended.0,
+                iterations: iterations.max(best_iteration),
+                best_iteration,
+                stop_reason,
+                covariance_inflation: extended.0,
                 drift: extended.1,
                 observer: IgnoredAny,
                 before,
                 after,
-                held_back_before,
-                held_back_after,
+                validation_before,
+                validation_after,
             }
         },
     )
@@ -184,8 +190,8 @@ fn file() -> impl Strategy<Value = ArmFile> {
             format: 1,
             arm,
             rate_hz,
-            tare: TareKeys { seconds, heading_deg: heading.map_or_else(Vec::new, |deg| vec![deg; segments.len()]) },
-            anchor: AnchorKeys { window, threshold_deg, rate_hz: anchor_hz },
+            tare: TareToml { seconds, heading_deg: heading.map_or_else(Vec::new, |deg| vec![deg; segments.len()]) },
+            anchor: AnchorToml { window, threshold_deg, rate_hz: anchor_hz },
             drift: records.0,
             contact: records.1,
             uncertainty: records.2,
@@ -201,7 +207,7 @@ proptest! {
         let text = file.to_toml();
         let read = ArmFile::parse(&text).map_err(|error| TestCaseError::fail(format!("{error}\n{text}")))?;
         prop_assert_eq!(&read, &file);
-        // Debug writes each float so that it comes back, and −0 apart from 0, which == does not.
+        // The Debug form of a float is exact, and distinguishes −0 from 0, which == does not.
         prop_assert_eq!(format!("{read:?}"), format!("{file:?}"));
     }
 

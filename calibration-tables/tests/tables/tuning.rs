@@ -1,6 +1,6 @@
 //! `[tuning]`, the record of a tuning: read and checked as strictly as all else, and no part of the parameters.
 
-use calibration_tables::{ArmFile, DriftTuningKeys, FileError, Stopped};
+use calibration_tables::{ArmFile, DriftTuningToml, FileError, StopReason};
 use estimator_core::Q;
 
 use super::common::{TABLE, parse};
@@ -9,14 +9,14 @@ const TUNING: &str = r#"
 [tuning]
 sessions = ["a.csv", "b.csv"]
 iterations = 12
-kept = 9
-stopped = "interrupted"
-variances = 1.5
+best_iteration = 9
+stop_reason = "interrupted"
+covariance_inflation = 1.5
 drift = { runs = 31, rate_deg_per_s = [0.05, 0.08], rate_random_walk_deg_per_s_sqrt_s = [2e-4, 1e-4], angle_random_walk_deg_per_sqrt_s = [0.01, 0.02], offset_deg = [1.0, 1.5], offset_s = [1500.0, 2000.0] }
 before = { position_rmse_mm = 4.0, tip_rmse_mm = 8.0, heading_rmse_deg = 1.5 }
 after = { position_rmse_mm = 3.0, tip_rmse_mm = 6.0, heading_rmse_deg = 1.25 }
-held_back_before = { position_rmse_mm = 5.0, tip_rmse_mm = 9.0, heading_rmse_deg = 2.0 }
-held_back_after = { position_rmse_mm = 4.5, tip_rmse_mm = 7.0, heading_rmse_deg = 1.75 }
+validation_before = { position_rmse_mm = 5.0, tip_rmse_mm = 9.0, heading_rmse_deg = 2.0 }
+validation_after = { position_rmse_mm = 4.5, tip_rmse_mm = 7.0, heading_rmse_deg = 1.75 }
 "#;
 
 fn tuned() -> String {
@@ -32,12 +32,12 @@ fn error(from: &str, to: &str) -> FileError {
 fn every_key_is_read() {
     let tuning = parse(&tuned()).tuning.expect("it is in the file");
     assert_eq!(
-        (tuning.sessions, tuning.iterations, tuning.kept),
+        (tuning.sessions, tuning.iterations, tuning.best_iteration),
         (vec!["a.csv".to_owned(), "b.csv".to_owned()], 12, 9)
     );
-    assert_eq!(tuning.stopped, Stopped::Interrupted);
-    assert_eq!(tuning.variances, Some(1.5));
-    let drift = DriftTuningKeys {
+    assert_eq!(tuning.stop_reason, StopReason::Interrupted);
+    assert_eq!(tuning.covariance_inflation, Some(1.5));
+    let drift = DriftTuningToml {
         runs: 31,
         rate_deg_per_s: [0.05, 0.08],
         rate_random_walk_deg_per_s_sqrt_s: [2e-4, 1e-4],
@@ -46,7 +46,7 @@ fn every_key_is_read() {
         offset_s: [1500.0, 2000.0],
     };
     assert_eq!(tuning.drift, Some(drift));
-    let figures = [tuning.before, tuning.after, tuning.held_back_before, tuning.held_back_after]
+    let figures = [tuning.before, tuning.after, tuning.validation_before, tuning.validation_after]
         .map(|of| [of.position_rmse_mm, of.tip_rmse_mm, of.heading_rmse_deg].map(f64::to_bits));
     let expected = [[4.0, 8.0, 1.5], [3.0, 6.0, 1.25], [5.0, 9.0, 2.0], [4.5, 7.0, 1.75]];
     assert_eq!(figures, expected.map(|of| of.map(f64::to_bits)));
@@ -55,17 +55,33 @@ fn every_key_is_read() {
 #[test]
 fn the_bias_filter_and_the_variances_may_be_left_out() {
     let text = tuned();
-    let filters = text.lines().filter(|line| !line.starts_with("variances") && !line.starts_with("drift"));
+    let filters = text.lines().filter(|line| !line.starts_with("covariance_inflation") && !line.starts_with("drift"));
     let lines: Vec<&str> = filters.collect();
     let tuning = parse(&lines.join("\n")).tuning.expect("it is in the file");
-    assert_eq!((tuning.variances, tuning.drift), (None, None));
+    assert_eq!((tuning.covariance_inflation, tuning.drift), (None, None));
 }
 
 #[test]
 fn a_record_of_the_observer_of_version_0_1_is_accepted() {
     let observer =
         "observer = { runs = 31, noise_deg2_s = [50.0, 80.0], walk_deg_per_s = [2e-4, 1e-4], slope = [0.15, 0.25] }";
-    let text = tuned().replace("variances = 1.5", &format!("variances = 1.5\n{observer}"));
+    let text = tuned().replace("covariance_inflation = 1.5", &format!("covariance_inflation = 1.5\n{observer}"));
+    assert_eq!(parse(&text), parse(&tuned()));
+}
+
+#[test]
+fn the_keys_of_version_0_1_are_accepted() {
+    let mut text = tuned();
+    for (new, old) in [
+        ("best_iteration", "kept"),
+        ("stop_reason", "stopped"),
+        ("covariance_inflation", "variances"),
+        ("validation_before", "held_back_before"),
+        ("validation_after", "held_back_after"),
+    ] {
+        assert!(text.contains(new), "{new}");
+        text = text.replace(new, old);
+    }
     assert_eq!(parse(&text), parse(&tuned()));
 }
 
@@ -79,26 +95,26 @@ fn it_is_written_as_it_was_read() {
     }
 }
 
-/// The board says which table it runs by the checksum; a record is no part of what it runs.
+/// The board reports its table by the checksum; a record is no part of the parameters.
 #[test]
 fn it_leaves_the_checksum_alone() {
-    let checksum = |text: &str| parse(text).bake::<Q>(100.0).expect("a table").checksum();
+    let checksum = |text: &str| parse(text).compile::<Q>(100.0).expect("a table").checksum();
     assert_eq!(checksum(&tuned()), checksum(TABLE));
 }
 
 #[test]
 fn every_reason_to_stop_is_read_and_no_other() {
-    for (name, stopped) in [("converged", Stopped::Converged), ("interrupted", Stopped::Interrupted)] {
+    for (name, reason) in [("converged", StopReason::Converged), ("interrupted", StopReason::Interrupted)] {
         let tuning = parse(&tuned().replace("interrupted", name)).tuning.expect("it is in the file");
-        assert_eq!(tuning.stopped, stopped);
+        assert_eq!(tuning.stop_reason, reason);
     }
     assert!(error("interrupted", "tired").to_string().contains("tired"));
 }
 
 #[test]
 fn a_key_that_is_missing_or_unknown_is_named() {
-    assert!(error("kept = 9\n", "").to_string().contains("`kept`"));
-    assert!(error("kept", "keept").to_string().contains("keept"));
+    assert!(error("best_iteration = 9\n", "").to_string().contains("`best_iteration`"));
+    assert!(error("best_iteration", "best_iterate").to_string().contains("best_iterate"));
     assert!(error("tip_rmse_mm = 8.0", "tip_rmse = 8.0").to_string().contains("tip_rmse"));
 }
 
@@ -106,12 +122,12 @@ fn a_key_that_is_missing_or_unknown_is_named() {
 fn values_that_no_tuning_has_are_refused_with_their_key_and_line() {
     for (from, to, key) in [
         ("sessions = [\"a.csv\", \"b.csv\"]", "sessions = []", "tuning.sessions"),
-        ("kept = 9", "kept = 13", "tuning.kept"),
+        ("best_iteration = 9", "best_iteration = 13", "tuning.best_iteration"),
         ("tip_rmse_mm = 8.0", "tip_rmse_mm = -8.0", "tuning.before.tip_rmse_mm"),
         ("position_rmse_mm = 3.0", "position_rmse_mm = nan", "tuning.after.position_rmse_mm"),
-        ("heading_rmse_deg = 2.0", "heading_rmse_deg = inf", "tuning.held_back_before.heading_rmse_deg"),
-        ("variances = 1.5", "variances = 0.5", "tuning.variances"),
-        ("tip_rmse_mm = 7.0", "tip_rmse_mm = 1e10", "tuning.held_back_after.tip_rmse_mm"),
+        ("heading_rmse_deg = 2.0", "heading_rmse_deg = inf", "tuning.validation_before.heading_rmse_deg"),
+        ("covariance_inflation = 1.5", "covariance_inflation = 0.5", "tuning.covariance_inflation"),
+        ("tip_rmse_mm = 7.0", "tip_rmse_mm = 1e10", "tuning.validation_after.tip_rmse_mm"),
     ] {
         let text = tuned().replacen(from, to, 1);
         let line = 1 + text.lines().position(|line| line.contains(to)).expect("the edited line");

@@ -2,31 +2,31 @@
 
 use crate::numeric::phase::Turns;
 
-/// Thresholds of contact detection for segments without [limits](ContactLimits) of their own: changes within five values that
-/// a free arm does not make.
+/// Thresholds of contact detection for segments without [limits](ContactLimits) of their own: changes within five
+/// values that a free arm does not reach.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ContactConfig {
-    /// Of a segment's IMUs against its bend sensors, a quarter of the motion taken off.
+    /// Threshold of the IMUs against the bend sensors of a segment, after a quarter of the motion is subtracted.
     pub bend: Turns,
-    /// Of a segment against the one that it is coupled to.
+    /// Threshold of a segment against the segment that it is coupled to.
     pub coupling: Turns,
 }
 
-/// An earlier segment that bends alike in free motion: θ = ratio · θ of that one.
+/// An earlier segment that bends in proportion in free motion: θ = ratio · θ of that segment.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct CoupledSegment {
-    /// Its place in the table, from 0.
+    /// Its index in the table, from 0.
     pub segment: u8,
-    /// In units of 2⁻²⁸, within ±8.
+    /// Ratio of the bend angles, in units of 2⁻²⁸, within ±8.
     pub ratio: i32,
 }
 
 /// Contact detection of one segment by limits from the scatter of the calibration sweep.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ContactLimits {
-    /// Change of the IMUs against the bend sensors; `None`: contact is not detected by it.
+    /// Limit of the change of the IMUs against the bend sensors; `None`: this residual is not used.
     pub bend: Option<ChangeLimit>,
-    /// Response to, and change against the coupled segment; `None`: contact is not detected by it.
+    /// Response to the coupled segment and limit of the change against it; `None`: this residual is not used.
     pub coupling: Option<Coupling>,
 }
 
@@ -35,18 +35,19 @@ pub struct ContactLimits {
 pub struct ChangeLimit {
     /// Change that the free arm does not reach.
     pub change: Turns,
-    /// Motion within half a second that the sweep has shown. What exceeds it is taken off the change, in part.
+    /// Largest motion within half a second in the calibration sweep. A part of the excess over it is subtracted from
+    /// the change.
     pub motion: Turns,
 }
 
 /// Coupling of a segment to an earlier one in free motion: the responses of both to the same pressure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Coupling {
-    /// θ over that of the coupled segment where the latter is negative, in units of 2⁻²⁸, within ±8.
+    /// Ratio of θ to that of the coupled segment where the latter is negative, in units of 2⁻²⁸, within ±8.
     pub ratio_left: i32,
-    /// What the coupled segment's angle passes before the comparison.
+    /// Play and lag applied to the coupled segment's angle before the comparison.
     pub lead: Response,
-    /// What the segment's own angle passes.
+    /// Play and lag applied to the segment's own angle.
     pub own: Response,
     /// Limit of the change of the residual.
     pub limit: ChangeLimit,

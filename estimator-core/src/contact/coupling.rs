@@ -1,7 +1,8 @@
 //! Residual of a segment against the one that it is coupled to, as both follow the same pressure.
 //!
-//! The segments of a module differ in gain to either side, in play and in lag. The earlier one, or the segment itself, passes
-//! a play and a lag that it has less of; the ratios then apply to its motion, so that drift of the IMUs does not act.
+//! The segments of a module differ in gain to either side, in play and in lag. The segment with less play or lag is
+//! filtered by the difference; the ratios then apply to the motion of the filtered angle, so that drift of the IMUs has
+//! no effect.
 
 use crate::config::{CoupledSegment, Coupling, Response};
 use crate::contact::detector::{Residual, scaled};
@@ -11,7 +12,7 @@ use crate::contact::detector::{Residual, scaled};
 pub(crate) struct CouplingModel {
     lead: ResponseFilter,
     own: ResponseFilter,
-    /// θ that the coupled segment lets expect, up to a constant.
+    /// θ predicted from the coupled segment, up to a constant.
     expected: i32,
     is_started: bool,
 }
@@ -29,7 +30,8 @@ impl CouplingModel {
         Self { lead: filter, own: filter, expected: 0, is_started: false }
     }
 
-    /// Takes one value of the segment's angle and of the coupled one's; `lead_steps` lead from the latter to θ_c.
+    /// Updates the model with one value of the segment's angle and of the coupled segment's; the latter plus
+    /// `lead_steps` is its θ_c.
     #[inline(never)]
     pub fn update(
         &mut self,
@@ -56,7 +58,7 @@ impl CouplingModel {
 }
 
 impl ResponseFilter {
-    /// Takes one value; gives the change of the output.
+    /// Filters one value; returns the change of the output.
     fn step(&mut self, response: Response, angle: i32) -> i32 {
         let ahead = angle.wrapping_sub(self.play);
         self.play = self.play.wrapping_add(ahead.saturating_sub(ahead.min(response.play).max(-response.play)));

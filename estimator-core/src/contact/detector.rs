@@ -1,9 +1,10 @@
-//! Contact detector: fast changes of residuals that a free arm does not make.
+//! Contact detector: fast changes of residuals that do not occur on a free arm.
 //!
-//! Free, coupled segments bend coupled, and the bend sensors of a segment follow its IMUs. A push or an obstacle breaks both
-//! within a second: it bends one segment and not the coupled one, and it bends it unevenly, which constant curvature cannot
-//! explain. Slow changes are drift and hysteresis. The change over a window is a high-pass filter of the residual; contact
-//! begins where it exceeds its threshold in a number of values in a row (debounce).
+//! In free motion, coupled segments bend in proportion, and the bend sensors of a segment agree with its IMUs. A push
+//! or an obstacle breaks both within a second: it bends one segment and not the coupled one, and it bends it unevenly,
+//! which constant curvature cannot explain. Slow changes are drift and hysteresis. The change over a window is a
+//! high-pass filter of the residual; contact begins where it exceeds its threshold in a number of values in a row
+//! (debounce).
 
 use crate::config::{ChangeLimit, ContactConfig, CoupledSegment};
 use crate::types::Contact;
@@ -11,26 +12,26 @@ use crate::types::Contact;
 /// Longest window of the change, values: a second at 10 Hz.
 const LONGEST_WINDOW: usize = 10;
 
-/// Window of the change by the arm's thresholds, and of the motion, values.
+/// Window of the motion, and of the change for the arm's thresholds, values.
 const SHORT_WINDOW: u8 = 5;
 
-/// Contact times out after so many values (a minute at 10 Hz); the residual then becomes the new baseline.
+/// Contact times out after this number of values (a minute at 10 Hz); the residual then becomes the new baseline.
 const TIMEOUT: u16 = 600;
 
-/// Values in a row over a limit of the sweep.
+/// Values in a row over a limit from the calibration sweep at which contact begins.
 const DEBOUNCE: u8 = 2;
 
-/// Share of its motion that a segment's hysteresis may keep, as a right shift.
+/// Share of a segment's motion that its hysteresis can retain, as a right shift.
 const HYSTERESIS_SHIFT: u32 = 2;
 
-/// Share of the motion beyond that of the sweep that is taken off the change, as a right shift.
+/// Share of the motion in excess of the sweep's that is subtracted from the change, as a right shift.
 const EXCESS_SHIFT: u32 = 1;
 
 /// Decay of the largest motion in one value, as a right shift.
 const HOLD_SHIFT: u32 = 4;
 
 impl CoupledSegment {
-    /// θ less what the coupling expects of it, in units of 2⁻³² turns.
+    /// Residual: θ minus its prediction from the coupled segment, in units of 2⁻³² turns.
     pub(crate) fn residual(self, theta: i32, other: i32) -> i32 {
         theta.wrapping_sub(scaled(other, self.ratio))
     }
@@ -41,7 +42,7 @@ pub(crate) fn scaled(angle: i32, ratio: i32) -> i32 {
     ((i64::from(ratio) * i64::from(angle)) >> 28) as i32
 }
 
-/// Detectors of one segment.
+/// Contact detectors of one segment.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ContactDetector {
     bend: ChangeDetector,
@@ -53,24 +54,24 @@ impl ContactDetector {
         Self { bend: ChangeDetector::new(), coupling: ChangeDetector::new() }
     }
 
-    /// Takes one value of the IMUs against the bend sensors.
+    /// Updates the detector of the IMUs against the bend sensors.
     #[inline(never)]
     pub fn update_bend(&mut self, thresholds: Thresholds, value: Option<Residual>) {
         self.bend.update(thresholds, value);
     }
 
-    /// Takes one value of the segment against the coupled one.
+    /// Updates the detector of the segment against the coupled one.
     #[inline(never)]
     pub fn update_coupling(&mut self, thresholds: Thresholds, value: Option<Residual>) {
         self.coupling.update(thresholds, value);
     }
 
-    /// Contact by the segment's own sensors.
+    /// Contact detected by the segment's own sensors.
     pub const fn bend(&self) -> Contact {
         self.bend.contact
     }
 
-    /// Contact of the segment or the coupled one.
+    /// Contact of the segment or of the coupled one.
     pub const fn coupling(&self) -> Contact {
         self.coupling.contact
     }
@@ -101,7 +102,7 @@ pub(crate) struct Residual {
 /// An active contact.
 #[derive(Debug, Clone, Copy)]
 struct ActiveContact {
-    /// The residual before it.
+    /// Residual before the contact.
     from: i32,
     is_rise: bool,
     values: u16,
@@ -112,15 +113,15 @@ struct ActiveContact {
 pub(crate) struct Thresholds {
     /// Change of the residual, in units of 2⁻³² turns.
     change: u32,
-    /// Motion that explains nothing of it.
+    /// Motion up to which nothing is subtracted from the change.
     motion: u32,
-    /// Share of the motion beyond it that is taken off the change, as a right shift.
+    /// Share of the excess motion that is subtracted from the change, as a right shift.
     excess_shift: u32,
     /// Decay of the largest motion in one value, as a right shift; 0: the newest motion alone.
     hold_shift: u32,
     window: u8,
     debounce: u8,
-    /// Whether the residual of the free arm is near zero, so that contact ends there.
+    /// The residual of the free arm is near zero, so that contact ends there.
     has_zero: bool,
 }
 
@@ -137,38 +138,38 @@ impl ChangeDetector {
         }
     }
 
-    /// Takes one value. Nothing is concluded over a missing one.
-    fn update(&mut self, limits: Thresholds, value: Option<Residual>) {
-        let score_percent = value.map_or(0, |value| self.score(limits, value));
+    /// Updates the detector with one value. A missing value clears the window.
+    fn update(&mut self, thresholds: Thresholds, value: Option<Residual>) {
+        let score_percent = value.map_or(0, |value| self.score(thresholds, value));
         if value.is_none() {
             (self.len, self.exceeded) = (0, 0);
         }
         self.contact = Contact { score_percent, in_contact: self.active.is_some() };
     }
 
-    fn score(&mut self, limits: Thresholds, value: Residual) -> u16 {
-        let later = self.head + limits.window - SHORT_WINDOW;
-        let later = if later < limits.window { later } else { later - limits.window };
+    fn score(&mut self, thresholds: Thresholds, value: Residual) -> u16 {
+        let later = self.head + thresholds.window - SHORT_WINDOW;
+        let later = if later < thresholds.window { later } else { later - thresholds.window };
         let Some(half_second_ago) = self.recent.get(usize::from(later)).copied() else { return 0 };
         let Some(place) = self.recent.get_mut(usize::from(self.head)) else { return 0 };
         let before = core::mem::replace(place, value);
-        self.head = if self.head + 1 < limits.window { self.head + 1 } else { 0 };
-        let is_known = self.len == limits.window;
+        self.head = if self.head + 1 < thresholds.window { self.head + 1 } else { 0 };
+        let is_known = self.len == thresholds.window;
         let motion = if is_known { value.angle.wrapping_sub(half_second_ago.angle).unsigned_abs() } else { 0 };
-        self.motion = motion.max(self.motion - (self.motion >> limits.hold_shift));
-        let score_percent = if is_known { limits.percent(before, value, self.motion) } else { 0 };
+        self.motion = motion.max(self.motion - (self.motion >> thresholds.hold_shift));
+        let score_percent = if is_known { thresholds.percent(before, value, self.motion) } else { 0 };
         self.len += u8::from(!is_known);
         self.exceeded = if score_percent > 100 { self.exceeded.saturating_add(1) } else { 0 };
         self.active = match self.active {
-            None if self.exceeded >= limits.debounce => {
+            None if self.exceeded >= thresholds.debounce => {
                 let is_rise = value.residual.wrapping_sub(before.residual) > 0;
                 Some(ActiveContact { from: before.residual, is_rise, values: 0 })
             }
-            Some(departure) if departure.lasts(limits, value) => {
+            Some(departure) if departure.lasts(thresholds, value) => {
                 Some(ActiveContact { values: departure.values + 1, ..departure })
             }
             Some(_) => {
-                // Its end is as fast as its beginning, and is not a new contact.
+                // The end of a contact is as fast as its beginning; it must not count as a new contact.
                 (self.len, self.exceeded) = (0, 0);
                 None
             }
@@ -179,11 +180,11 @@ impl ChangeDetector {
 }
 
 impl ActiveContact {
-    /// Whether it lasts: until the residual is back where it was, or near zero.
-    fn lasts(self, limits: Thresholds, value: Residual) -> bool {
-        let half = limits.change / 2;
+    /// Returns `false` once the residual has returned to its value before the contact, or near zero.
+    fn lasts(self, thresholds: Thresholds, value: Residual) -> bool {
+        let half = thresholds.change / 2;
         let away = value.residual.wrapping_sub(self.from);
-        let departure = if limits.has_zero {
+        let departure = if thresholds.has_zero {
             away.unsigned_abs().min(value.residual.unsigned_abs())
         } else if (away > 0) == self.is_rise {
             away.unsigned_abs()
@@ -195,13 +196,13 @@ impl ActiveContact {
 }
 
 impl Thresholds {
-    /// The arm's, of the IMUs against the bend sensors.
+    /// Thresholds of the arm for the IMUs against the bend sensors.
     pub const fn of_bend(config: &ContactConfig) -> Self {
         let change = config.bend.bits() as u32;
         Self { change, excess_shift: HYSTERESIS_SHIFT, ..Self::of_coupling(config) }
     }
 
-    /// The arm's, of a segment against the coupled one.
+    /// Thresholds of the arm for a segment against the coupled one.
     pub const fn of_coupling(config: &ContactConfig) -> Self {
         Self {
             change: config.coupling.bits() as u32,
@@ -214,7 +215,7 @@ impl Thresholds {
         }
     }
 
-    /// Those of a residual in the sweep.
+    /// Thresholds from the residual's scatter in the calibration sweep.
     pub const fn of_limit(limit: &ChangeLimit) -> Self {
         Self {
             change: limit.change.bits() as u32,
@@ -229,9 +230,9 @@ impl Thresholds {
 
     fn percent(self, before: Residual, now: Residual, motion: u32) -> u16 {
         let change = now.residual.wrapping_sub(before.residual).unsigned_abs();
-        let rest = change.saturating_sub(motion.saturating_sub(self.motion) >> self.excess_shift);
+        let excess = change.saturating_sub(motion.saturating_sub(self.motion) >> self.excess_shift);
         // 2²⁴ steps are a 256th of a turn, and times 100 in range.
-        ((rest >> 8) * 100 / ((self.change >> 8) | 1)).min(u32::from(u16::MAX)) as u16
+        ((excess >> 8) * 100 / ((self.change >> 8) | 1)).min(u32::from(u16::MAX)) as u16
     }
 }
 
@@ -253,16 +254,16 @@ mod tests {
     const CONFIG: ContactConfig = ContactConfig { bend: LIMIT, coupling: LIMIT };
     const COUPLING: Thresholds = Thresholds::of_coupling(&CONFIG);
     const BEND: Thresholds = Thresholds::of_bend(&CONFIG);
-    /// By the sweep, which has moved by 5° in half a second.
+    /// Thresholds of a sweep that moved by 5° in half a second.
     const SWEPT: Thresholds =
         Thresholds::of_limit(&ChangeLimit { change: LIMIT, motion: Turns::from_bits(5 * DEGREE as i64) });
 
-    /// Whether each of the residuals, in degrees, is seen as contact; the segment moves as they do, tenfold.
-    fn touched(limits: Thresholds, degrees: impl IntoIterator<Item = i32>) -> Vec<bool> {
+    /// Contact after each of the residuals, in degrees; the segment moves ten times as far.
+    fn touched(thresholds: Thresholds, degrees: impl IntoIterator<Item = i32>) -> Vec<bool> {
         let mut detector = ChangeDetector::new();
         let step = |degrees: i32| {
             let angle = (degrees * DEGREE).wrapping_mul(10);
-            detector.update(limits, Some(Residual { residual: degrees * DEGREE, angle }));
+            detector.update(thresholds, Some(Residual { residual: degrees * DEGREE, angle }));
             detector.contact.in_contact
         };
         degrees.into_iter().map(step).collect()

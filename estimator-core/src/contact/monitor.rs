@@ -1,12 +1,12 @@
-//! Contact detection of the whole arm: means of the samples at the anchor's rate, one segment in its turn.
+//! Contact detection of the whole arm: means of the samples at the anchor's rate, staggered over the segments.
 //!
-//! The values of all segments are complete at once, but each segment is worked on in its own turn, so that no sample costs
-//! much more than another.
+//! The values of all segments are complete in the same sample; each segment is processed in a sample of its own, so
+//! that the load is even.
 
 use crate::config::{ArmConfig, ContactConfig, CoupledSegment, SegmentConfig};
 use crate::contact::coupling::CouplingModel;
 use crate::contact::detector::{ContactDetector, Residual, Thresholds};
-use crate::drift::MeasuredAngles;
+use crate::drift::correction::MeasuredAngles;
 use crate::drift::decimator::{Decimated, Decimator};
 use crate::numeric::phase::Turns;
 use crate::types::{Condition, Contact, Contacts};
@@ -18,20 +18,20 @@ pub struct ContactMonitor<const N: usize> {
     has_value: bool,
 }
 
-/// One segment's detectors, and the means that they work on.
+/// Detectors of one segment, and their input.
 #[derive(Debug, Clone, Copy)]
 struct SegmentMonitor {
     accumulating: Sums,
     latest: Sums,
     /// Steps of θ_c in the newest sample of the latest value, in units of 2⁻³² turns.
     steps: i32,
-    /// θ by the IMUs in the segment's newest turn.
+    /// θ of the IMUs when the segment was last processed, in units of 2⁻³² turns.
     imu: Option<i32>,
     coupling: CouplingModel,
     detector: ContactDetector,
 }
 
-/// Angles over the samples of a value.
+/// Sums of the angles over the samples of one value.
 #[derive(Debug, Clone, Copy)]
 struct Sums {
     imu: Sum,
@@ -70,7 +70,7 @@ impl<const N: usize> ContactMonitor<N> {
         Self { segments: [SegmentMonitor::new(); N], has_value: false }
     }
 
-    /// Forgets everything: in parts, as a whole new one would not fit a small stack.
+    /// Clears all state, part by part: a temporary of the whole would not fit a small stack.
     pub fn start(&mut self) {
         for segment in &mut self.segments {
             *segment = SegmentMonitor::new();
@@ -78,7 +78,8 @@ impl<const N: usize> ContactMonitor<N> {
         self.has_value = false;
     }
 
-    /// Takes one sample's angles. `condition` of a segment leaves out sensors that are not trusted.
+    /// Updates the detectors with one sample's angles. Sensors that a segment's `condition` reports as faulty are
+    /// excluded.
     pub fn update<S>(
         &mut self,
         config: &ArmConfig<S>,
@@ -100,16 +101,16 @@ impl<const N: usize> ContactMonitor<N> {
         if !self.has_value {
             return;
         }
-        let phases = decimator.phases(&config.anchor, decimated);
+        let stagger = decimator.stagger(&config.anchor, decimated);
         let share = config.anchor.sample_rate_millihertz / (config.segments.len() as u32).max(1);
         for (i, segment) in config.segments.iter().enumerate().take(N) {
-            if phases.contains(&(share * i as u32)) {
+            if stagger.contains(&(share * i as u32)) {
                 self.detect(i, segment, thresholds, &condition);
             }
         }
     }
 
-    /// The turn of segment `i`, which comes after that of the segment that it is coupled to.
+    /// Processes segment `i`, after the segment that it is coupled to.
     fn detect<S>(
         &mut self,
         i: usize,
@@ -142,7 +143,7 @@ impl<const N: usize> ContactMonitor<N> {
         }
     }
 
-    /// A bit for each segment in contact, the first in the lowest place.
+    /// Bit mask of the segments in contact; bit 0 is the first segment.
     pub fn contact_mask<S>(&self, segments: &[SegmentConfig<S>]) -> u32 {
         let mut mask = 0;
         for (i, (monitor, segment)) in self.segments.iter().zip(segments).enumerate() {
@@ -188,7 +189,8 @@ impl SegmentMonitor {
         }
     }
 
-    /// The turn of a segment without limits of its own: θ_c against the bend sensors, and against the coupled segment's.
+    /// Processes a segment without limits of its own: θ_c against the bend sensors, and against that of the coupled
+    /// segment.
     fn detect_by_thresholds(
         &mut self,
         thresholds: &ContactConfig,

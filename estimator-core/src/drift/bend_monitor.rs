@@ -1,8 +1,8 @@
-//! The bend sensors of one segment, held against each other and against the IMUs.
+//! Fault detection for the bend sensors of one segment, by comparison with each other and with the IMUs.
 //!
-//! Half the difference of a and b shows how far their mean may be off in this session: where their slow errors are
-//! independent, both have the same variance. A sensor that departs from its twin and from the IMUs is left out; the other
-//! alone is read with the running mean of the difference, so that nothing steps.
+//! Half the difference of a and b estimates the error of their mean in this session: where their slow errors are
+//! independent, both have the same variance. A sensor that deviates from its twin and from the IMUs is excluded; the
+//! reading of the other is then corrected by the running mean of the difference, so that the angle does not step.
 
 use crate::config::{BendErrorConfig, SENSORS_PER_SEGMENT};
 use crate::numeric::scalar::{Constant, Scalar, TIME_UNIT_S};
@@ -12,28 +12,29 @@ use crate::numeric::variance::{degrees, is_beyond, magnitude, scaled_square, sma
 const DIFFERENCE_TIME: Constant = Constant::new(60.0 / TIME_UNIT_S);
 /// Part of the slow difference that carries no information about the mean.
 const IGNORED_DIFFERENCE: Constant = degrees(0.2);
-/// A sensor is left out for so long after it last departed.
+/// A sensor is excluded for this time after its last deviation.
 const DISTRUST_US: u64 = 20_000_000;
-/// One over the departure from the IMUs, and from the twin (1° subtracted first), in predicted standard deviations.
+/// One over the threshold of the deviation from the IMUs, and from the twin (1° subtracted first), in predicted
+/// standard deviations.
 const DEPARTURE: Constant = Constant::new(1.0 / 4.0);
 const DIFFERENCE_DEPARTURE: Constant = Constant::new(1.0 / 5.0);
 const DIFFERENCE_MARGIN: Constant = degrees(1.0);
-/// A sensor that moves by less than this in 10 s, while the IMUs move by more than the other, is stuck.
+/// A sensor is stuck if it moves by less than `STUCK` in 10 s while the IMUs move by more than `MOVING`.
 const STUCK_US: u64 = 10_000_000;
 const STUCK: Constant = degrees(1.0);
 const MOVING: Constant = degrees(12.0);
 
-/// A sensor steps where it moves by more than its errors allow, and by more than the IMUs, between two samples; half of it
-/// keeps up the suspicion, and after this time the sensor has a new zero.
+/// A sensor steps if it moves by more than its errors allow, and by more than the IMUs, between two samples. The step
+/// stays suspected down to half the limit, and is confirmed as a new zero after this time.
 const STEP_CONFIRMATION_US: u64 = 350_000;
-/// Longest time between two samples over which a step is judged, time units: half a second.
+/// Longest time between two samples over which a step can be detected, time units: half a second.
 const STEP_GAP: Constant = Constant::new(0.5 / TIME_UNIT_S);
 
 /// State of a segment's bend sensors.
 #[derive(Debug, Clone, Copy)]
 pub struct BendMonitor<S> {
     steps: [StepDetector<S>; SENSORS_PER_SEGMENT],
-    /// Mean of (a − b)/2 over the last minute, rad, and the time that it covers, time units.
+    /// Mean of (a − b)/2 over the last minute, rad, and the averaging time so far, time units.
     difference: S,
     averaged: S,
     distrusted_until_us: [u64; SENSORS_PER_SEGMENT],
@@ -48,7 +49,7 @@ pub struct BendMonitor<S> {
 struct StepDetector<S> {
     /// Correction since the last step, rad.
     zero: S,
-    /// Angle of the last good sample, moved on with the IMUs, rad.
+    /// Predicted angle: that of the last good sample plus the motion of the IMUs, rad.
     expected: Option<S>,
     suspect_since_us: Option<u64>,
 }
@@ -58,7 +59,7 @@ struct StepDetector<S> {
 pub struct TrustedBend<S> {
     /// Mean of the trusted sensors, rad.
     pub theta: S,
-    /// Whether one sensor of two is missing, so that its error does not cancel.
+    /// One sensor of two is missing, so that its error does not cancel.
     pub is_single: bool,
 }
 
@@ -76,14 +77,14 @@ impl<S: Scalar> BendMonitor<S> {
         }
     }
 
-    /// Angles of the sensors, with the zeros that steps have changed.
+    /// Angles of the sensors, corrected for the zeros that steps have changed.
     pub fn corrected(&self, angles: [Option<S>; SENSORS_PER_SEGMENT]) -> [Option<S>; SENSORS_PER_SEGMENT] {
         let [a, b] = angles;
         let [step_a, step_b] = &self.steps;
         [a.map(|a| a + step_a.zero), b.map(|b| b + step_b.zero)]
     }
 
-    /// θ_bend of the sensors that are read and trusted; `None` where there are none. `has_twins`: the segment has two sensors.
+    /// θ_bend of the sensors that are read and trusted; `None` without any. `has_twins`: the segment has two sensors.
     pub fn mean(
         &self,
         angles: [Option<S>; SENSORS_PER_SEGMENT],
@@ -98,7 +99,7 @@ impl<S: Scalar> BendMonitor<S> {
         }
     }
 
-    /// Takes the difference of both sensors, `dt` after the last sample.
+    /// Averages the difference of both sensors, `dt` after the last sample.
     pub fn compare(&mut self, angles: [Option<S>; SENSORS_PER_SEGMENT], dt: S, time_us: u64) {
         if let [Some(a), Some(b)] = self.trusted(angles, time_us) {
             self.average_difference((a - b).half(), dt);
@@ -113,14 +114,14 @@ impl<S: Scalar> BendMonitor<S> {
         trusted
     }
 
-    /// Whether a sensor is left out now.
+    /// Returns `true` while a sensor is excluded.
     pub fn is_distrusted(&self, time_us: u64) -> bool {
         self.distrusted_until_us.iter().any(|until_us| time_us < *until_us)
             || self.steps.iter().any(|step| step.suspect_since_us.is_some())
     }
 
-    /// Finds sensors that step while θ moves by `motion` in `dt`, or `None` where θ is unknown. Whether a sensor has a new
-    /// zero.
+    /// Detects sensors that step while θ moves by `motion` in `dt` (`None`: θ is unknown). Returns `true` if a sensor
+    /// has a new zero.
     pub fn find_steps(
         &mut self,
         config: &BendErrorConfig,
@@ -134,10 +135,10 @@ impl<S: Scalar> BendMonitor<S> {
         self.steps
             .iter_mut()
             .zip(angles)
-            .fold(false, |any, (step, angle)| any | step.take(angle, motion, limit, time_us))
+            .fold(false, |any, (step, angle)| any | step.update(angle, motion, limit, time_us))
     }
 
-    /// Running mean over the time that is there, a minute at most.
+    /// Updates the running mean over the elapsed time, a minute at most.
     fn average_difference(&mut self, half: S, dt: S) {
         let longest = S::constant(DIFFERENCE_TIME);
         self.averaged = smaller(self.averaged + dt, longest);
@@ -145,8 +146,8 @@ impl<S: Scalar> BendMonitor<S> {
         self.difference += share * (half - self.difference);
     }
 
-    /// Variance of the mean's offset that the difference shows, beyond the prior; `at_tare` it covers a second, in which
-    /// the difference has all of its scatter.
+    /// Variance of the mean's offset in excess of the prior, estimated from the difference. `at_tare` the mean covers
+    /// only a second, so that the scatter of the difference is larger.
     pub fn offset_excess(&self, config: &BendErrorConfig, at_tare: bool) -> S {
         let slow = S::from_q(config.slow_difference);
         let known = if at_tare { slow + slow + slow } else { slow + slow };
@@ -158,7 +159,7 @@ impl<S: Scalar> BendMonitor<S> {
         S::from_q(config.slow_ratio) * scaled_square(beyond)
     }
 
-    /// Holds each sensor against its twin and against `theta` of the IMUs, with the offset that the filter knows.
+    /// Compares each sensor with its twin and with `theta` of the IMUs, to which the estimated offset is added.
     pub fn check(
         &mut self,
         config: &BendErrorConfig,
@@ -180,14 +181,14 @@ impl<S: Scalar> BendMonitor<S> {
         self.check_stuck(angles, theta, time_us);
     }
 
-    /// Finds sensors that do not move while the segment does.
+    /// Detects sensors that do not move while the segment does.
     fn check_stuck(&mut self, angles: [Option<S>; SENSORS_PER_SEGMENT], theta: S, time_us: u64) {
         let is_complete = time_us.saturating_sub(self.range_from_us) >= STUCK_US;
         let moves = self.theta_range[1] - self.theta_range[0] > S::constant(MOVING);
         let sensors = self.sensor_ranges.iter_mut().zip(&mut self.distrusted_until_us).zip(angles);
         for ((range, until_us), angle) in sensors {
             let Some(angle) = angle else {
-                // Nothing is known of a sensor that was missing: it is not stuck.
+                // A sensor that was missing is not reported as stuck.
                 *range = [-S::constant(STUCK), S::constant(STUCK)];
                 continue;
             };
@@ -204,8 +205,8 @@ impl<S: Scalar> BendMonitor<S> {
 }
 
 impl<S: Scalar> StepDetector<S> {
-    /// Takes one sample; whether the sensor has a new zero.
-    fn take(&mut self, angle: Option<S>, motion: Option<S>, least: S, time_us: u64) -> bool {
+    /// Updates the detector with one sample; returns `true` if the sensor has a new zero.
+    fn update(&mut self, angle: Option<S>, motion: Option<S>, least: S, time_us: u64) -> bool {
         let (Some(angle), Some(motion), Some(last)) = (angle, motion, self.expected) else {
             (self.expected, self.suspect_since_us) = (angle.filter(|_| motion.is_some()), None);
             return false;

@@ -1,12 +1,13 @@
 //! Trace of the bias filter: its linear operations on the states x and their covariance P, for a smoother on a host.
 //!
-//! The board has no trace. The trace of the unit type, which is the default, takes nothing and costs nothing.
+//! The board has no trace. The default, the unit type, discards all operations and costs nothing.
 
-/// A linear operation of [`BiasState`](crate::BiasState). Variances are [`VARIANCE_SCALE`](crate::VARIANCE_SCALE) times as
-/// large as in rad²; `noise` is that of the bias, the rate and the offset.
+/// A linear operation of [`BiasState`](crate::BiasState). Variances are multiplied by
+/// [`VARIANCE_SCALE`](crate::VARIANCE_SCALE); `noise` is that of the bias, the rate and the offset.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum BiasOperation<S> {
-    /// All states are zero and known, but that the biases have the covariance (1 + min(i, j)) · `straightness`.
+    /// Start: all states are zero with zero variance, except the biases, whose covariance is
+    /// (1 + min(i, j)) · `straightness`.
     Start {
         /// Variance of each segment's bend angle in the reference pose.
         straightness: S,
@@ -15,21 +16,22 @@ pub enum BiasOperation<S> {
     Predict {
         /// The segment, from 0.
         segment: usize,
-        /// Time, units of [`TIME_UNIT_S`](crate::TIME_UNIT_S); zero where the bias follows the heading of an arm at rest.
+        /// Time, units of [`TIME_UNIT_S`](crate::TIME_UNIT_S); zero where the bias follows the heading of an arm at
+        /// rest.
         dt: S,
         /// Factor of the offset.
         decay: S,
         /// Process noise.
         noise: [S; 3],
     },
-    /// States of one segment have become doubtful: P ← P + `noise`.
+    /// Inflation of the variances of one segment's states: P ← P + `noise`.
     Noise {
         /// The segment, from 0.
         segment: usize,
         /// Process noise.
         noise: [S; 3],
     },
-    /// The states correct the headings of the sample.
+    /// Output: the states correct the headings of the sample.
     Output,
     /// Update: K = P⁻Hᵀ/(H P⁻ Hᵀ + `r`), x ← x⁻ + K `nu`, P ← P⁻ − K H P⁻.
     Update {
@@ -57,9 +59,9 @@ pub enum BiasMeasurement {
     },
 }
 
-/// Receives the operations in their order.
+/// Receiver of the operations, in their order.
 pub trait BiasTrace<S>: Default {
-    /// Takes one operation.
+    /// Records one operation.
     fn record(&mut self, operation: BiasOperation<S>);
 }
 

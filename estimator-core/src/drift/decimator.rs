@@ -1,13 +1,13 @@
-//! Decimator: from the sample rate down to the anchor's, and the turns of the segments between two values.
+//! Decimator: from the sample rate down to the anchor's, and the stagger of the segments between two values.
 
 use core::ops::Range;
 
 use crate::config::AnchorConfig;
 
-/// When a value of the window is complete and which it replaces; the same for the anchors of all segments.
+/// Decimator from the sample rate to the anchor's rate; the same for all segments.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Decimator {
-    /// How much of the time to the next value has passed: adds the anchor's rate a sample, up to the sample rate.
+    /// Phase accumulator: grows by the anchor's rate with each sample, and wraps at the sample rate.
     phase: u32,
     oldest: u16,
 }
@@ -16,7 +16,7 @@ pub struct Decimator {
 #[derive(Debug, Clone, Copy)]
 pub struct Decimated {
     pub(crate) oldest: u16,
-    /// All ones where a value is complete, else zero.
+    /// Mask: all ones where a value is complete, else zero.
     pub(crate) complete: i32,
 }
 
@@ -34,22 +34,22 @@ impl Decimator {
         Self { phase: 0, oldest: 0 }
     }
 
-    /// Takes one sample's time.
-    pub fn tick(&mut self, rule: &AnchorConfig) -> Decimated {
-        self.phase = self.phase.saturating_add(rule.rate_millihertz);
-        let complete = self.phase >= rule.sample_rate_millihertz;
-        let slot = Decimated { oldest: self.oldest, complete: -i32::from(complete) };
+    /// Advances by one sample.
+    pub fn advance(&mut self, config: &AnchorConfig) -> Decimated {
+        self.phase = self.phase.saturating_add(config.rate_millihertz);
+        let complete = self.phase >= config.sample_rate_millihertz;
+        let decimated = Decimated { oldest: self.oldest, complete: -i32::from(complete) };
         if complete {
-            self.phase = (self.phase - rule.sample_rate_millihertz).min(rule.sample_rate_millihertz);
-            self.oldest = if self.oldest + 1 < rule.window { self.oldest + 1 } else { 0 };
+            self.phase = (self.phase - config.sample_rate_millihertz).min(config.sample_rate_millihertz);
+            self.oldest = if self.oldest + 1 < config.window { self.oldest + 1 } else { 0 };
         }
-        slot
+        decimated
     }
 
-    /// The phases that belong to the newest sample: those of all samples from one complete value to the next are those
-    /// from 0 to the sample rate, each once.
-    pub(crate) fn phases(self, rule: &AnchorConfig, slot: Decimated) -> Range<u32> {
-        let first = if slot.is_complete() { 0 } else { self.phase };
-        first..self.phase.saturating_add(rule.rate_millihertz)
+    /// Range of phases of the newest sample. The ranges of all samples from one complete value to the next cover each
+    /// phase from 0 to the sample rate once.
+    pub(crate) fn stagger(self, config: &AnchorConfig, decimated: Decimated) -> Range<u32> {
+        let first = if decimated.is_complete() { 0 } else { self.phase };
+        first..self.phase.saturating_add(config.rate_millihertz)
     }
 }

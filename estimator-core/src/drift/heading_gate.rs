@@ -1,40 +1,42 @@
 //! Plausibility of one IMU's heading: jumps, restarts with another zero, returns after an absence, and frozen output.
 //!
-//! A reading is held against the heading that its segment's bend sensors predict from the heading below. One that is far off
-//! is not used; an IMU that stays off has a new zero, and the difference is added to its bias.
+//! A reading is compared with the heading that its segment's bend sensors predict from the heading below. A reading
+//! that deviates too far is rejected; if the deviation persists, the IMU has a new zero, and the deviation is added to
+//! its bias.
 
 use crate::numeric::phase::Turns;
 use crate::numeric::scalar::{Constant, Scalar};
 use crate::numeric::variance::{degrees, magnitude};
 
-/// A reading is off by more than this and the bend sensors' motion since the last sample,
+/// Limit of a reading's deviation, plus the bend sensors' motion since the last sample. Half the limit holds while a
+/// jump is suspected.
 const JUMP: Constant = degrees(6.0);
-/// or, after an absence, by more than this and 0.3 times the motion. Half of it keeps up a suspicion.
+/// Factor on that motion after an absence.
 const RETURN_PER_MOTION: Constant = Constant::new(0.3);
-/// The same where no bend sensor predicts the motion.
+/// Limit of the deviation without bend sensors.
 const JUMP_UNSEEN: Constant = degrees(30.0);
 /// Absence after which an IMU may have restarted.
 const ABSENCE_US: u64 = 500_000;
-/// Time for which a heading must be off until its zero is taken to be new: single wild samples are shorter.
+/// Time for which a heading must deviate until a new zero is assumed; outliers are shorter.
 const CONFIRMATION_US: u64 = 350_000;
-/// Output that is the same to the bit for so long, while the bend sensors move, is frozen.
+/// Output that is constant to the bit for this time, while the bend sensors move, is frozen.
 const FROZEN_US: u64 = 990_000;
 
 /// State of one IMU's plausibility check.
 #[derive(Debug, Clone, Copy)]
 pub struct HeadingGate<S> {
-    /// Last accepted reading, unwrapped, and the same corrected for the gyroscope's sensitivity.
+    /// Last accepted reading, unwrapped, and the same corrected for the gyroscope's scale error.
     raw: Turns,
     scaled: Turns,
     accepted_at_us: Option<u64>,
-    /// First and last reading that was far off, since the last accepted one.
+    /// Times of the first and the last rejected reading since the last accepted one, µs.
     suspect_us: Option<[u64; 2]>,
-    /// Whether the first reading has its zero already.
+    /// Headings are absolute: the first reading needs no tare.
     is_absolute: bool,
     freeze: Freeze<S>,
 }
 
-/// The newest change of the reading, and the bend angles then.
+/// The newest change of the reading, and the bend angles at that time.
 #[derive(Debug, Clone, Copy)]
 struct Freeze<S> {
     reading: Turns,
@@ -46,7 +48,7 @@ struct Freeze<S> {
 
 /// Prediction of one heading.
 #[derive(Debug, Clone, Copy)]
-pub struct Expected<S> {
+pub struct HeadingPrediction<S> {
     /// Heading that the bend sensors predict in {W}.
     pub heading: Turns,
     /// Motion of the bend sensors since the last sample, rad.
@@ -68,7 +70,7 @@ pub enum Verdict<S> {
     Accepted(Turns),
     /// The heading in {W} after an absence, in which the IMU may have restarted near its old zero.
     Returned(Turns),
-    /// The IMU has a new zero after an absence of so many µs: add the angle to its bias.
+    /// The IMU has a new zero: angle to add to its bias, and duration of the absence before it, µs.
     Restarted(Turns, u64),
     /// Not read, or not used.
     Absent,
@@ -77,7 +79,7 @@ pub enum Verdict<S> {
 }
 
 impl<S: Scalar> HeadingGate<S> {
-    /// An IMU that was not read yet.
+    /// Before the first reading.
     pub const fn new(zero: S) -> Self {
         let freeze = Freeze { reading: Turns::ZERO, since_us: 0, theta: zero, bend: None, is_frozen: false };
         Self {
@@ -90,7 +92,7 @@ impl<S: Scalar> HeadingGate<S> {
         }
     }
 
-    /// Sets the zero at the end of a tare: the newest reading, unwrapped, and the heading in {W} that it stands for.
+    /// Sets the zero at the end of a tare: the newest reading, unwrapped, and its heading in {W}.
     pub fn tare(&mut self, raw: Turns, heading: Turns, time_us: u64) {
         *self = Self { raw, scaled: heading, accepted_at_us: Some(time_us), ..Self::new(S::zero()) };
     }
@@ -100,14 +102,13 @@ impl<S: Scalar> HeadingGate<S> {
         *self = Self { is_absolute: true, ..Self::new(S::zero()) };
     }
 
-    /// Takes a reading, unwrapped, or `None` where the IMU was not read. `scale_error` is that of the gyroscope's
-    /// sensitivity, in units of 2⁻³². `above` gives the deviation of the next IMU's reading from the same prediction, where it
-    /// was read.
-    pub fn take(
+    /// Checks a reading, unwrapped, or `None` where the IMU was not read. `scale_error` is the gyroscope's, in units of
+    /// 2⁻³². `above` returns the deviation of the next IMU's reading from the same prediction, where it was read.
+    pub fn check(
         &mut self,
         reading: Option<Turns>,
         scale_error: i32,
-        expected: &Expected<S>,
+        expected: &HeadingPrediction<S>,
         above: impl Fn() -> Option<Turns>,
         time_us: u64,
     ) -> Verdict<S> {
@@ -144,7 +145,7 @@ impl<S: Scalar> HeadingGate<S> {
         (self.accepted_at_us, self.suspect_us) = (Some(time_us), None);
     }
 
-    /// Begin of the far readings that go up to this one; those before an absence do not count.
+    /// Time of the first of the rejected readings up to this one; those before an absence do not count.
     fn suspect_since(&mut self, time_us: u64) -> u64 {
         let recent = self.suspect_us.filter(|[_, last_us]| time_us.saturating_sub(*last_us) <= ABSENCE_US);
         let since_us = recent.map_or(time_us, |[since_us, _]| since_us);
@@ -152,11 +153,11 @@ impl<S: Scalar> HeadingGate<S> {
         since_us
     }
 
-    /// Whether a deviation is more than the arm can have moved.
+    /// Returns `true` if a deviation is larger than the possible motion of the arm.
     fn is_far(
         &self,
         deviation: Turns,
-        expected: &Expected<S>,
+        expected: &HeadingPrediction<S>,
         above: impl Fn() -> Option<Turns>,
         absence_us: u64,
     ) -> bool {
@@ -169,31 +170,32 @@ impl<S: Scalar> HeadingGate<S> {
             S::constant(JUMP) + moved
         };
         let limit = if self.suspect_us.is_some() { limit.half() } else { limit };
-        // Where the next IMU deviates alike, the segment has moved and not the IMU: a push that the bend sensors miss.
+        // If the next IMU deviates equally, the segment has moved (a push that the bend sensors miss), and the IMU is
+        // good.
         !is_within(deviation, limit) && !above().is_some_and(|above| is_within(above - deviation, limit.half()))
     }
 
-    /// Deviation of a reading from a predicted one (heading and bias), whole turns aside.
+    /// Deviation of a reading from a predicted one (heading and bias), without whole turns.
     pub fn deviation(&self, reading: Turns, scale_error: i32, predicted: Turns) -> Turns {
         let delta = reading - self.raw;
         let scaled = self.scaled + delta - delta.scaled_by(scale_error);
         Turns::from((scaled - predicted).phase())
     }
 
-    /// Whether a reading was accepted before, so that a deviation is known.
+    /// Returns `true` if a reading was accepted before, so that a deviation is defined.
     pub fn is_known(&self) -> bool {
         self.accepted_at_us.is_some()
     }
 
-    /// θ by the bend sensors where the output has not changed by a bit while they have moved.
-    fn frozen_theta(&mut self, reading: Turns, expected: &Expected<S>, time_us: u64) -> Option<S> {
+    /// θ by the bend sensors if the output has not changed by a bit while they have moved.
+    fn frozen_theta(&mut self, reading: Turns, expected: &HeadingPrediction<S>, time_us: u64) -> Option<S> {
         let freeze = &mut self.freeze;
         if reading != freeze.reading || freeze.bend.is_none() {
             let theta = expected.theta + expected.motion;
             *freeze = Freeze { reading, since_us: time_us, theta, bend: expected.bend, is_frozen: false };
             return None;
         }
-        // Without bend sensors it stays what it was.
+        // Without bend sensors the state does not change.
         let motion = expected.bend.zip(freeze.bend).map(|(bend, start)| bend - start);
         let is_old = time_us.saturating_sub(freeze.since_us) >= FROZEN_US;
         freeze.is_frozen |= is_old && motion.is_some_and(|motion| magnitude(motion) > expected.frozen_motion);
@@ -201,7 +203,7 @@ impl<S: Scalar> HeadingGate<S> {
     }
 }
 
-/// Whether an angle is within ±`limit`.
+/// Returns `true` if an angle is within ±`limit`.
 fn is_within<S: Scalar>(angle: Turns, limit: S) -> bool {
     magnitude(S::from_phase(angle.phase())) <= limit
 }

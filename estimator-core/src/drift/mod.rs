@@ -1,82 +1,15 @@
-//! Drift correction of the IMUs: the paper's moving-average anchor, and a Kalman filter over the biases of all headings.
+//! Drift correction of the IMUs: the paper's moving-average anchor, and a Kalman filter over the biases of all
+//! headings.
 
 pub mod bend_monitor;
 pub mod bias_filter;
 pub mod bias_state;
 pub mod bias_trace;
+pub mod correction;
 pub mod decimator;
 pub mod heading_gate;
 pub mod moving_average;
 pub mod rest;
 pub mod share;
 
-use crate::config::ArmConfig;
-use crate::drift::decimator::Decimated;
-use crate::drift::share::Share;
-use crate::numeric::phase::Turns;
-use crate::sensing::bend_sensors::BendAngles;
-use crate::sensing::heading::SegmentHeading;
-
-/// Bend angles and headings of one sample, from the base to the tip.
-#[derive(Debug, Clone, Copy)]
-pub struct SensedArm<S, const N: usize> {
-    /// Time of the sample, µs.
-    pub time_us: u64,
-    /// Position of the sample between two values of the anchor.
-    pub decimated: Decimated,
-    /// Share of the work on covariances that the sample does.
-    pub share: Share,
-    /// Bend angles.
-    pub bend: [BendAngles<S>; N],
-    /// Headings of the segments' ends.
-    pub headings: [SegmentHeading; N],
-}
-
-impl<S, const N: usize> SensedArm<S, N> {
-    /// Before the first sample.
-    pub const UNKNOWN: Self = Self {
-        time_us: 0,
-        decimated: Decimated { oldest: 0, complete: 0 },
-        share: Share::Whole,
-        bend: [const { BendAngles::UNKNOWN }; N],
-        headings: [SegmentHeading::BASE; N],
-    };
-}
-
-/// Corrected bend angles of one sample, from the base to the tip.
-#[derive(Debug, Clone, Copy)]
-pub struct CorrectedArm<const N: usize> {
-    /// θ_c,i of the IMUs; `None` where one of the two was not read, or is not trusted.
-    pub imu: [Option<Turns>; N],
-    /// θ_i of all sensors; `None` where the correction leaves fusion to KF_orient and KF_coord.
-    pub fused: [Option<Turns>; N],
-    /// Angles for the contact detector.
-    pub measured: [MeasuredAngles; N],
-}
-
-/// Bend angles of one segment for the contact detector.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct MeasuredAngles {
-    /// θ_c,i without `steps`; `None` where one of the two IMUs was not read, or is not trusted.
-    pub imu: Option<Turns>,
-    /// Sum of the steps that updates of the bias have made in θ_c,i: no motion of the segment.
-    pub steps: Turns,
-    /// θ_bend of the trusted sensors; `None` where there are none.
-    pub bend: Option<Turns>,
-}
-
-impl MeasuredAngles {
-    /// No angle is known.
-    pub const UNKNOWN: Self = Self { imu: None, steps: Turns::ZERO, bend: None };
-}
-
-impl<const N: usize> CorrectedArm<N> {
-    /// No angle is known.
-    pub const UNKNOWN: Self = Self { imu: [None; N], fused: [None; N], measured: [MeasuredAngles::UNKNOWN; N] };
-}
-
-/// Removes the drift from the IMUs' bend angles.
-pub trait DriftCorrection<S, const N: usize> {
-    /// Takes one sample's angles; gives the corrected ones.
-    fn correct(&mut self, config: &ArmConfig<S>, sensed: &SensedArm<S, N>) -> CorrectedArm<N>;
-}
+pub use correction::{CorrectedArm, DriftCorrection, MeasuredAngles, SensedArm};

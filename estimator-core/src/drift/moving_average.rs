@@ -1,8 +1,8 @@
-//! Drift anchor: the moving average of what the IMUs say beyond the bend sensors (paper, eq. 2 and 3).
+//! Drift anchor: the moving average of the IMUs' bend angle less that of the bend sensors (paper, eq. 2 and 3).
 
 use crate::config::{AnchorConfig, ArmConfig};
+use crate::drift::correction::{CorrectedArm, DriftCorrection, MeasuredAngles, SensedArm};
 use crate::drift::decimator::Decimated;
-use crate::drift::{CorrectedArm, DriftCorrection, MeasuredAngles, SensedArm};
 use crate::numeric::phase::Turns;
 use crate::numeric::scalar::Scalar;
 use crate::sensing::heading::SegmentHeading;
@@ -10,13 +10,13 @@ use crate::sensing::heading::SegmentHeading;
 /// Moving average over `window` values of θ_imu,i − θ_bend,i for one segment, of up to `W` values.
 ///
 /// As both means of the paper run over the same samples, offset_i = MA(θ_imu,i) − MA(θ_bend,i) is one mean of the
-/// differences. The sum is of whole numbers and therefore exact however long it runs. Where a sample lacks one of the
-/// two, its place in the window stays empty; when the whole window is empty, the newest offset holds.
+/// differences. The sum is of integers, and therefore exact over any time. If a sample lacks one of the two angles, its
+/// place in the window stays empty; while the whole window is empty, the newest offset holds.
 ///
 /// ```
 /// use estimator_core::{MovingAverageAnchor, AnchorConfig, Decimator, Turns};
 ///
-/// let rule = AnchorConfig {
+/// let config = AnchorConfig {
 ///     window: 2,
 ///     rate_millihertz: 10_000,
 ///     sample_rate_millihertz: 10_000,
@@ -24,7 +24,7 @@ use crate::sensing::heading::SegmentHeading;
 /// };
 /// let (mut decimator, mut anchor) = (Decimator::new(), MovingAverageAnchor::<2>::new());
 /// for value in [1, 3, 5] {
-///     anchor.push(decimator.tick(&rule), Some(Turns::from_bits(value)));
+///     anchor.push(decimator.advance(&config), Some(Turns::from_bits(value)));
 /// }
 /// assert_eq!(anchor.offset(), Some(Turns::from_bits(4)));
 /// ```
@@ -33,7 +33,7 @@ pub struct MovingAverageAnchor<const W: usize> {
     offset: Option<Turns>,
     mean: Mean,
     group: Mean,
-    /// The values; a missing one is zero, and its count is none.
+    /// The ring buffer of the window's values, and 1 for each value that is present; a missing value is zero.
     window: [Turns; W],
     counts: [u8; W],
 }
@@ -55,21 +55,21 @@ impl Mean {
 }
 
 impl<const W: usize> MovingAverageAnchor<W> {
-    /// An anchor that has seen nothing.
+    /// An anchor before its first value.
     #[must_use]
     pub const fn new() -> Self {
         Self { offset: None, mean: Mean::EMPTY, group: Mean::EMPTY, window: [Turns::ZERO; W], counts: [0; W] }
     }
 
-    /// Takes this sample's difference θ_imu,i − θ_bend,i, or `None` where one of the two is unknown.
+    /// Adds this sample's difference θ_imu,i − θ_bend,i, or `None` where one of the two is unknown.
     ///
-    /// Every sample costs the same, whether it completes a value of the window or not.
+    /// The cost is the same for samples that complete a value of the window and for those that do not.
     #[inline]
-    pub fn push(&mut self, slot: Decimated, difference: Option<Turns>) {
-        self.take(difference.unwrap_or_default(), i32::from(difference.is_some()), slot);
+    pub fn push(&mut self, decimated: Decimated, difference: Option<Turns>) {
+        self.take(difference.unwrap_or_default(), i32::from(difference.is_some()), decimated);
     }
 
-    /// Out of line, with all registers for itself.
+    /// Updates the window. Not inlined, so that the loop over the segments leaves it all registers.
     #[inline(never)]
     fn take(&mut self, sum: Turns, count: i32, Decimated { oldest, complete }: Decimated) {
         let Self { offset, mean, group, window, counts } = self;
@@ -77,7 +77,7 @@ impl<const W: usize> MovingAverageAnchor<W> {
         let (Some(place), Some(counts)) = (window.get_mut(k), counts.get_mut(k)) else { return };
         let whole = Mean { sum: group.sum + sum, count: group.count + count };
         let newest = whole.value();
-        // What is not complete adds nothing: by masks, which cost the same.
+        // An incomplete value adds zero, by a mask instead of a branch, for constant cost.
         let more = (newest.unwrap_or_default() - *place).masked(complete);
         let more_counts = (i32::from(newest.is_some()) - i32::from(*counts)) & complete;
         *group = Mean { sum: whole.sum.masked(!complete), count: whole.count & !complete };
@@ -88,11 +88,11 @@ impl<const W: usize> MovingAverageAnchor<W> {
         }
     }
 
-    /// What to subtract from the untared θ_imu,i for θ_c,i: the tare's zero, or, where offset_i is over the threshold, the
-    /// offset, in whose values the tare is still.
+    /// Correction to subtract from the untared θ_imu,i for θ_c,i: the tare's zero or, where offset_i is over the
+    /// threshold, the offset, which includes the tare.
     #[inline]
-    pub(crate) fn zero(&self, rule: &AnchorConfig, zero: Turns) -> Turns {
-        self.offset.filter(|offset| (*offset - zero).exceeds(rule.threshold)).unwrap_or(zero)
+    pub(crate) fn zero(&self, config: &AnchorConfig, zero: Turns) -> Turns {
+        self.offset.filter(|offset| (*offset - zero).exceeds(config.threshold)).unwrap_or(zero)
     }
 
     /// The newest offset; `None` before the first.
@@ -116,7 +116,7 @@ pub struct MovingAverage<const N: usize, const W: usize> {
 }
 
 impl<const N: usize, const W: usize> MovingAverage<N, W> {
-    /// Anchors that have seen nothing.
+    /// Anchors before their first value.
     #[must_use]
     pub const fn new() -> Self {
         Self { anchors: [MovingAverageAnchor::new(); N] }
@@ -124,7 +124,7 @@ impl<const N: usize, const W: usize> MovingAverage<N, W> {
 }
 
 impl<const N: usize, const W: usize> MovingAverage<N, W> {
-    /// Forgets everything, at the start of a session.
+    /// Clears all state at the start of a session.
     pub fn start(&mut self) {
         for anchor in &mut self.anchors {
             *anchor = MovingAverageAnchor::new();
@@ -133,8 +133,7 @@ impl<const N: usize, const W: usize> MovingAverage<N, W> {
 }
 
 impl<S: Scalar, const N: usize, const W: usize> DriftCorrection<S, N> for MovingAverage<N, W> {
-    fn correct(&mut self, config: &ArmConfig<S>, sensed: &SensedArm<S, N>) -> CorrectedArm<N> {
-        let mut corrected = CorrectedArm::UNKNOWN;
+    fn correct(&mut self, config: &ArmConfig<S>, sensed: &SensedArm<S, N>, corrected: &mut CorrectedArm<N>) {
         let mut below = &SegmentHeading::BASE;
         let angles = corrected.imu.iter_mut().zip(&mut corrected.measured);
         let segments = self.anchors.iter_mut().zip(&sensed.headings).zip(&sensed.bend).zip(angles);
@@ -143,10 +142,12 @@ impl<S: Scalar, const N: usize, const W: usize> DriftCorrection<S, N> for Moving
             below = heading;
             anchor.push(sensed.decimated, difference.zip(bend.mean).map(|(imu, bend)| imu - bend.to_turns()));
             *theta = difference.zip(zero).map(|(imu, zero)| imu - anchor.zero(&config.anchor, zero));
-            if let Some((imu, bend)) = theta.zip(bend.mean) {
-                *measured = MeasuredAngles { imu: Some(imu), steps: Turns::ZERO, bend: Some(bend.to_turns()) };
-            }
+            let both = theta.zip(bend.mean);
+            *measured = MeasuredAngles {
+                imu: both.map(|(imu, _)| imu),
+                steps: Turns::ZERO,
+                bend: both.map(|(_, bend)| bend.to_turns()),
+            };
         }
-        corrected
     }
 }

@@ -1,16 +1,16 @@
-//! Rest: a whole arm that does not move shows the drift's rate.
+//! Detector of rest (zero angular rate): while the whole arm is at rest, the change of a heading is its drift.
 //!
 //! Every five seconds the headings and bend angles are compared with those of five seconds ago. After twenty seconds of
-//! rest the change of a heading is its rate times the time, which is learned, and the shape is held: the bias follows the
-//! heading.
+//! rest the change of a heading over time is a measurement of the bias's rate, and the shape is held: the bias follows
+//! the heading.
 
 use crate::numeric::phase::Turns;
 use crate::numeric::scalar::{Constant, Scalar, TIME_UNIT_S};
 use crate::numeric::variance::{degrees, magnitude};
 
-/// Length of a window.
+/// Length of a window, µs.
 const WINDOW_US: u64 = 5_000_000;
-/// Rest after which the rates are learned and the shape is held: creep has settled.
+/// Time of rest after which the rates are measured and the shape is held, µs: creep has settled.
 const HOLD_US: u64 = 19_500_000;
 /// Time constant of the means, time units: half a second, a 128th.
 const MEAN_TIME: Constant = Constant::new(0.5 / TIME_UNIT_S);
@@ -29,14 +29,14 @@ pub struct RestDetector<S, const N: usize> {
     quiet_us: u64,
 }
 
-/// Deviation of a signal from its value at the window's begin.
+/// Deviation of a signal from its value at the beginning of the window.
 #[derive(Debug, Clone, Copy)]
 struct Mean<S> {
     start: Option<Turns>,
     filtered: S,
     lowest: S,
     highest: S,
-    /// Whether there was a value in this window.
+    /// At least one value was read in this window.
     is_read: bool,
 }
 
@@ -56,8 +56,8 @@ impl<S: Scalar> Mean<S> {
         Self { start: None, filtered: zero, lowest: zero, highest: zero, is_read: false }
     }
 
-    /// Takes a value; `share` is that of the newest one in the mean.
-    fn take(&mut self, value: Turns, share: S) {
+    /// Adds a value; `share` is its weight in the mean.
+    fn add(&mut self, value: Turns, share: S) {
         self.is_read = true;
         let start = *self.start.get_or_insert(value);
         let deviation = S::from_phase((value - start).phase());
@@ -66,7 +66,7 @@ impl<S: Scalar> Mean<S> {
         self.highest = if deviation > self.highest { deviation } else { self.highest };
     }
 
-    /// The change of the mean since the window began, and the range of the values; a new window begins at the mean.
+    /// Ends the window: returns the change of the mean and the range of the values; the next window begins at the mean.
     fn finish(&mut self) -> Option<(S, S)> {
         let start = self.start.filter(|_| self.is_read)?;
         let (change, range) = (self.filtered, self.highest - self.lowest);
@@ -81,24 +81,23 @@ impl<S: Scalar, const N: usize> RestDetector<S, N> {
         Self { headings: [Mean::new(zero); N], bend: [Mean::new(zero); N], window_from_us: None, quiet_us: 0 }
     }
 
-    /// Whether the shape is held.
+    /// Returns `true` while the shape is held.
     pub fn is_resting(&self) -> bool {
         self.quiet_us >= HOLD_US
     }
 
-    /// Takes the readings of IMU and segment `i`, `dt` after the last ones: the heading as the IMU reads it, and the bend
-    /// angle.
-    pub fn take(&mut self, i: usize, heading: Option<Turns>, bend: Option<Turns>, dt: S) {
-        // In two steps, as 128 does not fit.
+    /// Adds the readings of IMU and segment `i`, `dt` after the last ones: the uncorrected heading, and the bend angle.
+    pub fn update(&mut self, i: usize, heading: Option<Turns>, bend: Option<Turns>, dt: S) {
+        // In two steps, as 128 does not fit the fixed-point range.
         let share = if dt < S::constant(MEAN_TIME) { dt * S::from_int(16) * S::from_int(8) } else { S::one() };
         for (means, value) in [(&mut self.headings, heading), (&mut self.bend, bend)] {
             if let (Some(mean), Some(value)) = (means.get_mut(i), value) {
-                mean.take(value, share);
+                mean.add(value, share);
             }
         }
     }
 
-    /// What has changed over a window of rest, at its end.
+    /// Changes over a window of rest, at its end.
     pub fn window(&mut self, time_us: u64) -> Option<RestWindow<S, N>> {
         let from_us = *self.window_from_us.get_or_insert(time_us);
         let length_us = time_us.saturating_sub(from_us);
@@ -110,7 +109,7 @@ impl<S: Scalar, const N: usize> RestDetector<S, N> {
     }
 
     fn finish(&mut self, length_us: u64) -> Option<RestWindow<S, N>> {
-        // A gap hides what happened in it.
+        // A gap may hide motion.
         let mut is_quiet = length_us < WINDOW_US + WINDOW_US / 8;
         let mut headings = [None; N];
         for (change, mean) in headings.iter_mut().zip(&mut self.headings) {

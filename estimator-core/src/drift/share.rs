@@ -1,7 +1,8 @@
 //! Shares of the work on covariances, which is quadratic in the number of segments.
 //!
-//! Up to 50 Hz a sample does all of it. Above, a sample does one share, which is linear: the prediction of one segment's states
-//! in the bias filter, the update by that segment, or one block row of what the update takes off the covariance.
+//! Up to 50 Hz each sample does all of the work. Above 50 Hz a sample does one share of linear cost: the prediction of
+//! one segment's states in the bias filter, the update of the states by that segment, or one block row of the
+//! covariance's update.
 
 use core::ops::Range;
 
@@ -13,13 +14,14 @@ const WHOLE_UP_TO_MILLIHERTZ: u32 = 50_000;
 /// Share of one sample.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Share {
-    /// All of it.
+    /// All of the work.
     Whole,
-    /// The prediction of the segment whose update is next.
+    /// Prediction of the segment that is updated next.
     Prediction,
-    /// The update by that segment.
+    /// Update of the states by that segment.
     Update,
-    /// One block row of the covariance, one segment of the shape's uncertainty, and creep of that segment's sensors.
+    /// Update of one block row of the covariance, one segment of the shape's uncertainty, and creep of that segment's
+    /// sensors.
     Row(usize),
 }
 
@@ -36,8 +38,8 @@ impl ShareCounter {
     }
 
     /// Share of this sample.
-    pub fn share(&self, rule: &AnchorConfig) -> Share {
-        if rule.sample_rate_millihertz <= WHOLE_UP_TO_MILLIHERTZ { Share::Whole } else { self.share }
+    pub fn share(&self, config: &AnchorConfig) -> Share {
+        if config.sample_rate_millihertz <= WHOLE_UP_TO_MILLIHERTZ { Share::Whole } else { self.share }
     }
 
     /// Selects the next sample's share, for an arm of `segments`.

@@ -1,8 +1,9 @@
 //! Covariance of the shape: errors of the headings, propagated along the chain to the world points.
 //!
-//! An error of a heading turns the arc that ends with it and the arc that begins with it. Of the end's chord, a share λ turns
-//! with the segment's own heading and the rest with the heading before: λ = ½ for an arc, 1 for a connector behind it. The
-//! Jacobian of point m by heading j is the chord, turned by a quarter and levered; C_m = Σ J_j P_jk J_kᵀ.
+//! An error of a heading turns the arc before it and the arc after it. A share λ of a segment's chord turns with the
+//! segment's own heading and the remainder with the heading before: λ = ½ for an arc, 1 for a connector after it. The
+//! Jacobian of point m with respect to heading j is the chord, turned by 90° and multiplied by its lever; C_m = Σ J_j
+//! P_jk J_kᵀ.
 
 use nalgebra::Vector2;
 
@@ -27,7 +28,7 @@ pub fn lever_arm<S: Scalar>(segment: &SegmentConfig<S>) -> Q {
 /// use estimator_core::{CovariancePropagation, Q, VARIANCE_SCALE};
 /// use nalgebra::Vector2;
 ///
-/// // A straight arm of one arc of 0.1 m whose heading may be off by 0.1 rad: its end may be off by 5 mm, sideways.
+/// // A straight arm of one arc of 0.1 m, whose heading has σ = 0.1 rad: its end has σ = 5 mm, sideways.
 /// let (zero, headings) = (Q::from_f64(0.0), [Q::from_f64(0.01 * VARIANCE_SCALE)]);
 /// let mut propagation = CovariancePropagation::new();
 /// propagation.step(&headings, Vector2::new(zero, Q::from_f64(0.1)), Q::from_f64(0.5), zero);
@@ -53,16 +54,16 @@ impl<const N: usize> CovariancePropagation<N> {
         Self { before: [zero; N], cross: [Vector2::new(zero, zero); N], point, segment: 0 }
     }
 
-    /// Propagates over one segment with its `chord` from start to end in {W} and its [lever arm](lever_arm) λ; gives the
-    /// variance of its bend angle θ_i = Θ_i − Θ_{i−1}.
+    /// Propagates over one segment with its `chord` from start to end in {W} and its [lever arm](lever_arm) λ; returns
+    /// the variance of its bend angle θ_i = Θ_i − Θ_{i−1}.
     ///
-    /// Variances are [`VARIANCE_SCALE`](crate::VARIANCE_SCALE) times rad² of its heading with all `headings`, and m² of its
-    /// `end`, which it adds to either coordinate.
+    /// Variances are [`VARIANCE_SCALE`](crate::VARIANCE_SCALE) times rad² of its heading with all `headings`, and m² of
+    /// its `end`, which it adds to either coordinate.
     pub fn step(&mut self, headings: &[Q; N], chord: Vector2<Q>, lever: Q, end: Q) -> Q {
         let Self { before, cross, point, segment } = self;
         let zero = Q::from_bits(0);
-        let rest = Q::from_f64(1.0) - lever;
-        // Derivative of the chord by its angle, clockwise positive: (x, y) to (y, −x).
+        let complement = Q::from_f64(1.0) - lever;
+        // Derivative of the chord with respect to its angle, clockwise positive: (x, y) to (y, −x).
         let turn = Vector2::new(chord.y, -chord.x);
         let (k, k_before) = (Some(*segment), segment.checked_sub(1));
         let at = |row: &[Q; N], k: Option<usize>| k.and_then(|k| row.get(k)).copied().unwrap_or(zero);
@@ -70,20 +71,20 @@ impl<const N: usize> CovariancePropagation<N> {
         let theta = (own - shared) + (of_before - shared);
         let cross_at = |k: Option<usize>| k.and_then(|k| cross.get(k)).copied().unwrap_or(Vector2::new(zero, zero));
         let (of_own, of_below) = (cross_at(k), cross_at(k_before));
-        // Covariance of the chord's levered angle with the heading, and with the one before.
-        let with_own = lever.mul_unchecked_range(own) + rest.mul_unchecked_range(at(before, k));
-        let with_before = lever.mul_unchecked_range(shared) + rest.mul_unchecked_range(of_before);
-        let half = Q::dot([lever, rest], [with_own, with_before]).half();
+        // Covariance of the chord's angle (weighted by λ) with the heading, and with the one before.
+        let with_own = lever.mul_unchecked_range(own) + complement.mul_unchecked_range(at(before, k));
+        let with_before = lever.mul_unchecked_range(shared) + complement.mul_unchecked_range(of_before);
+        let half = Q::dot([lever, complement], [with_own, with_before]).half();
         // Covariance of the angle with the point, and half of its variance along the turn.
         let side = Vector2::new(
-            Q::dot([lever, rest, half], [of_own.x, of_below.x, turn.x]),
-            Q::dot([lever, rest, half], [of_own.y, of_below.y, turn.y]),
+            Q::dot([lever, complement, half], [of_own.x, of_below.x, turn.x]),
+            Q::dot([lever, complement, half], [of_own.y, of_below.y, turn.y]),
         );
         point.xx += Q::dot([turn.x; 2], [side.x; 2]) + end;
         point.xy += Q::dot([turn.x, turn.y], [side.y, side.x]);
         point.yy += Q::dot([turn.y; 2], [side.y; 2]) + end;
         for (cross, (own, before)) in cross.iter_mut().zip(headings.iter().zip(before.iter_mut())) {
-            let angle = lever.mul_unchecked_range(*own) + rest.mul_unchecked_range(*before);
+            let angle = lever.mul_unchecked_range(*own) + complement.mul_unchecked_range(*before);
             *cross += Vector2::new(turn.x.mul_unchecked_range(angle), turn.y.mul_unchecked_range(angle));
             *before = *own;
         }

@@ -1,4 +1,5 @@
-//! Forward kinematics: the chain of the segments from the base to the tip (paper, eq. 7, corrected in `docs/PAPER.md`).
+//! Forward kinematics: the chain of the segments from the base to the tip (paper, eq. 7, corrected in
+//! `docs/explanation/paper.md`).
 
 use nalgebra::Vector2;
 

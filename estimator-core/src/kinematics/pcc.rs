@@ -1,14 +1,14 @@
-//! Piecewise-constant-curvature kinematics (paper, eq. 4 to 7, with the corrections of `docs/PAPER.md`).
+//! Piecewise-constant-curvature kinematics (paper, eq. 4 to 7, with the corrections of `docs/explanation/paper.md`).
 
 use nalgebra::Vector2;
 
 use crate::config::{OffsetAt, SegmentConfig};
+use crate::numeric::angle::Angle;
 use crate::numeric::fused::FusedOps;
-use crate::numeric::phase::Angle;
 use crate::numeric::polynomial::{AXIAL, COSINE, Terms, VERSINE};
 use crate::numeric::scalar::{Constant, TWO_PI};
 
-/// A unit arc that turns by θ: what PCC needs of an angle, smooth through θ = 0.
+/// Unit arc that turns by θ, smooth through θ = 0.
 ///
 /// sin θ / θ and (1 − cos θ) / θ² are one minimax polynomial each in θ² for |θ| ≤ 2 rad (errors 1.4·10⁻¹² and
 /// 2.2·10⁻¹¹); larger angles are reduced.
@@ -23,9 +23,9 @@ use crate::numeric::scalar::{Constant, TWO_PI};
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct UnitArc<S> {
-    /// (1 − cos θ) / θ: how far the arc's end lies to the right of its start, per length.
+    /// (1 − cos θ) / θ: distance of the arc's end to the right of its start, per length.
     pub lateral: S,
-    /// sin θ / θ: how far the arc's end lies ahead of its start, per length.
+    /// sin θ / θ: distance of the arc's end ahead of its start, per length.
     pub axial: S,
     /// cos θ.
     pub cos: S,
@@ -33,40 +33,40 @@ pub struct UnitArc<S> {
     pub sin: S,
 }
 
-/// Up to this |θ| the polynomials hold, rad: a step of [`Q`](crate::Q) under 2.
+/// Largest |θ| for which the polynomials hold, rad: a step of [`Q`](crate::Q) under 2.
 const LIMIT: Constant = Constant::new(2.0 - 1.0 / 67_108_864.0);
 
 impl<S: FusedOps> UnitArc<S> {
     /// The unit arc that turns by `theta`, of any size.
     #[must_use]
     pub fn new(theta: Angle<S>) -> Self {
-        if theta.turns == 0 && theta.rest.is_within(S::constant(LIMIT)) {
-            Self::within_2_rad(theta.rest)
+        if theta.whole_turns == 0 && theta.remainder.is_within(S::constant(LIMIT)) {
+            Self::within_2_rad(theta.remainder)
         } else {
             Self::reduced(theta)
         }
     }
 
     #[cold]
-    fn reduced(Angle { rest, turns }: Angle<S>) -> Self {
+    fn reduced(Angle { remainder, whole_turns }: Angle<S>) -> Self {
         const PI: Constant = Constant::new(core::f64::consts::PI);
-        if turns == 0 && rest.is_within(S::constant(PI)) {
-            return Self::within_half_turn(rest);
+        if whole_turns == 0 && remainder.is_within(S::constant(PI)) {
+            return Self::within_half_turn(remainder);
         }
-        // Whole turns leave sine and cosine alone and shrink the chord by r/θ.
-        let extra = (rest / S::constant(TWO_PI)).round();
-        let rest = rest - S::constant(TWO_PI) * S::from_int(extra);
-        let arc = Self::within_half_turn(rest);
-        match turns.saturating_add(extra) {
+        // Whole turns do not change sine and cosine, and shrink the chord by the remainder over θ.
+        let extra = (remainder / S::constant(TWO_PI)).round();
+        let remainder = remainder - S::constant(TWO_PI) * S::from_int(extra);
+        let arc = Self::within_half_turn(remainder);
+        match whole_turns.saturating_add(extra) {
             0 => arc,
-            turns => {
-                let share = S::share_of_unwrapped(rest, turns);
+            whole_turns => {
+                let share = S::share_of_unwrapped(remainder, whole_turns);
                 Self { lateral: share * arc.lateral, axial: share * arc.axial, ..arc }
             }
         }
     }
 
-    /// By the double angle: sin 2φ / 2φ = (sin φ / φ) cos φ and (1 − cos 2φ) / 2φ = (sin φ / φ) sin φ.
+    /// Double-angle formula: sin 2φ / 2φ = (sin φ / φ) cos φ and (1 − cos 2φ) / 2φ = (sin φ / φ) sin φ.
     fn within_half_turn(theta: S) -> Self {
         const HALF: Constant = Constant::new(0.5);
         let half = Self::within_2_rad(theta * S::constant(HALF));
@@ -82,7 +82,7 @@ impl<S: FusedOps> UnitArc<S> {
     }
 }
 
-/// One segment as a link of the chain: its bend angle and where its end lies in its own frame {S_i}.
+/// One segment as a link of the chain: its bend angle and its end in its own frame {S_i}.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Link<S> {
     /// Bend angle θ_i.
@@ -91,10 +91,10 @@ pub struct Link<S> {
     pub end: Vector2<S>,
 }
 
-/// Kinematics of one segment, P_i = C_i + D_i with C_i = L ((1 − cos θ)/θ, sin θ/θ), and D_i along the tangent where the
-/// connector is: d (sin θ, cos θ) at the end, d (0, 1) at the start.
+/// Kinematics of one segment, P_i = C_i + D_i with C_i = L ((1 − cos θ)/θ, sin θ/θ), and D_i along the tangent where
+/// the connector is: d (sin θ, cos θ) at the end, d (0, 1) at the start.
 ///
-/// Both coordinates are polynomials like those of [`UnitArc`], whose terms are worked out once.
+/// Both coordinates are polynomials like those of [`UnitArc`], whose terms are computed once.
 ///
 /// ```
 /// use estimator_core::{Angle, Pcc, SegmentConfig};
@@ -107,7 +107,7 @@ pub struct Pcc<S> {
     /// L and d.
     lengths: [S; 2],
     offset_at: OffsetAt,
-    /// Up to this |θ| the polynomials hold, rad: 2, or 0 where their terms would be out of range.
+    /// Largest |θ| for which the polynomials hold, rad: 2, or 0 if their terms would be out of range.
     limit: S,
     /// x / θ.
     lateral: Terms<S>,
@@ -116,7 +116,7 @@ pub struct Pcc<S> {
 }
 
 impl<S: FusedOps> Pcc<S> {
-    /// From a segment's geometry.
+    /// Computes the terms from a segment's geometry.
     #[must_use]
     pub fn new(segment: &SegmentConfig<S>) -> Self {
         const LONGEST: Constant = Constant::new(0.7);
@@ -144,8 +144,8 @@ impl<S: FusedOps> Pcc<S> {
     #[inline]
     #[must_use]
     pub fn link(&self, theta: Angle<S>) -> Link<S> {
-        let (x, y) = if theta.turns == 0 && theta.rest.is_within(self.limit) {
-            theta.rest.polynomials(&self.lateral, &self.axial)
+        let (x, y) = if theta.whole_turns == 0 && theta.remainder.is_within(self.limit) {
+            theta.remainder.polynomials(&self.lateral, &self.axial)
         } else {
             self.by_arc(theta)
         };
@@ -166,8 +166,8 @@ impl<S: FusedOps> Pcc<S> {
 /// sin θ and cos θ.
 #[inline]
 pub(crate) fn sin_cos<S: FusedOps>(theta: Angle<S>) -> (S, S) {
-    if theta.turns == 0 && theta.rest.is_within(S::constant(LIMIT)) {
-        theta.rest.sin_cos()
+    if theta.whole_turns == 0 && theta.remainder.is_within(S::constant(LIMIT)) {
+        theta.remainder.sin_cos()
     } else {
         let arc = UnitArc::new(theta);
         (arc.sin, arc.cos)

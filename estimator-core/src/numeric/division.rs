@@ -12,7 +12,7 @@ pub(crate) fn divide<const FRAC: u32>(num: u32, den: u32) -> u32 {
     Divisor::<FRAC>::new(den).divide(num)
 }
 
-/// A divisor whose reciprocal is worked out once, for several quotients.
+/// Divisor with its reciprocal, for several quotients.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Divisor<const FRAC: u32> {
     den: u32,
@@ -21,14 +21,14 @@ pub(crate) struct Divisor<const FRAC: u32> {
 }
 
 impl<const FRAC: u32> Divisor<FRAC> {
-    /// Of 1 to 2³¹.
+    /// Computes the reciprocal of `den`, 1 to 2³¹.
     #[inline]
     pub fn new(den: u32) -> Self {
         let zeros = den.leading_zeros();
         Self { den, zeros, reciprocal: reciprocal(den.wrapping_shl(zeros)) }
     }
 
-    /// As [`divide`], in half of its instructions.
+    /// As [`divide`], in half the instructions.
     #[inline]
     pub fn divide(&self, num: u32) -> u32 {
         let num_zeros = (num | 1).leading_zeros();
@@ -38,14 +38,14 @@ impl<const FRAC: u32> Divisor<FRAC> {
             32..64 => 0,
             _ => return u32::MAX,
         };
-        // The quotient is never too large, and so little too small that what rests shows in 32 bits.
-        let rest = (num << FRAC).wrapping_sub(quotient.wrapping_mul(self.den));
-        quotient.wrapping_add(rest.wrapping_add(self.den / 2) / self.den)
+        // The quotient is never too large, and so little too small that the remainder fits 32 bits.
+        let remainder = (num << FRAC).wrapping_sub(quotient.wrapping_mul(self.den));
+        quotient.wrapping_add(remainder.wrapping_add(self.den / 2) / self.den)
     }
 }
 
-/// `num · 2^FRAC / den`, too small by a unit and its 2²⁸th part at most; `None` where `den` is 0, or the quotient is 2³¹ or
-/// out of reach. Two thirds of the instructions of [`divide`].
+/// `num · 2^FRAC / den`, too small by a unit and its 2²⁸th part at most. `None` for a `den` of 0, a quotient from 2³¹ on,
+/// and some quotients below 1 or from 2³⁰ on. Two thirds of the instructions of [`divide`].
 #[inline]
 pub(crate) fn div_approx<const FRAC: u32>(num: u32, den: u32) -> Option<u32> {
     let (num_zeros, den_zeros) = (num.leading_zeros(), den.leading_zeros());
@@ -58,15 +58,15 @@ pub(crate) fn div_approx<const FRAC: u32>(num: u32, den: u32) -> Option<u32> {
 
 /// 2⁶³ / `normal`, whose highest bit is set: never too large, and too small by 4 at most.
 ///
-/// The hardware gives 15 bits of the reciprocal r; one step of third order, r + r e + r e² with the error
-/// e = 1 − r `normal`, gives the others.
+/// The hardware divider yields 15 bits of the reciprocal r; one step of third order, r + r e + r e² with the error
+/// e = 1 − r `normal`, yields the others.
 #[inline]
 pub(crate) fn reciprocal(normal: u32) -> u32 {
     let (first, error) = reciprocal_seed(normal);
     first.wrapping_add(upper_word(first, error.wrapping_add(upper_word(error, error))))
 }
 
-/// The 15 bits of [`reciprocal`] that the hardware gives, and their error in units of 2⁻³², rounded down.
+/// The 15 bits of [`reciprocal`] from the hardware divider, and their error in units of 2⁻³², rounded down.
 #[inline]
 fn reciprocal_seed(normal: u32) -> (u32, u32) {
     let first = (u32::MAX / ((normal >> 16) + 1)) << 15;

@@ -1,7 +1,7 @@
-//! Operations that fixed point evaluates faster as one than as a sequence of operators.
+//! Operations that fixed point evaluates faster fused than as a sequence of operators.
 //!
-//! [`FusedOps`] has one method an operation, whose default is the plain form in [`plain`]. [`Q`](crate::Q) replaces them in
-//! [`q_fused`](super::q_fused); property tests hold both forms against each other.
+//! [`FusedOps`] has one method per operation, whose default is the plain form in [`plain`]. [`Q`](crate::Q) overrides
+//! them in [`q_fused`](super::q_fused); property tests compare both forms.
 
 use crate::numeric::polynomial::{AXIAL, COSINE};
 use crate::numeric::scalar::{Constant, Scalar, TWO_PI};
@@ -10,9 +10,9 @@ use crate::numeric::scalar::{Constant, Scalar, TWO_PI};
 pub mod plain {
     use super::{Constant, Scalar, TWO_PI};
 
-    /// `rest / (rest + 2π · turns)`.
-    pub fn share_of_unwrapped<S: Scalar>(rest: S, turns: i32) -> S {
-        rest / (rest + S::constant(TWO_PI) * S::from_int(turns))
+    /// `remainder / (remainder + 2π · whole_turns)`.
+    pub fn share_of_unwrapped<S: Scalar>(remainder: S, whole_turns: i32) -> S {
+        remainder / (remainder + S::constant(TWO_PI) * S::from_int(whole_turns))
     }
 
     /// θ Σ aₖ (θ²/8)ᵏ and Σ bₖ (θ²/8)ᵏ of `odd` = 8 aₖ and `even` = 8 bₖ.
@@ -66,16 +66,16 @@ pub mod plain {
 
 /// Operations with a faster form in fixed point.
 pub trait FusedOps: Scalar {
-    /// `rest / (rest + 2π · turns)`, both angles in rad: the share that the remainder has in an unwrapped angle.
+    /// `remainder / (remainder + 2π · whole_turns)`, both angles in rad: the share that the remainder has in an unwrapped angle.
     ///
-    /// `turns` is not 0, and `rest` is within ±π.
+    /// `whole_turns` is not 0, and `remainder` is within ±π.
     #[must_use]
-    fn share_of_unwrapped(rest: Self, turns: i32) -> Self {
-        plain::share_of_unwrapped(rest, turns)
+    fn share_of_unwrapped(remainder: Self, whole_turns: i32) -> Self {
+        plain::share_of_unwrapped(remainder, whole_turns)
     }
 
-    /// θ Σ aₖ (θ²/8)ᵏ and Σ bₖ (θ²/8)ᵏ at this angle θ, |θ| < 2 rad, where `odd` are 8 aₖ, `even` 8 bₖ, and each sum of the
-    /// last terms is within ±4.
+    /// θ Σ aₖ (θ²/8)ᵏ and Σ bₖ (θ²/8)ᵏ at this angle θ, |θ| < 2 rad, where `odd` are 8 aₖ, `even` 8 bₖ, and each sum of
+    /// the last terms is within ±4.
     ///
     /// The factor of 8 is for fixed point, which so keeps 29 fractional bits of them.
     #[must_use]
@@ -102,14 +102,14 @@ pub trait FusedOps: Scalar {
         plain::dot(a, b)
     }
 
-    /// The product where it is known to be within ±16; it may be rounded down.
+    /// The product, which must be within ±16; it may be rounded down.
     #[must_use]
     fn mul_unchecked_range(self, other: Self) -> Self {
         self * other
     }
 
-    /// c0 + c1 u + c2 u² at the fraction u = `value` / 2^`shift`, where u and c1 + c2 u are within ±32; `None` where it is beyond
-    /// ±`limit`.
+    /// c0 + c1 u + c2 u² at the fraction u = `value` / 2^`shift`, where u and c1 + c2 u are within ±32; `None` where it
+    /// is beyond ±`limit`.
     #[must_use]
     fn eval_quadratic(value: i32, shift: u32, coefficients: &[Self; 3], limit: Constant) -> Option<Self> {
         let value = plain::eval_quadratic(value, shift, coefficients);
@@ -122,8 +122,8 @@ pub trait FusedOps: Scalar {
         plain::gain_over_innovation_variance(self, r, h)
     }
 
-    /// Subtracts from each of `values` the product of its place in `others` and of `factor`: to the bit as the operators do
-    /// where the product is within ±32.
+    /// Subtracts from each of `values` the product of its place in `others` and of `factor`: to the bit as the
+    /// operators do where the product is within ±32.
     fn subtract_products(values: &mut [Self], others: &[Self], factor: Self) {
         plain::subtract_products(values, others, factor);
     }

@@ -1,4 +1,4 @@
-//! Angles as whole numbers: wrapping is integer overflow, unwrapping and long sums are exact for ever.
+//! Angles as integers: wrapping is integer overflow, and unwrapping and sums over any time are exact.
 //!
 //! A heading that drifts by 45° in 15 min has turned by 75 rad in a day. As a float it loses digits, as fixed point it
 //! overflows; as a count of 2⁻³² turns in 64 bits it stays exact to 1.5 nrad for longer than any arm lives.
@@ -7,12 +7,11 @@ use core::f64::consts::TAU;
 use core::ops::{Add, Neg, Sub};
 
 use crate::numeric::division::{reciprocal, signed_upper_word, upper_word};
-use crate::numeric::scalar::{Scalar, TWO_PI};
 
 /// 2⁻³² turns in a turn.
 const TURN: f64 = 4_294_967_296.0;
 
-/// A direction: a fraction of a turn in units of 2⁻³² turns, −½…½, that wraps by itself. Clockwise positive.
+/// A direction: a fraction of a turn in units of 2⁻³² turns, −½…½, that wraps by integer overflow. Clockwise positive.
 ///
 /// ```
 /// use estimator_core::Phase;
@@ -24,25 +23,25 @@ const TURN: f64 = 4_294_967_296.0;
 pub struct Phase(i32);
 
 impl Phase {
-    /// From units of 2⁻³² turns.
+    /// Converts from units of 2⁻³² turns.
     #[must_use]
     pub const fn from_bits(bits: i32) -> Self {
         Self(bits)
     }
 
-    /// In units of 2⁻³² turns.
+    /// Returns the angle in units of 2⁻³² turns.
     #[must_use]
     pub const fn bits(self) -> i32 {
         self.0
     }
 
-    /// From an angle in degrees; whole turns are dropped. For tables and recorded sessions.
+    /// Converts from an angle in degrees; whole turns are dropped. For tables and recorded sessions.
     #[must_use]
     pub fn from_degrees(degrees: f64) -> Self {
         Self(round_to_i64(degrees / 360.0 * TURN) as i32)
     }
 
-    /// From an angle in rad; whole turns are dropped. For tables and recorded sessions.
+    /// Converts from an angle in rad; whole turns are dropped. For tables and recorded sessions.
     #[must_use]
     pub fn from_rad(rad: f64) -> Self {
         Turns::from_rad(rad).phase()
@@ -77,13 +76,13 @@ impl Phase {
         let ratio = upper_word(num.unsigned_abs() << zeros, reciprocal(den << zeros));
         let ratio = atan_turns(ratio.wrapping_add(ROUNDED_DOWN) as i32);
         let first = base.wrapping_add(if num < 0 { -ratio } else { ratio });
-        // Half a turn is −½, and wraps by itself.
+        // Half a turn is −½, by integer overflow.
         let upper = if x < 0 { i32::MIN.wrapping_sub(first) } else { first };
         Some(Self(if y < 0 { upper.wrapping_neg() } else { upper }))
     }
 }
 
-/// The vector at a length that fits: 31 bits for the longer one; `None` for the zero vector.
+/// The vector scaled to fit 32 bits, the longer component to 31 bits; `None` for the zero vector.
 #[cold]
 fn scaled(y: u64, x: u64) -> Option<(u32, u32)> {
     let longest = x.max(y);
@@ -111,7 +110,7 @@ fn times_tan_eighth(value: u32) -> u32 {
     upper_word(value, TAN_EIGHTH)
 }
 
-/// What atan2 loses by rounding down, on average, in units of 2⁻³¹ of its ratio.
+/// Mean rounding error of the ratio in atan2, which is rounded down, in units of 2⁻³¹.
 const ROUNDED_DOWN: u32 = 3;
 
 /// atan of `ratio` (2⁻³¹, 0…tan(π/8)) in units of 2⁻³² turns: minimax polynomial in the square, error 6·10⁻¹⁰ rad.
@@ -119,7 +118,7 @@ const ROUNDED_DOWN: u32 = 3;
 fn atan_turns(ratio: i32) -> i32 {
     // Turns in units of 2⁻³³.
     const TERMS: [i32; 6] = [1_367_130_550, -455_709_838, 273_402_024, -194_685_271, 144_584_902, -82_577_231];
-    // In units of 2⁻³², so that a product's upper word is what is wanted; tan²(π/8) is under a half.
+    // In units of 2⁻³², so that the upper word of a product is the result; tan²(π/8) is under a half.
     let square = upper_word(2 * ratio as u32, 2 * ratio as u32) as i32;
     let sum = TERMS.iter().rev().fold(0, |sum, term| term + signed_upper_word(sum, square));
     signed_upper_word(ratio, sum)
@@ -127,27 +126,27 @@ fn atan_turns(ratio: i32) -> i32 {
 
 /// An unwrapped angle in units of 2⁻³² turns, over ±2³¹ turns. Clockwise positive.
 ///
-/// Sums and differences are exact, so that a window's mean does not wander however long the session.
+/// Sums and differences are exact, so that a window's mean does not drift over a long session.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
 pub struct Turns(i64);
 
 impl Turns {
-    /// No turn at all.
+    /// Zero.
     pub const ZERO: Self = Self(0);
 
-    /// From units of 2⁻³² turns.
+    /// Converts from units of 2⁻³² turns.
     #[must_use]
     pub const fn from_bits(bits: i64) -> Self {
         Self(bits)
     }
 
-    /// In units of 2⁻³² turns.
+    /// Returns the angle in units of 2⁻³² turns.
     #[must_use]
     pub const fn bits(self) -> i64 {
         self.0
     }
 
-    /// From an angle in rad, rounded to nearest.
+    /// Converts from an angle in rad, rounded to nearest.
     #[must_use]
     pub fn from_rad(rad: f64) -> Self {
         Self(round_to_i64(rad * (TURN / TAU)))
@@ -167,7 +166,7 @@ impl Turns {
 
     /// The whole turns that [`Turns::phase`] leaves out.
     #[must_use]
-    pub const fn whole(self) -> i32 {
+    pub const fn whole_turns(self) -> i32 {
         ((self.0.wrapping_sub(self.0 as i32 as i64)) >> 32) as i32
     }
 
@@ -177,7 +176,7 @@ impl Turns {
         Self(self.0.saturating_abs())
     }
 
-    /// Whether the angle without its sign is over `limit`, which has none.
+    /// Returns `true` if the magnitude of the angle is over `limit`, which is not negative.
     #[must_use]
     pub const fn exceeds(self, limit: Self) -> bool {
         self.0.unsigned_abs() > limit.0 as u64
@@ -189,7 +188,7 @@ impl Turns {
         Self((self.0 as i32 as i64 * factor as i64) >> 32)
     }
 
-    /// The angle under a mask of all ones, none under one of zeros.
+    /// The angle if all bits of the mask are set, zero if none is.
     #[inline]
     pub(crate) fn masked(self, mask: i32) -> Self {
         Self(self.0 & i64::from(mask))
@@ -197,7 +196,7 @@ impl Turns {
 
     /// `self / count`, rounded down, for `count` of 1 to 65 535; zero for a `count` of 0.
     ///
-    /// Schoolbook division by 16-bit digits: the Cortex-M3 divides 32 bits in hardware, 64 bits it does not.
+    /// Long division by 16-bit digits: the Cortex-M3 divides 32 bits in hardware, but not 64 bits.
     #[inline]
     #[must_use]
     pub fn mean_of(self, count: u16) -> Self {
@@ -205,11 +204,11 @@ impl Turns {
             return Self::ZERO;
         }
         let (divisor, upper, lower) = (i32::from(count), (self.0 >> 32) as i32, self.0 as u32);
-        // The only digit with a sign, rounded down.
-        let (first, rest) = (upper / divisor, upper % divisor);
-        let (first, rest) = (first + (rest >> 31), (rest + (divisor & (rest >> 31))) as u32);
+        // The first digit is the only signed one; it is rounded down.
+        let (first, remainder) = (upper / divisor, upper % divisor);
+        let (first, remainder) = (first + (remainder >> 31), (remainder + (divisor & (remainder >> 31))) as u32);
         let divisor = divisor as u32;
-        let part = (rest << 16) | (lower >> 16);
+        let part = (remainder << 16) | (lower >> 16);
         let last = ((part % divisor) << 16) | (lower & 0xFFFF);
         let quotient = ((part / divisor) << 16) | (last / divisor);
         Self((i64::from(first) << 32) | i64::from(quotient))
@@ -248,41 +247,4 @@ impl Neg for Turns {
 
 fn round_to_i64(value: f64) -> i64 {
     (value + if value < 0.0 { -0.5 } else { 0.5 }) as i64
-}
-
-/// A bend angle θ = `rest` + 2π·`turns`, rad, clockwise positive: whole turns beside the remainder.
-///
-/// Only IMU angles have turns, once they have drifted past 180°: raw ones, and corrected ones that nothing anchors.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Angle<S> {
-    /// The angle without the turns, rad.
-    pub rest: S,
-    /// Whole turns on top of it.
-    pub turns: i32,
-}
-
-impl<S: Scalar> Angle<S> {
-    /// The whole angle as one scalar, rad; it saturates where `S` does ([`Q`](crate::Q): ±32 rad).
-    #[must_use]
-    pub fn value(self) -> S {
-        if self.turns == 0 { self.rest } else { self.rest + S::constant(TWO_PI) * S::from_int(self.turns) }
-    }
-
-    /// The whole angle as a float, rad. For reports.
-    #[must_use]
-    pub fn rad(self) -> f64 {
-        self.rest.to_f64() + TAU * f64::from(self.turns)
-    }
-}
-
-impl<S: Scalar> From<Turns> for Angle<S> {
-    fn from(turns: Turns) -> Self {
-        Self { rest: S::from_phase(turns.phase()), turns: turns.whole() }
-    }
-}
-
-impl<S> From<S> for Angle<S> {
-    fn from(rad: S) -> Self {
-        Self { rest: rad, turns: 0 }
-    }
 }

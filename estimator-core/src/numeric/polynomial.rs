@@ -2,7 +2,7 @@
 
 use crate::numeric::scalar::Constant;
 
-/// Terms of a polynomial in θ²/8, eightfold as [`Scalar::polynomials`] takes them.
+/// Terms of a polynomial in θ²/8, multiplied by 8 for [`FusedOps::polynomials`](crate::FusedOps::polynomials).
 pub(crate) type Terms<T> = [T; 7];
 
 /// sin θ / θ.
@@ -38,7 +38,7 @@ pub(crate) const COSINE: Terms<Constant> = {
     terms
 };
 
-/// From the terms in θ²/4.
+/// Converts terms of a polynomial in θ²/4.
 const fn eightfold(terms: Terms<f64>) -> Terms<Constant> {
     let mut constants = [Constant::new(0.0); 7];
     let mut k = 0;

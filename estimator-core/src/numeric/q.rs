@@ -5,18 +5,14 @@ use core::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 use num_traits::{One, Zero};
 
 use crate::numeric::division::divide;
-use crate::numeric::fused::FusedOps;
-use crate::numeric::phase::{Phase, Turns};
 use crate::numeric::saturation;
-use crate::numeric::scalar::{Constant, Scalar};
 
 /// Fixed point with 26 fractional bits: ±32 in steps of 1.5·10⁻⁸.
 ///
-/// One format holds angles (rad), lengths (m) and covariances (ratios to the larger R). Products and quotients by operators
-/// are rounded to nearest, while some sums inside the pipeline are cut off; what does not fit saturates and is counted
-/// ([`saturations`](crate::saturations)), and a division by zero is
-/// such an overflow. There is no NaN. The Cortex-M3 has no float unit: a product is one `smull` and a shift here, and
-/// 47 instructions in `f32`, which carries 24 bits instead of 31.
+/// One format holds angles (rad), lengths (m) and covariances (ratios to the larger R). Operators round products and
+/// quotients to nearest; some sums inside the pipeline are truncated. A result out of range saturates and is counted
+/// ([`saturations`](crate::saturations)); so does a division by zero. There is no NaN. The Cortex-M3 has no float unit:
+/// a product is one `smull` and a shift here, and 47 instructions in `f32`, which has 24 bits instead of 31.
 ///
 /// ```
 /// use estimator_core::Q;
@@ -35,13 +31,13 @@ impl Q {
     /// The smallest value, −32.
     pub const MIN: Self = Self(i32::MIN);
 
-    /// From units of 2⁻²⁶.
+    /// Converts from units of 2⁻²⁶.
     #[must_use]
     pub const fn from_bits(bits: i32) -> Self {
         Self(bits)
     }
 
-    /// In units of 2⁻²⁶.
+    /// Returns the value in units of 2⁻²⁶.
     #[must_use]
     pub const fn to_bits(self) -> i32 {
         self.0
@@ -79,6 +75,65 @@ impl Q {
     }
 }
 
+/// Sums of products in 64 bits, in units of 2⁻⁵²: checked and rounded once.
+impl Q {
+    /// Bound of the overflow indicator of a sum that fits.
+    pub(super) const ROOM: u32 = 1 << Self::FRACTION_BITS;
+
+    /// Half of the last bit of a result, in units of a sum of products: rounds to nearest.
+    pub(super) const HALF: i64 = 1 << (Self::FRACTION_BITS - 1);
+
+    /// Overflow indicator of a sum, below [`Self::ROOM`] if it fits; indicators of several sums can be combined by `|`.
+    /// Three products are below 2⁶⁴ − 2⁶² in size, so that a wrapped sum never seems to fit.
+    #[inline]
+    fn excess(sum: i64) -> u32 {
+        ((sum >> 32) as u32).wrapping_add(Self::ROOM / 2)
+    }
+
+    /// The value in the format of a sum of products, in units of 2⁻⁵².
+    #[inline]
+    pub(super) fn wide(self) -> i64 {
+        // Word by word: the compiler does not find this form of the shift.
+        let upper = self.0 >> (32 - Self::FRACTION_BITS);
+        (i64::from(upper) << 32) | i64::from((self.0 << Self::FRACTION_BITS) as u32)
+    }
+
+    /// Converts a sum of products that fits.
+    #[inline]
+    pub(super) fn narrow(sum: i64) -> Self {
+        Self((sum >> Self::FRACTION_BITS) as i32)
+    }
+
+    /// Returns `true` if all sums fit: one check instead of one per sum.
+    #[inline]
+    pub(super) fn all_fit(sums: &[i64]) -> bool {
+        sums.iter().fold(0, |all, sum| all | Self::excess(*sum)) < Self::ROOM
+    }
+
+    /// [`Self::rounded_dot`] out of range. Not inlined and by value, so that the fast path reserves no registers for
+    /// it.
+    #[cold]
+    #[inline(never)]
+    fn saturated_dot<const K: usize>(a: [Self; K], b: [Self; K]) -> Self {
+        const { assert!(K <= 3) };
+        let quarters = a.iter().zip(b).map(|(a, b)| (i64::from(a.0) * i64::from(b.0)) >> 2);
+        Self::overflowed(quarters.sum::<i64>() < 0)
+    }
+
+    /// `start` + Σ aₖ bₖ, wrapped.
+    #[inline]
+    pub(super) fn sum<const K: usize>(start: i64, (a, b): &([Self; K], [Self; K])) -> i64 {
+        a.iter().zip(b).fold(start, |sum, (a, b)| sum.wrapping_add(i64::from(a.0) * i64::from(b.0)))
+    }
+
+    /// Σ aₖ bₖ of up to three products, rounded once to nearest.
+    #[inline]
+    pub(super) fn rounded_dot<const K: usize>(a: [Self; K], b: [Self; K]) -> Self {
+        let sum = Self::sum(Self::HALF, &(a, b));
+        if Self::all_fit(&[sum]) { Self::narrow(sum) } else { Self::saturated_dot(a, b) }
+    }
+}
+
 impl Add for Q {
     type Output = Self;
 
@@ -102,7 +157,7 @@ impl Mul for Q {
 
     #[inline]
     fn mul(self, other: Self) -> Self {
-        Self::dot([self], [other])
+        Self::rounded_dot([self], [other])
     }
 }
 
@@ -165,76 +220,5 @@ impl One for Q {
     #[inline]
     fn one() -> Self {
         Self(1 << Self::FRACTION_BITS)
-    }
-}
-
-impl Scalar for Q {
-    #[inline]
-    fn constant(constant: Constant) -> Self {
-        constant.q
-    }
-
-    fn from_f64(value: f64) -> Self {
-        Self::from_f64(value)
-    }
-
-    fn to_f64(self) -> f64 {
-        self.to_f64()
-    }
-
-    #[inline]
-    fn from_int(value: i32) -> Self {
-        Self::fit(i64::from(value) << Self::FRACTION_BITS)
-    }
-
-    #[inline]
-    fn from_fraction(value: i32, shift: u32) -> Self {
-        let zeros = Self::FRACTION_BITS.wrapping_sub(shift);
-        let bits = value.wrapping_shl(zeros);
-        if bits.wrapping_shr(zeros) == value { Self(bits) } else { Self::overflowed(value < 0) }
-    }
-
-    #[inline]
-    fn round(self) -> i32 {
-        ((i64::from(self.0) + (1 << (Self::FRACTION_BITS - 1))) >> Self::FRACTION_BITS) as i32
-    }
-
-    #[inline]
-    fn from_phase(phase: Phase) -> Self {
-        const RAD: i64 = 1_686_629_713; // 2π/64 in units of 2⁻³⁴
-        Self(((i64::from(phase.bits()) * RAD + (1 << 33)) >> 34) as i32)
-    }
-
-    #[inline]
-    fn to_turns(self) -> Turns {
-        const TURNS: i64 = 1_367_130_551; // 64/2π in units of 2⁻²⁷
-        Turns::from_bits((i64::from(self.0) * TURNS + (1 << 26)) >> 27)
-    }
-
-    #[inline]
-    fn half(self) -> Self {
-        Self((self.0 >> 1) + (self.0 & 1))
-    }
-
-    #[inline]
-    fn from_q(value: Q) -> Self {
-        value
-    }
-
-    #[inline]
-    fn to_q(self) -> Q {
-        self
-    }
-
-    #[inline]
-    fn from_micros(us: u32) -> Self {
-        // 2⁻²⁶ of 64 s are 1.048576 µs: 2⁵⁰/10⁶ in units of 2⁻³⁰.
-        const PER_MICRO: u64 = 1_125_899_907;
-        Self(((u64::from(us) * PER_MICRO) >> 30).min(i32::MAX as u64) as i32)
-    }
-
-    #[inline]
-    fn is_within(self, limit: Self) -> bool {
-        self.0 ^ (self.0 >> 31) < limit.0
     }
 }

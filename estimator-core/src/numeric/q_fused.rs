@@ -1,8 +1,8 @@
-//! The fast forms of [`Q`], tuned to the Cortex-M3.
+//! Fast forms of [`FusedOps`] for [`Q`], tuned to the Cortex-M3.
 //!
-//! All products of a sum are added in 64 bits (`smlal`) and checked at once, where operators check and round each one. The
-//! whole step took 4,974 instructions with them and 44,000 in `f32`; each form is held against its plain one in
-//! [`plain`](super::fused::plain) by a property test.
+//! All products of a sum are added in 64 bits (`smlal`) and checked once, where operators check and round each product.
+//! The whole step took 4,974 instructions with them and 44,000 in `f32`. A property test compares each form with its
+//! plain form in [`plain`](super::fused::plain).
 
 use crate::numeric::division::{Divisor, div_approx};
 use crate::numeric::fused::{FusedOps, plain};
@@ -11,42 +11,6 @@ use crate::numeric::q::Q;
 use crate::numeric::scalar::{Constant, TWO_PI};
 
 impl Q {
-    /// What is under [`Self::ROOM`] where a sum fits, also of several in one. Three products are below 2⁶⁴ − 2⁶² in size, so
-    /// that no sum fits only because it has wrapped.
-    #[inline]
-    fn excess(sum: i64) -> u32 {
-        ((sum >> 32) as u32).wrapping_add(Self::ROOM / 2)
-    }
-
-    /// The value as a sum of products is held, in units of 2⁻⁵².
-    #[inline]
-    fn wide(self) -> i64 {
-        // Word by word, which the compiler does not see by itself.
-        let upper = self.0 >> (32 - Self::FRACTION_BITS);
-        (i64::from(upper) << 32) | i64::from((self.0 << Self::FRACTION_BITS) as u32)
-    }
-
-    /// The value of a sum that fits.
-    #[inline]
-    fn narrow(sum: i64) -> Self {
-        Self((sum >> Self::FRACTION_BITS) as i32)
-    }
-
-    /// Whether all sums fit: one check, so that they are worked out in one go.
-    #[inline]
-    fn all_fit(sums: &[i64]) -> bool {
-        sums.iter().fold(0, |all, sum| all | Self::excess(*sum)) < Self::ROOM
-    }
-
-    /// [`FusedOps::dot`] of what is beyond the range. Out of line and by value, so that nothing is kept for it before.
-    #[cold]
-    #[inline(never)]
-    fn saturated_dot<const K: usize>(a: [Self; K], b: [Self; K]) -> Self {
-        const { assert!(K <= 3) };
-        let quarters = a.iter().zip(b).map(|(a, b)| (i64::from(a.0) * i64::from(b.0)) >> 2);
-        Self::overflowed(quarters.sum::<i64>() < 0)
-    }
-
     /// [`FusedOps::rotate_clockwise`] where one of the two may be beyond the range.
     #[cold]
     #[inline(never)]
@@ -68,7 +32,7 @@ impl Q {
         self - other * factor
     }
 
-    /// Out of line, for what hardly happens.
+    /// Division, not inlined: it is rare.
     #[cold]
     #[inline(never)]
     fn divided(self, other: Self) -> Self {
@@ -78,26 +42,16 @@ impl Q {
     /// Σ cₖ xᵏ in units of 2⁻²⁹, from terms 8 cₖ and x in units of 2⁻³².
     #[inline]
     fn horner<const K: usize>(x: i32, terms: &[Self; K]) -> i32 {
-        // The lower word of a product is left in the sum, where it rounds as well as a half would: a term is one `smlal`.
+        // The lower word of a product stays in the sum, where it rounds as well as adding a half: a term is one
+        // `smlal`.
         let sum = terms.iter().rev().fold(1 << 31, |sum: i64, term| {
             ((i64::from(term.0) << 32) | (sum & 0xFFFF_FFFF)).wrapping_add((sum >> 32) * i64::from(x))
         });
         (sum >> 32) as i32
     }
-
-    /// `start` + Σ aₖ bₖ, wrapped.
-    #[inline]
-    fn sum<const K: usize>(start: i64, (a, b): &([Self; K], [Self; K])) -> i64 {
-        a.iter().zip(b).fold(start, |sum, (a, b)| sum.wrapping_add(i64::from(a.0) * i64::from(b.0)))
-    }
-
-    const ROOM: u32 = 1 << Self::FRACTION_BITS;
-
-    /// Half of the last bit that remains of a sum of products.
-    const HALF: i64 = 1 << (Self::FRACTION_BITS - 1);
 }
 
-/// A polynomial's terms as fixed point, in the flash of a board.
+/// Converts a polynomial's terms to fixed point at compile time.
 const fn fixed(terms: Terms<Constant>) -> Terms<Q> {
     let mut fixed = [Q(0); 7];
     let mut k = 0;
@@ -109,7 +63,7 @@ const fn fixed(terms: Terms<Constant>) -> Terms<Q> {
 }
 
 impl FusedOps for Q {
-    // Out of line, as the compiler spoils a sum of constants whose signs it sees.
+    // Not inlined: for terms of known sign the compiler replaces `smlal` by longer sequences.
     #[inline(never)]
     fn polynomials<const K: usize>(self, odd: &[Self; K], even: &[Self; K]) -> (Self, Self) {
         // θ²/8 in units of 2⁻³².
@@ -139,8 +93,7 @@ impl FusedOps for Q {
 
     #[inline]
     fn dot<const K: usize>(a: [Self; K], b: [Self; K]) -> Self {
-        let sum = Self::sum(Self::HALF, &(a, b));
-        if Self::all_fit(&[sum]) { Self::narrow(sum) } else { Self::saturated_dot(a, b) }
+        Self::rounded_dot(a, b)
     }
 
     #[inline]
@@ -153,12 +106,12 @@ impl FusedOps for Q {
         let u = Self(value.wrapping_shl(Self::FRACTION_BITS.wrapping_sub(shift)));
         let slope = c1.0.wrapping_add(Self::narrow(i64::from(c2.0) * i64::from(u.0)).0);
         let sum = Self::sum(c0.wide() + Self::HALF, &([u], [Self(slope)]));
-        // By the upper word, which is enough.
+        // The upper word suffices for the comparison.
         let (upper, limit) = ((sum >> 32) as i32, limit.q.0 >> (32 - Self::FRACTION_BITS));
         (upper ^ (upper >> 31) < limit).then_some(Self::narrow(sum))
     }
 
-    // It is called twice a segment; out of line, saving registers is a fifth of it.
+    // Called twice a segment; as a function, a fifth of it would save registers.
     #[expect(clippy::inline_always, reason = "measured")]
     #[inline(always)]
     fn gain_over_innovation_variance(self, r: Self, h: Self) -> Self {
@@ -221,9 +174,9 @@ impl FusedOps for Q {
     }
 
     #[inline]
-    fn share_of_unwrapped(rest: Self, turns: i32) -> Self {
-        let total = i64::from(rest.0) + i64::from(TWO_PI.q.0) * i64::from(turns);
+    fn share_of_unwrapped(remainder: Self, whole_turns: i32) -> Self {
+        let total = i64::from(remainder.0) + i64::from(TWO_PI.q.0) * i64::from(whole_turns);
         let excess = 33_u32.saturating_sub(total.unsigned_abs().leading_zeros());
-        Self(rest.0 >> excess) / Self((total >> excess) as i32)
+        Self(remainder.0 >> excess) / Self((total >> excess) as i32)
     }
 }

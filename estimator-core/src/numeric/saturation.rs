@@ -1,7 +1,7 @@
 //! Counts the operations of [`Q`](crate::Q) whose result did not fit and was saturated.
 //!
-//! The count is of the whole program: an operator has no room for a context of its own, and one saturation anywhere
-//! means that a table or a reading is out of the range that the format was chosen for.
+//! The count is global, as an operator has no context of its own. A saturation means that a table or a reading is out of
+//! the range of the format.
 
 use core::sync::atomic::{AtomicU32, Ordering};
 

@@ -1,8 +1,8 @@
-//! The number that the whole pipeline is generic over, and the reference implementation: `f64`.
+//! The number type that the pipeline is generic over, and the reference implementation: `f64`.
 //!
-//! Three types implement [`Scalar`]: [`Q`](crate::Q), 32-bit fixed point, which the board runs; `f64`, the reference; and
-//! dual numbers over `f64`, whose derivatives tune the filters. What fixed point evaluates faster as one operation is in
-//! [`FusedOps`](crate::FusedOps).
+//! Three types implement [`Scalar`]: [`Q`](crate::Q), 32-bit fixed point, which the board runs; `f64`, the reference;
+//! and dual numbers over `f64`, whose derivatives tune the filters. [`FusedOps`](crate::FusedOps) has the operations
+//! with a faster form in fixed point.
 
 use core::fmt::Debug;
 use core::ops::{Div, Neg};
@@ -39,8 +39,7 @@ pub(crate) const TWO_PI: Constant = Constant::new(core::f64::consts::TAU);
 /// A real number of the estimator: an angle in rad, a length in m, or a covariance as a ratio.
 ///
 /// Arithmetic never panics. Angles that grow without bound (a drifting heading) and sums over the anchor's window are
-/// not scalars but [`Turns`], exact integers; they carry no derivative, and need none, as no tuned parameter acts
-/// before the filters.
+/// not scalars but [`Turns`], exact integers. These need no derivative, as no tuned parameter acts before the filters.
 ///
 /// ```
 /// use estimator_core::{Q, Scalar};
@@ -104,7 +103,7 @@ pub trait Scalar:
         self * Self::constant(Constant::new(0.5))
     }
 
-    /// Whether −`limit` ≤ `self` < `limit`, a positive one.
+    /// Returns `true` if −`limit` ≤ `self` < `limit`, for a positive limit.
     #[must_use]
     fn is_within(self, limit: Self) -> bool {
         -limit <= self && self < limit

@@ -1,5 +1,5 @@
-//! V–Orient map: ADC counts of a bend sensor to the bend angle of its segment (paper, eq. 1, and a curve for what no
-//! quadratic follows).
+//! V–Orient map: ADC counts of a bend sensor to the bend angle of its segment (paper, eq. 1, or a piecewise linear
+//! curve).
 
 use crate::config::{BendMap, CurveMap, KNOTS, QuadraticMap};
 use crate::numeric::fused::FusedOps;
@@ -8,7 +8,7 @@ use crate::numeric::scalar::{Constant, Scalar};
 /// Volts of one ADC count: 3.3 V over 12 bits.
 pub const VOLTS_PER_COUNT: f64 = 3.3 / 4095.0;
 
-/// Over a whole turn by more than rounding, rad.
+/// A whole turn and a margin for rounding, rad.
 const BEYOND_A_TURN: Constant = Constant::new(6.3);
 
 /// Just under the ±32 of [`FusedOps::eval_quadratic`].
@@ -17,14 +17,14 @@ const LARGEST: f64 = 31.9;
 /// Largest reading of a 12-bit ADC.
 const MAX_COUNTS: u16 = 4095;
 
-/// Counts from either end of the ADC that are an open or shorted sensor.
+/// Counts from either end of the ADC's range that indicate an open or shorted sensor.
 const RAIL_COUNTS: u16 = 10;
 
-/// Share of the calibrated range that a curve is extrapolated by at either end.
+/// Extrapolation of a curve at either end, as a share of the calibrated range.
 const EXTRAPOLATED: f64 = 0.25;
 
 impl<S: FusedOps> BendMap<S> {
-    /// Bend angle at `counts`, rad; `None` where `counts` are no reading of this sensor.
+    /// Bend angle at `counts`, rad; `None` if `counts` are no valid reading of this sensor.
     ///
     /// ```
     /// use estimator_core::{BendMap, QuadraticMap};
@@ -43,7 +43,7 @@ impl<S: FusedOps> BendMap<S> {
         }
     }
 
-    /// Whether `counts` are beyond what the calibration sweep has seen.
+    /// Returns `true` if `counts` are outside the range of the calibration sweep.
     #[must_use]
     pub fn is_extrapolated(&self, counts: u16) -> bool {
         match self {
@@ -54,7 +54,7 @@ impl<S: FusedOps> BendMap<S> {
 }
 
 impl<S: FusedOps> QuadraticMap<S> {
-    /// From the table's `c2` (rad/V²), `c1` (rad/V), `c0` (rad) and the `volts` [lo, hi] that they were fitted on.
+    /// Converts from the table's `c2` (rad/V²), `c1` (rad/V), `c0` (rad) and the range `volts` [lo, hi] of the fit.
     #[must_use]
     pub fn from_volts(c2: f64, c1: f64, c0: f64, volts: [f64; 2]) -> Self {
         let [lo, hi] = volts.map(|v| v / VOLTS_PER_COUNT);
@@ -85,16 +85,17 @@ impl<S: FusedOps> QuadraticMap<S> {
             return None;
         }
         let from_center = i32::from(counts) - i32::from(self.center);
-        // Between the two branches of a map that turns back it may be over a turn again.
+        // Around the vertex of a parabola the angle may be over a turn again.
         S::eval_quadratic(from_center, u32::from(self.shift), &self.coefficients, BEYOND_A_TURN)
     }
 }
 
 impl<S: Scalar> CurveMap<S> {
-    /// From bend angles (rad) at voltages that are evenly spaced from `volts[0]` to `volts[1]`, two at least.
+    /// Samples a curve of bend angles (rad) at voltages that are evenly spaced from `volts[0]` to `volts[1]`, two at
+    /// least.
     ///
-    /// Beyond both ends the curve goes on as a straight line, with the slope of its outer eighth, for a quarter of the
-    /// range; further out, and within ten counts of the ADC's ends, there is no reading.
+    /// At both ends the curve is extrapolated linearly, with the slope of its outer eighth, by a quarter of the range.
+    /// Further out, and within ten counts of the ADC's ends, counts are no valid reading.
     ///
     /// ```
     /// use estimator_core::{BendMap, CurveMap};
@@ -132,8 +133,8 @@ impl<S: Scalar> CurveMap<S> {
         let from_first = counts.wrapping_sub(self.first);
         let knot = usize::from(from_first.wrapping_shr(self.shift.into()));
         let (below, above) = (*self.knots.get(knot)?, *self.knots.get(knot + 1)?);
-        let rest = i32::from(from_first) & ((1 << (self.shift & 15)) - 1);
-        Some(below + (above - below) * S::from_fraction(rest, self.shift.into()))
+        let remainder = i32::from(from_first) & ((1 << (self.shift & 15)) - 1);
+        Some(below + (above - below) * S::from_fraction(remainder, self.shift.into()))
     }
 }
 

@@ -1,4 +1,4 @@
-//! The bend sensors of one segment: counts to angles, with the memory of each sensor.
+//! The bend sensors of one segment: counts to angles, with compensation of creep and hysteresis.
 
 use crate::config::{SENSORS_PER_SEGMENT, SegmentConfig};
 use crate::numeric::fused::FusedOps;
@@ -8,7 +8,7 @@ use crate::sensing::hysteresis::{Memory, PrandtlIshlinskii};
 /// State of a segment's bend sensors.
 #[derive(Debug, Clone, Copy)]
 pub struct BendSensors<S> {
-    /// In fixed point whatever `S` is: its recursion rounds, and every number type must have the same angles.
+    /// In fixed point for every `S`: the recursion rounds, and all number types must have the same angles.
     memory: [Memory<Q>; SENSORS_PER_SEGMENT],
     hysteresis: PrandtlIshlinskii<S>,
 }
@@ -16,11 +16,11 @@ pub struct BendSensors<S> {
 /// Bend angles of one sample.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BendAngles<S> {
-    /// Of each sensor that was read, rad.
+    /// Angle of each sensor that was read, rad.
     pub sensors: [Option<S>; SENSORS_PER_SEGMENT],
     /// θ_bend,i, their mean, hysteresis compensated, rad.
     pub mean: Option<S>,
-    /// Whether a sensor reads beyond what its calibration has seen.
+    /// A sensor reads outside the range of its calibration.
     pub is_extrapolated: bool,
 }
 
@@ -31,12 +31,12 @@ impl<S> BendAngles<S> {
 }
 
 impl<S: FusedOps> BendSensors<S> {
-    /// Sensors that were not read yet.
+    /// Before the first reading.
     pub const fn new() -> Self {
         Self { memory: [Memory::new(); SENSORS_PER_SEGMENT], hysteresis: PrandtlIshlinskii::new() }
     }
 
-    /// Takes the bend `angles` at these counts, read at `time_us`, in place; the memory of creep moves where it `is_followed`.
+    /// Writes the bend `angles` at these counts, read at `time_us`; the creep states are updated if `is_followed`.
     pub fn read(
         &mut self,
         angles: &mut BendAngles<S>,

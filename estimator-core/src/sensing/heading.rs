@@ -1,15 +1,16 @@
 //! Heading of one IMU: from its quaternion, unwrapped from reading to reading, and tared in the reference pose.
 
 use crate::kinematics::pcc::sin_cos;
+use crate::numeric::angle::Angle;
 use crate::numeric::fused::FusedOps;
-use crate::numeric::phase::{Angle, Phase, Turns};
+use crate::numeric::phase::{Phase, Turns};
 use crate::types::ImuReading;
 
 impl ImuReading {
     /// The heading, clockwise positive seen from above: h = −atan2(2(wz + xy), 1 − 2(y² + z²)).
     ///
-    /// `None` for what cannot be an orientation: a quaternion whose norm is over 1 % from 1 (all zero after a
-    /// brown-out, say), or a sensor whose x axis points straight up or down.
+    /// `None` for an invalid orientation: a quaternion whose norm deviates from 1 by over 1 % (all zero after a
+    /// brown-out, for example), or a sensor whose x axis points straight up or down.
     ///
     /// ```
     /// use estimator_core::ImuReading;
@@ -34,7 +35,7 @@ fn quaternion_heading(quaternion: &[i32; 4]) -> Option<Phase> {
     const ONE_SQUARED: u32 = 1 << 28;
     const TOLERANCE: u32 = ONE_SQUARED / 50;
     let [w, x, y, z] = quaternion.map(i64::from);
-    // Four times −2³¹ would wrap, to a norm of zero.
+    // Four components of −2³¹ would wrap to a norm of zero.
     let y2_z2 = (y * y) as u64 + (z * z) as u64;
     let norm_squared = ((w * w) as u64 + (x * x) as u64).wrapping_add(y2_z2);
     if ((norm_squared >> 32) as u32).abs_diff(ONE_SQUARED) > TOLERANCE {
@@ -46,9 +47,9 @@ fn quaternion_heading(quaternion: &[i32; 4]) -> Option<Phase> {
 
 /// Unwraps the heading of one IMU and finds its tare.
 ///
-/// The tare is the circular mean of the readings of the first `tare_samples` ticks; with 0 ticks the heading is absolute
-/// already, and only its first reading is wrapped to ±180°. Until the tare is complete the IMU has a heading but no
-/// zero, so that nothing can be said of θ. An IMU that was never read meanwhile stays without a zero.
+/// The tare is the circular mean of the readings of the first `tare_samples` ticks; with 0 ticks the heading is
+/// absolute already, and only its first reading is wrapped to ±180°. Until the tare is complete the IMU has a heading
+/// but no zero, so that θ is unknown. An IMU without any reading during the tare stays without a zero.
 ///
 /// ```
 /// use estimator_core::{HeadingTracker, Phase, Turns};
@@ -65,33 +66,33 @@ pub struct HeadingTracker<S> {
     tare: Tare<S>,
 }
 
-/// Where one IMU points.
+/// Heading of one IMU, and its zero.
 #[derive(Debug, Clone, Copy)]
 pub struct SegmentHeading {
-    /// Unwrapped, counted from anywhere; the newest that was read.
+    /// Newest reading, unwrapped, from an arbitrary zero.
     heading: Turns,
-    /// What to subtract from it.
+    /// Zero to subtract from the heading.
     zero: Turns,
-    /// In this tick.
+    /// The IMU was read in this tick.
     is_read: bool,
     is_tared: bool,
 }
 
 impl SegmentHeading {
-    /// The arm's base, from which headings count.
+    /// Heading of the arm's base, zero.
     pub(crate) const BASE: Self = Self { heading: Turns::ZERO, zero: Turns::ZERO, is_read: true, is_tared: true };
 
-    /// Whether it was read in this tick.
+    /// Returns `true` if the IMU was read in this tick.
     pub(crate) fn is_read(&self) -> bool {
         self.is_read
     }
 
-    /// The newest reading, unwrapped, counted from anywhere.
+    /// The newest reading, unwrapped, from an arbitrary zero.
     pub(crate) fn unwrapped(&self) -> Turns {
         self.heading
     }
 
-    /// The newest heading in {W}, drift and all; `None` until the tare is complete.
+    /// The newest heading in {W}, without drift correction; `None` until the tare is complete.
     pub(crate) fn in_world(&self) -> Option<Turns> {
         self.is_tared.then(|| self.heading - self.zero)
     }
@@ -106,7 +107,7 @@ impl SegmentHeading {
     }
 }
 
-/// The sums behind a circular mean, relative to the first reading, so that the mean is found without wrapping it.
+/// Sums of a circular mean, relative to the first reading, so that the mean is not wrapped.
 #[derive(Debug, Clone, Copy)]
 struct Tare<S> {
     ticks_left: u32,
@@ -117,7 +118,7 @@ struct Tare<S> {
 }
 
 impl<S: FusedOps> HeadingTracker<S> {
-    /// An IMU that was not read yet, whose heading in the reference pose is `reference`.
+    /// A tracker before its first reading, for an IMU whose heading in the reference pose is `reference`.
     #[must_use]
     pub fn new(tare_samples: u32, reference: Turns) -> Self {
         let tare = Tare {
@@ -132,7 +133,8 @@ impl<S: FusedOps> HeadingTracker<S> {
         Self { current, reference, tare }
     }
 
-    /// Takes this tick's reading; gives the heading unwrapped, counted from anywhere, or `None` where it was not read.
+    /// Updates the heading with this tick's reading; returns it unwrapped, from an arbitrary zero, or `None` if it was
+    /// not read.
     #[inline]
     pub fn read(&mut self, reading: Option<Phase>) -> Option<Turns> {
         let current = &mut self.current;
@@ -155,13 +157,13 @@ impl<S: FusedOps> HeadingTracker<S> {
         }
     }
 
-    /// What to subtract from [`HeadingTracker::read`] to get the heading in {W}; `None` until the tare is complete.
+    /// Zero: the heading in {W} is that of [`HeadingTracker::read`] less this; `None` until the tare is complete.
     #[must_use]
     pub fn zero(&self) -> Option<Turns> {
         self.current.is_tared.then_some(self.current.zero)
     }
 
-    /// Of this tick.
+    /// Heading in this tick.
     #[inline]
     pub(crate) fn segment_heading(&self) -> &SegmentHeading {
         &self.current
@@ -174,7 +176,7 @@ impl<S: FusedOps> Tare<S> {
         let Some(heading) = heading else { return };
         let first = *self.first.get_or_insert(heading);
         let (sin, cos) = sin_cos(Angle::<S>::from(heading - first));
-        // Read as angles, sine and cosine become whole numbers, whose sums are exact.
+        // Converted like angles, sine and cosine become integers, whose sums are exact.
         self.cos = self.cos + cos.to_turns();
         self.sin = self.sin + sin.to_turns();
     }

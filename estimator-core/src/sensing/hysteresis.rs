@@ -1,16 +1,17 @@
 //! Memory of a bend sensor: play operators (hysteresis) and first-order lags (creep).
 //!
-//! A play follows its input only when one of its two edges pushes it. The difference of the input and a play shows from
-//! which side, and how far, the input came; a weighted sum of such differences compensates hysteresis (K. Kuhnen,
-//! "Modeling, identification and compensation of complex hysteretic nonlinearities", 2003, eq. 2 and 8, the
-//! Prandtl–Ishlinskii model). The difference of the input and a lag does the same for creep and relaxation.
+//! The output of a play operator follows its input only while the input pushes one of the play's two edges. The
+//! difference of input and output depends on the direction and the size of past motion; a weighted sum of such
+//! differences compensates hysteresis (K. Kuhnen, "Modeling, identification and compensation of complex hysteretic
+//! nonlinearities", 2003, eq. 2 and 8, the Prandtl–Ishlinskii model). The difference of the input and a lag does the
+//! same for creep and relaxation.
 
 use crate::config::{Lag, MemoryConfig, PLAYS, Play};
 use crate::numeric::fused::FusedOps;
 use crate::numeric::scalar::Scalar;
 
 impl<S: Scalar> Play<S> {
-    /// Moves the play's output `y` with the input `x`; gives the difference of both.
+    /// Updates the play's output `y` with the input `x`; returns the difference of both.
     fn update(&self, y: &mut S, x: S) -> S {
         let ahead = x - *y;
         let ahead = if ahead.is_within(self.radius) {
@@ -26,7 +27,7 @@ impl<S: Scalar> Play<S> {
 }
 
 impl<S: Scalar> Lag<S> {
-    /// Moves the lag's output `y` towards the input `x` over a time `dt`.
+    /// Updates the lag's output `y` with the input `x` over a time `dt`.
     fn update(&self, y: &mut S, x: S, dt: S) {
         let share = if dt < self.time { self.rate * dt } else { S::one() };
         *y += share * (x - *y);
@@ -36,7 +37,7 @@ impl<S: Scalar> Lag<S> {
 /// Compensation of a segment's hysteresis by three plays: θ + Σ w (θ − play(θ)).
 #[derive(Debug, Clone, Copy)]
 pub struct PrandtlIshlinskii<S> {
-    /// Outputs of the plays; `None` before the first angle, which sets them all.
+    /// Outputs of the plays; `None` before the first angle, which initialises them.
     outputs: Option<[S; PLAYS]>,
 }
 
@@ -76,8 +77,8 @@ impl<S: FusedOps> Memory<S> {
         Self { state: None }
     }
 
-    /// What to add to the angle of a reading at `time_us`. The lags move where they are `followed`, which may be less often
-    /// than at each reading: they are slow.
+    /// Correction to add to the angle of a reading at `time_us`, rad. The lags are updated if `followed`; as they are
+    /// slow, an update at some of the readings suffices.
     #[inline]
     pub fn correction(&mut self, config: &MemoryConfig<S>, theta: S, time_us: u64, followed: bool) -> S {
         let Some(state) = &mut self.state else {
@@ -140,7 +141,7 @@ mod tests {
         assert!((seen[3] - seen[1]).abs() < 1e-12 && (seen[2] - 0.475).abs() < 1e-12, "{seen:?}");
     }
 
-    /// One lag of 4 s with weight −1: it replaces the angle by its lag.
+    /// One lag of 4 s with weight −1: the result is the output of the lag.
     const LAG: MemoryConfig<f64> = MemoryConfig {
         lags: [Lag { time: 1.0 / 16.0, rate: 16.0, weight: -1.0 }, Lag { time: 1.0 / 16.0, rate: 16.0, weight: 0.0 }],
         plays: [Play { radius: 0.1, weight: 0.0 }; 2],
@@ -159,7 +160,7 @@ mod tests {
         assert!((after_4_s.expect("400 angles") - expected).abs() < 2e-3);
     }
 
-    /// A play of ±0.1 rad and weight 0.5 beside lags without weight.
+    /// A play of ±0.1 rad and weight 0.5; lags of weight zero.
     const PLAY: MemoryConfig<f64> = MemoryConfig {
         lags: [Lag { time: 1.0 / 16.0, rate: 16.0, weight: 0.0 }; 2],
         plays: [Play { radius: 0.1, weight: 0.5 }, Play { radius: 0.1, weight: 0.0 }],

@@ -1,6 +1,6 @@
 //! A board that runs the firmware, and a host at its serial line.
 
-use rig_twin::{EndPose, Program, REGULATORS, SEGMENTS};
+use rig_twin::{EndPose, MotionProgram, REGULATORS, SEGMENTS};
 use telemetry::{
     Command, Decoder, Encoder, Estimate, Event, Health, Hello, MAX_FRAME, Message, Outcome, Request, Sample,
     SetPressures, Uncertainty,
@@ -124,7 +124,7 @@ impl Board {
     ///
     /// # Panics
     /// If the board does not arm.
-    pub fn swing(&mut self, program: &Program, seconds: u64) {
+    pub fn swing(&mut self, program: &MotionProgram, seconds: u64) {
         assert_eq!(self.request(Command::Arm), Outcome::Ack);
         let start = self.machine.seconds();
         for _ in 0..seconds * 20 {

@@ -23,7 +23,7 @@ pub fn elf(package: &str, binary: &str) -> Vec<u8> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let status = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
         .current_dir(&root)
-        .args(["build", "--quiet", "--release", "--package", package, "--bin", binary, "--target", TARGET])
+        .args(["build", "--quiet", "--profile", "firmware", "--package", package, "--bin", binary, "--target", TARGET])
         .env_remove("PROPRIO_TABLE")
         .status()
         .expect("cargo, which runs this, can be run");
@@ -33,6 +33,6 @@ pub fn elf(package: &str, binary: &str) -> Vec<u8> {
     );
     let target =
         env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), |folder| root.join(PathBuf::from(folder)));
-    let path = target.join(TARGET).join("release").join(binary);
+    let path = target.join(TARGET).join("firmware").join(binary);
     fs::read(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }

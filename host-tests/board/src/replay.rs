@@ -4,9 +4,9 @@ use std::path::Path;
 
 use calibration_tables::ArmFile;
 use estimator_core::{Estimator, Method, Q};
-use telemetry::{Estimate, Event, SEGMENTS, Sample, TICK_HZ, Uncertainty, touched};
+use telemetry::{Estimate, Event, SEGMENTS, Sample, TICK_HZ, Uncertainty, contact_flags};
 
-/// The reference arm's table, which the firmware has baked in.
+/// The reference arm's table, which the firmware has compiled in.
 ///
 /// # Panics
 /// If the committed file is not a valid table.
@@ -32,18 +32,18 @@ pub struct Replayed {
 /// # Panics
 /// If the reference table is not valid.
 pub fn replay<'s>(samples: impl Iterator<Item = &'s Sample>) -> Vec<Replayed> {
-    let baked = table().bake::<Q>(TICK_HZ).expect("the reference table bakes");
-    let table = baked.config();
+    let compiled = table().compile::<Q>(TICK_HZ).expect("the reference file is a valid table");
+    let table = compiled.config();
     let start = || Estimator::<Q, SEGMENTS, 100>::new(&table).expect("the reference arm has six segments");
     let (mut estimator, mut tare, mut touched_before) = (start(), 0, [false; SEGMENTS]);
     let mut replayed = Vec::new();
     for sample in samples {
-        if sample.tare != tare {
-            (estimator, tare) = (start(), sample.tare);
+        if sample.tare_epoch != tare {
+            (estimator, tare) = (start(), sample.tare_epoch);
         }
         let estimate = estimator.update_full(&sample.into());
         let (errors, contacts) = (estimator.uncertainties(), estimator.contacts());
-        let touched = touched(&contacts);
+        let touched = contact_flags(&contacts);
         replayed.push(Replayed {
             estimate: Estimate::of(sample.tick, &estimator.shape(&estimate, Method::Fusion)),
             uncertainty: Uncertainty::of(sample.tick, &errors, &contacts),

@@ -8,9 +8,9 @@ use telemetry::SegmentEstimate;
 use crate::board::Board;
 
 /// Comparisons for each printed line where the output is not a terminal.
-const LOOKS_PER_LINE: u64 = 300;
+const LOOKS_PER_LINE: u64 = 100;
 
-/// Display of the run: in a terminal a block that is redrawn in place, else a line every 30 s.
+/// Display of the run: in a terminal a block that is redrawn in place, else a line every 10 s.
 pub struct View {
     seconds: u64,
     looks: u64,

@@ -1,12 +1,12 @@
-//! The board's own estimates, and what it says of them, against those of a replay.
+//! Agreement of a board's estimates, uncertainties and contacts with those of a replay.
 
 use std::fmt;
 
 use calibration_tables::DriftKind;
 use estimator_core::{Method, Q};
-use proprio_session::{OnBoard, Row, is_version_0_1};
+use proprio_session::{BoardOutput, Row, is_version_0_1};
 use serde::Serialize;
-use telemetry::{Estimate, SegmentEstimate, Uncertainty, touched};
+use telemetry::{Estimate, SegmentEstimate, Uncertainty, contact_flags};
 
 use crate::Outcome;
 
@@ -24,7 +24,7 @@ pub enum RecordedBy {
 }
 
 impl RecordedBy {
-    /// Of a board's firmware that ran a table with this drift correction.
+    /// The estimator of this firmware with a table of this drift correction.
     #[must_use]
     pub fn new(firmware: &str, drift: Option<DriftKind>) -> Self {
         match drift {
@@ -35,39 +35,39 @@ impl RecordedBy {
     }
 }
 
-/// How many of the board's estimates a replay gives again, bit for bit.
+/// Comparison of the board's estimates with those of a replay, bit for bit.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct Comparison {
     /// Estimates that are in the recording.
     pub estimates: u64,
-    /// Of these: the same in the replay.
+    /// Number of them that are the same in the replay.
     pub equal: u64,
-    /// Of these: not compared, as a sample before them, since the estimator's start, is not in the recording.
+    /// Number of them that are not compared: a sample since the estimator's start is not in the recording.
     pub not_compared: u64,
     /// The first that differs.
     pub first_difference: Option<Difference>,
-    /// How far its estimates may be off, as the board has said from time to time.
-    pub uncertainties: Told,
-    /// Where contact began or ended, as the board has said.
-    pub contacts: Told,
-    /// Whether the board's table was that of the replay, where its `Hello` is in the recording; not known of version 0.1.
+    /// Agreement of the uncertainties.
+    pub uncertainties: Agreement,
+    /// Agreement of the changes of contact.
+    pub contacts: Agreement,
+    /// True where the board's table was that of the replay; `None` without a `Hello` in the recording, and for version 0.1.
     pub table_matches: Option<bool>,
-    /// The estimator that they were made by.
+    /// The estimator that has made the estimates.
     pub recorded_by: RecordedBy,
 }
 
-/// What the board has said beside its estimates, of one kind.
+/// Agreement of one kind of message with the replay.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
-pub struct Told {
-    /// Messages that are compared.
+pub struct Agreement {
+    /// Number of messages that are compared.
     pub compared: u64,
-    /// Of these: the same in the replay.
+    /// Number of them that are the same in the replay.
     pub equal: u64,
     /// Number of the first tick that differs.
     pub first_difference: Option<u32>,
 }
 
-impl Told {
+impl Agreement {
     fn add(&mut self, tick: u32, is_equal: bool) {
         self.compared += 1;
         self.equal += u64::from(is_equal);
@@ -84,9 +84,9 @@ pub struct Difference {
     pub tick: u32,
     /// The first segment that differs, from 1.
     pub segment: usize,
-    /// What the board said; `None`: that it does not know.
+    /// The board's estimate; `None` where it is not known.
     pub recorded: Option<Values>,
-    /// What the replay says.
+    /// The estimate of the replay.
     pub computed: Option<Values>,
 }
 
@@ -109,7 +109,7 @@ impl From<SegmentEstimate> for Values {
 }
 
 impl Comparison {
-    /// Compares what the board has said of one row.
+    /// Compares the board's output of one row.
     pub fn add(&mut self, row: &Row, outcome: &Outcome<Q>) {
         let Some(board) = &row.board else { return };
         self.add_estimate(board, outcome);
@@ -121,11 +121,11 @@ impl Comparison {
             self.uncertainties.add(board.tick, *recorded == computed);
         }
         if let Some(recorded) = board.contact {
-            self.contacts.add(board.tick, recorded == touched(&outcome.contacts));
+            self.contacts.add(board.tick, recorded == contact_flags(&outcome.contacts));
         }
     }
 
-    fn add_estimate(&mut self, board: &OnBoard, outcome: &Outcome<Q>) {
+    fn add_estimate(&mut self, board: &BoardOutput, outcome: &Outcome<Q>) {
         let Some(recorded) = board.estimate else { return };
         self.estimates += 1;
         if !board.complete {
@@ -149,12 +149,12 @@ impl Comparison {
         }
     }
 
-    /// Takes back what is not to be compared: estimates of version 0.1's observer, and all uncertainties of version 0.1.
+    /// Removes what cannot be compared: estimates of version 0.1's observer, and all uncertainties of version 0.1.
     #[must_use]
     pub fn of(self, recorded_by: RecordedBy) -> Self {
         match recorded_by {
             RecordedBy::ThisVersion => self,
-            RecordedBy::Anchor01 => Self { uncertainties: Told::default(), recorded_by, ..self },
+            RecordedBy::Anchor01 => Self { uncertainties: Agreement::default(), recorded_by, ..self },
             RecordedBy::Observer01 => Self {
                 estimates: self.estimates,
                 not_compared: self.estimates,
@@ -165,7 +165,7 @@ impl Comparison {
         }
     }
 
-    /// Whether all that could be compared is the same.
+    /// True where all compared values are the same.
     #[must_use]
     pub fn is_exact(&self) -> bool {
         let Self { first_difference, uncertainties, contacts, .. } = self;
@@ -198,7 +198,7 @@ impl fmt::Display for Comparison {
                 Shown(*computed)
             )?;
         } else {
-            let [uncertainties, contacts] = [self.uncertainties, self.contacts].map(|told| told.equal);
+            let [uncertainties, contacts] = [self.uncertainties, self.contacts].map(|agreement| agreement.equal);
             if self.recorded_by == RecordedBy::Anchor01 {
                 write!(
                     f,
@@ -217,9 +217,9 @@ impl fmt::Display for Comparison {
             let more = self.not_compared;
             write!(f, "; {more} more are not compared, as samples before them are not in the recording")?;
         }
-        for (what, told) in [("uncertainties", self.uncertainties), ("changes of contact", self.contacts)] {
-            if let Told { compared, equal, first_difference: Some(tick) } = told {
-                write!(f, "; {} of {compared} {what} are not, the first: tick {tick}", compared - equal)?;
+        for (name, agreement) in [("uncertainties", self.uncertainties), ("changes of contact", self.contacts)] {
+            if let Agreement { compared, equal, first_difference: Some(tick) } = agreement {
+                write!(f, "; {} of {compared} {name} are not, the first: tick {tick}", compared - equal)?;
             }
         }
         if self.table_matches == Some(false) {

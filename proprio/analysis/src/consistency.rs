@@ -1,4 +1,4 @@
-//! How honest the estimates' covariances are: errors against truth, as the covariances would have them.
+//! Consistency of the estimates' covariances with their errors against truth (NEES).
 
 use calibration_tables::MAX_SEGMENTS;
 use estimator_core::{FusedOps, Method, Shape, Uncertainties, VARIANCE_SCALE};
@@ -28,7 +28,7 @@ impl Normalised {
         self.count += other.count;
     }
 
-    /// A mean, where there is one.
+    /// The mean of `sum`; `None` without any value.
     fn of_count(&self, sum: f64) -> Option<f64> {
         (self.count > 0).then(|| sum / self.count as f64)
     }
@@ -36,34 +36,35 @@ impl Normalised {
 
 /// Normalised errors of the fused or smoothed shape, gathered over one or more sessions.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Honesty {
+pub struct FilterConsistency {
     tips: Normalised,
     ends: Normalised,
     thetas: Normalised,
 }
 
-/// What they come to; `None` where the table does not say what errors come from, or there was no truth.
+/// Metrics of consistency; `None` where the table has no error sources, or there was no truth.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct HonestyFigures {
-    /// Mean normalised square error of the tip for each of its two coordinates: 1 is honest, more is too sure.
+pub struct ConsistencyMetrics {
+    /// Mean normalised estimation error squared of the tip for each of its two coordinates: 1 is consistent, above 1 the filter is
+    /// overconfident.
     pub tip_nees: Option<f64>,
     /// Share of the true tips within their 95 % ellipse, %.
     pub tip_inside_percent: Option<f64>,
-    /// As for the tip, over the ends of all segments.
+    /// Mean normalised estimation error squared of the ends of all segments, for each coordinate.
     pub end_nees: Option<f64>,
-    /// As for the tip, over the ends of all segments.
+    /// Share of the true ends of all segments within their 95 % ellipses, %.
     pub end_inside_percent: Option<f64>,
-    /// Mean normalised square error of the bend angles.
+    /// Mean normalised estimation error squared of the bend angles.
     pub theta_nees: Option<f64>,
 }
 
-impl Honesty {
-    /// Adds the fused shape of one row, as far as it has truth and covariances.
+impl FilterConsistency {
+    /// Adds the fused shape of one row, where it has truth and covariances.
     pub fn add<S: FusedOps>(&mut self, row: &Row, outcome: &Outcome<S>) {
         self.add_shape(row, &outcome.shapes[Method::Fusion as usize], &outcome.uncertainties);
     }
 
-    /// Adds a shape, as far as there are truth and covariances.
+    /// Adds a shape, where it has truth and covariances.
     pub fn add_shape<S: FusedOps>(
         &mut self,
         row: &Row,
@@ -96,12 +97,12 @@ impl Honesty {
         self.thetas.append(&other.thetas);
     }
 
-    /// The figures.
+    /// The metrics.
     #[must_use]
-    pub fn figures(&self) -> HonestyFigures {
+    pub fn metrics(&self) -> ConsistencyMetrics {
         let nees = |of: &Normalised| of.of_count(of.sum / 2.0);
         let inside_percent = |of: &Normalised| of.of_count(of.inside as f64 * 100.0);
-        HonestyFigures {
+        ConsistencyMetrics {
             tip_nees: nees(&self.tips),
             tip_inside_percent: inside_percent(&self.tips),
             end_nees: nees(&self.ends),

@@ -1,22 +1,22 @@
-//! Distances and their quantiles, in memory that does not grow with their number.
+//! Histogram of distances and their quantiles, in memory that does not grow with their number.
 
 use hdrhistogram::Histogram;
 
-/// Digits that a quantile is exact to: one distance is told from another that differs by 1/10 000.
+/// Digits of a quantile: distances that differ by 1/10 000 are resolved.
 const DIGITS: u8 = 4;
 /// Whole steps in which distances are counted, in 1 m: nanometres.
 const STEPS_PER_M: f64 = 1e9;
 
-/// Many distances: their exact number and mean square, their quantiles to 10⁻⁴ of the value.
+/// Histogram of distances: their exact number and mean square, their quantiles to 10⁻⁴ of the value.
 #[derive(Debug, Clone)]
-pub struct Distances {
+pub struct ErrorHistogram {
     counts: Histogram<u64>,
     square_sum_m2: f64,
 }
 
-/// What a box plot shows, m.
+/// Statistics of a box plot, m.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Spread {
+pub struct BoxStats {
     /// Smallest distance within 1.5 box heights below the first quartile.
     pub low_m: f64,
     /// First quartile, median and third quartile.
@@ -27,28 +27,28 @@ pub struct Spread {
     pub largest_m: f64,
 }
 
-impl Default for Distances {
+impl Default for ErrorHistogram {
     fn default() -> Self {
         let counts = Histogram::new(DIGITS).expect("a histogram may have 0 to 5 digits");
         Self { counts, square_sum_m2: 0.0 }
     }
 }
 
-impl Distances {
+impl ErrorHistogram {
     /// Adds one distance.
     ///
     /// # Panics
-    /// Never: the histogram grows to whatever it is given.
+    /// Never: the histogram grows with its values.
     pub fn add(&mut self, distance_m: f64) {
         self.square_sum_m2 += distance_m * distance_m;
         let steps = (distance_m * STEPS_PER_M).round() as u64;
         self.counts.record(steps).expect("a histogram that resizes takes any value");
     }
 
-    /// Adds all distances of another set.
+    /// Adds all distances of another histogram.
     ///
     /// # Panics
-    /// Never, as [`Distances::add`].
+    /// Never, as [`ErrorHistogram::add`].
     pub fn append(&mut self, other: &Self) {
         self.square_sum_m2 += other.square_sum_m2;
         self.counts.add(&other.counts).expect("a histogram that resizes takes any other");
@@ -60,13 +60,13 @@ impl Distances {
         self.counts.len()
     }
 
-    /// Root mean square; `None` where there is none.
+    /// Root mean square, m; `None` without any distance.
     #[must_use]
     pub fn rms_m(&self) -> Option<f64> {
         (self.count() > 0).then(|| (self.square_sum_m2 / self.count() as f64).sqrt())
     }
 
-    /// The quantile between the two nearest distances, linearly interpolated; `None` where there is none.
+    /// The quantile, linearly interpolated between the two nearest distances, m; `None` without any distance.
     #[must_use]
     pub fn quantile_m(&self, share: f64) -> Option<f64> {
         let last = self.count().checked_sub(1)?;
@@ -76,9 +76,9 @@ impl Distances {
         Some(lo + (hi - lo) * place.fract())
     }
 
-    /// Quartiles and whiskers (Tukey's); `None` where there is none.
+    /// Quartiles and whiskers (Tukey's); `None` without any distance.
     #[must_use]
-    pub fn spread(&self) -> Option<Spread> {
+    pub fn box_stats(&self) -> Option<BoxStats> {
         let [first, median, third] = [0.25, 0.5, 0.75].map(|share| self.quantile_m(share));
         let quartiles_m = [first?, median?, third?];
         let [first, _, third] = quartiles_m;
@@ -86,7 +86,7 @@ impl Distances {
         let inside = |m: &f64| (first - reach..=third + reach).contains(m);
         let mut within = self.counts.iter_recorded().map(|step| metres(step.value_iterated_to())).filter(inside);
         let low_m = within.next().unwrap_or(first);
-        Some(Spread {
+        Some(BoxStats {
             low_m,
             quartiles_m,
             high_m: within.last().unwrap_or(low_m),
@@ -94,7 +94,7 @@ impl Distances {
         })
     }
 
-    /// The distance that `rank` others are not larger than.
+    /// The distance of this rank, m.
     fn at_m(&self, rank: f64) -> f64 {
         metres(self.counts.value_at_quantile((rank + 0.5) / self.count() as f64))
     }
@@ -106,10 +106,10 @@ fn metres(steps: u64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::Distances;
+    use super::ErrorHistogram;
 
-    fn of(values: &[f64]) -> Distances {
-        let mut distances = Distances::default();
+    fn of(values: &[f64]) -> ErrorHistogram {
+        let mut distances = ErrorHistogram::default();
         for value in values {
             distances.add(*value);
         }
@@ -158,14 +158,14 @@ mod tests {
         let (mut one, whole) = (of(&[0.5, 0.001]), of(&[0.5, 0.001, 0.02, 7.0]));
         one.append(&of(&[0.02, 7.0]));
         assert_eq!(one.count(), 4);
-        assert_eq!(one.spread(), whole.spread());
+        assert_eq!(one.box_stats(), whole.box_stats());
     }
 
     #[test]
     fn whiskers_end_at_the_last_distances_within_one_and_a_half_boxes() {
         // Quartiles 3, 5 and 7 mm, so that whiskers reach to −3 and 13 mm.
         let spread = of(&[0.001, 0.003, 0.003, 0.005, 0.005, 0.007, 0.007, 0.0125, 0.050]);
-        let spread = spread.spread().expect("there are distances");
+        let spread = spread.box_stats().expect("there are distances");
         for (found, expected) in spread.quartiles_m.into_iter().zip([0.003, 0.005, 0.007]) {
             assert_near(Some(found), expected);
         }

@@ -1,4 +1,4 @@
-//! The estimate CSV: θ and world points of all methods, and of the smoothed shape, a row a sample.
+//! The estimate CSV: θ and world points of all methods, and of the smoothed shape, one row per sample.
 
 use std::io::{self, Write};
 
@@ -8,7 +8,7 @@ use proprio_session::{Error, OutputFile};
 
 use crate::Outcome;
 
-/// Estimates that are being written.
+/// Writer of estimates.
 pub struct EstimateWriter {
     file: OutputFile,
 }
@@ -23,7 +23,7 @@ impl EstimateWriter {
         Ok(Self { file })
     }
 
-    /// Writes one row; the cells of what is not known stay empty.
+    /// Writes one row; cells of unknown values stay empty.
     ///
     /// # Errors
     /// [`Error::Output`].
@@ -43,7 +43,7 @@ impl EstimateWriter {
 /// Writes the header for an arm of `segments` segments.
 ///
 /// # Errors
-/// Those of `sink`.
+/// Errors of `sink`.
 pub fn write_header(sink: &mut impl Write, segments: usize, is_smoothed: bool) -> io::Result<()> {
     write!(sink, "time_s")?;
     for method in Method::ALL.map(Method::name).into_iter().chain(is_smoothed.then_some("smoothed")) {
@@ -57,7 +57,7 @@ pub fn write_header(sink: &mut impl Write, segments: usize, is_smoothed: bool) -
 /// Writes one row.
 ///
 /// # Errors
-/// Those of `sink`.
+/// Errors of `sink`.
 pub fn write_row<S: FusedOps>(sink: &mut impl Write, outcome: &Outcome<S>) -> io::Result<()> {
     write!(sink, "{}", outcome.estimate.time_us as f64 / 1e6)?;
     let smoothed = outcome.smoothed.as_ref().map(|smoothed| &smoothed.shape);

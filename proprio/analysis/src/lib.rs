@@ -1,30 +1,30 @@
-//! Replay of recorded sessions, and what can be computed from it: error metrics, smoothed estimates, reports.
+//! Replay of recorded sessions: error metrics, smoothed estimates, reports.
 //!
 //! ```no_run
 //! use std::path::Path;
 //!
 //! use estimator_core::Q;
-//! use proprio_analysis::metrics::Score;
+//! use proprio_analysis::metrics::ErrorMetrics;
 //! use proprio_analysis::replay::replay;
-//! use proprio_session::{NamedTable, NoProgress};
+//! use proprio_session::{LoadedTable, NoProgress};
 //!
-//! let table = NamedTable::load(Path::new("table.toml"))?;
-//! let mut score = Score::new(table.file.length_mm());
+//! let table = LoadedTable::load(Path::new("table.toml"))?;
+//! let mut errors = ErrorMetrics::new(table.file.length_mm());
 //! replay::<Q>(Path::new("session.csv"), &table, &mut NoProgress, |row, outcome| {
-//!     score.add(row, outcome);
+//!     errors.add(row, outcome);
 //!     Ok(())
 //! })?;
-//! println!("{:?}", score.figures());
+//! println!("{:?}", errors.metrics());
 //! # Ok::<(), proprio_analysis::Error>(())
 //! ```
 //!
 //! | file or folder | purpose |
 //! |---|---|
 //! | `replay.rs`, `outcome.rs` | a session through the estimator, row by row |
-//! | `smooth/` | estimates of each sample from the samples after it too |
+//! | `smooth/` | smoothed estimates, which use the later samples too |
 //! | `metrics.rs`, `consistency.rs`, `error_histogram.rs` | errors against truth, and against the estimates' covariances |
 //! | `agreement.rs` | a board's estimates compared with a replay |
-//! | `figures.rs`, `estimates.rs` | results for people and programs: figures, and estimates as CSV |
+//! | `session_metrics.rs`, `estimates.rs` | results for people and programs: metrics, and estimates as CSV |
 //! | `report/` | a page of plots |
 
 pub mod agreement;
@@ -32,11 +32,11 @@ pub mod consistency;
 mod error;
 pub mod error_histogram;
 pub mod estimates;
-pub mod figures;
 pub mod metrics;
 mod outcome;
 pub mod replay;
 pub mod report;
+pub mod session_metrics;
 pub mod smooth;
 
 pub use error::Error;

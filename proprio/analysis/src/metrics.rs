@@ -6,34 +6,34 @@ use proprio_session::Row;
 use serde::Serialize;
 
 use crate::Outcome;
-use crate::consistency::{Honesty, HonestyFigures};
-use crate::error_histogram::Distances;
+use crate::consistency::{ConsistencyMetrics, FilterConsistency};
+use crate::error_histogram::ErrorHistogram;
 use crate::smooth::Smoothed;
 
 /// Errors of one method, gathered over one or more sessions.
 #[derive(Debug, Clone, Default)]
 struct Errors {
-    tips: Distances,
+    tips: ErrorHistogram,
     theta_square_sum: f64,
     thetas: u64,
 }
 
 /// Errors of all methods, and of the smoothed shape.
 #[derive(Debug, Clone)]
-pub struct Score {
+pub struct ErrorMetrics {
     length_m: f64,
     errors: [Errors; Method::ALL.len()],
-    honesty: Honesty,
+    consistency: FilterConsistency,
     smoothed: Errors,
-    smoothed_honesty: Honesty,
+    smoothed_consistency: FilterConsistency,
 }
 
-/// The figures of one method; `None` where it said nothing, or there was no truth.
+/// The metrics of one method; `None` where it had no estimate, or there was no truth.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Figures {
+pub struct Metrics {
     /// Root mean square of the tip's distance to its true place, mm.
     pub tip_rmse_mm: Option<f64>,
-    /// The same in % of the arm's length.
+    /// Root mean square of the tip's distance, % of the arm's length.
     pub tip_rmse_percent: Option<f64>,
     /// 75th percentile of the tip's distance, mm; to 10⁻⁴ of it.
     pub tip_p75_mm: Option<f64>,
@@ -41,15 +41,15 @@ pub struct Figures {
     pub theta_rmse_deg: Option<f64>,
 }
 
-/// The figures of the smoothed shape.
+/// The metrics of the smoothed shape.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct SmoothedFigures {
+pub struct SmoothedMetrics {
     /// Its errors.
     #[serde(flatten)]
-    pub figures: Figures,
-    /// How honest its covariances are, where there are any.
+    pub metrics: Metrics,
+    /// Consistency of its covariances, where there are any.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub uncertainty: Option<HonestyFigures>,
+    pub uncertainty: Option<ConsistencyMetrics>,
 }
 
 /// Distance of the tip from its true place by each of [`Method::ALL`], where both are known, m.
@@ -90,10 +90,10 @@ impl Errors {
         self.thetas += other.thetas;
     }
 
-    fn figures(&self, length_m: f64) -> Figures {
+    fn metrics(&self, length_m: f64) -> Metrics {
         let tip_rmse_m = self.tips.rms_m();
         let theta_mean_square = self.theta_square_sum / self.thetas as f64;
-        Figures {
+        Metrics {
             tip_rmse_mm: tip_rmse_m.map(|m| m * 1e3),
             tip_rmse_percent: tip_rmse_m.map(|m| m / length_m * 100.0),
             tip_p75_mm: self.tips.quantile_m(0.75).map(|m| m * 1e3),
@@ -102,35 +102,35 @@ impl Errors {
     }
 }
 
-impl Score {
+impl ErrorMetrics {
     /// No errors yet, for an arm of `length_mm`.
     #[must_use]
     pub fn new(length_mm: f64) -> Self {
         Self {
             length_m: length_mm / 1e3,
             errors: Default::default(),
-            honesty: Honesty::default(),
+            consistency: FilterConsistency::default(),
             smoothed: Errors::default(),
-            smoothed_honesty: Honesty::default(),
+            smoothed_consistency: FilterConsistency::default(),
         }
     }
 
-    /// Adds one row, as far as it has truth.
+    /// Adds one row, where it has truth.
     pub fn add<S: FusedOps>(&mut self, row: &Row, outcome: &Outcome<S>) {
         for (errors, shape) in self.errors.iter_mut().zip(&outcome.shapes) {
             errors.add(row, shape);
         }
-        self.honesty.add(row, outcome);
+        self.consistency.add(row, outcome);
         if let Some(Smoothed { shape, uncertainties }) = &outcome.smoothed {
             self.smoothed.add(row, shape);
-            self.smoothed_honesty.add_shape(row, shape, uncertainties);
+            self.smoothed_consistency.add_shape(row, shape, uncertainties);
         }
     }
 
     /// Adds all errors of another session of the same arm.
     pub fn append(&mut self, other: &Self) {
-        self.honesty.append(&other.honesty);
-        self.smoothed_honesty.append(&other.smoothed_honesty);
+        self.consistency.append(&other.consistency);
+        self.smoothed_consistency.append(&other.smoothed_consistency);
         self.smoothed.append(&other.smoothed);
         for (errors, other) in self.errors.iter_mut().zip(&other.errors) {
             errors.append(other);
@@ -139,36 +139,36 @@ impl Score {
 
     /// Distances of the tip from its true place by `method`.
     #[must_use]
-    pub fn tips(&self, method: Method) -> &Distances {
+    pub fn tips(&self, method: Method) -> &ErrorHistogram {
         &self.errors[method as usize].tips
     }
 
-    /// How honest the covariances were; `None` where there were none, or no truth.
+    /// Consistency of the covariances; `None` without covariances or truth.
     #[must_use]
-    pub fn honesty(&self) -> Option<HonestyFigures> {
-        let figures = self.honesty.figures();
-        figures.end_nees.map(|_| figures)
+    pub fn consistency(&self) -> Option<ConsistencyMetrics> {
+        let metrics = self.consistency.metrics();
+        metrics.end_nees.map(|_| metrics)
     }
 
-    /// The figures of each of [`Method::ALL`].
+    /// The metrics of each of [`Method::ALL`].
     #[must_use]
-    pub fn figures(&self) -> [Figures; Method::ALL.len()] {
-        self.errors.each_ref().map(|errors| errors.figures(self.length_m))
+    pub fn metrics(&self) -> [Metrics; Method::ALL.len()] {
+        self.errors.each_ref().map(|errors| errors.metrics(self.length_m))
     }
 
     /// Distances of the smoothed tip from its true place.
     #[must_use]
-    pub fn smoothed_tips(&self) -> &Distances {
+    pub fn smoothed_tips(&self) -> &ErrorHistogram {
         &self.smoothed.tips
     }
 
-    /// The figures of the smoothed shape; `None` where nothing was smoothed, or there was no truth.
+    /// The metrics of the smoothed shape; `None` where nothing was smoothed, or there was no truth.
     #[must_use]
-    pub fn smoothed(&self) -> Option<SmoothedFigures> {
+    pub fn smoothed(&self) -> Option<SmoothedMetrics> {
         let has_truth = self.smoothed.tips.count() > 0 || self.smoothed.thetas > 0;
         has_truth.then(|| {
-            let uncertainty = Some(self.smoothed_honesty.figures()).filter(|figures| figures.end_nees.is_some());
-            SmoothedFigures { figures: self.smoothed.figures(self.length_m), uncertainty }
+            let uncertainty = Some(self.smoothed_consistency.metrics()).filter(|metrics| metrics.end_nees.is_some());
+            SmoothedMetrics { metrics: self.smoothed.metrics(self.length_m), uncertainty }
         })
     }
 }

@@ -16,13 +16,13 @@ pub struct Outcome<S> {
     pub estimate: Estimate<S, MAX_SEGMENTS>,
     /// The shape by each of [`Method::ALL`].
     pub shapes: [Shape<S, MAX_SEGMENTS>; Method::ALL.len()],
-    /// How far the fused shape may be off; empty where the table does not say what errors come from.
+    /// Uncertainty of the fused shape; empty where the table has no error sources.
     pub uncertainties: Uncertainties<MAX_SEGMENTS>,
-    /// What touches the segments.
+    /// Contact of the segments.
     pub contacts: Contacts<MAX_SEGMENTS>,
     /// Conditions that make the estimate less certain, by segment.
     pub conditions: Conditions<MAX_SEGMENTS>,
-    /// The fused shape by the readings after the row too, where the session is [smoothed](crate::smooth).
+    /// The smoothed shape, which uses the later readings too, where the session is [smoothed](crate::smooth).
     pub smoothed: Option<Smoothed<S>>,
 }
 

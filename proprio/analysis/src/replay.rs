@@ -3,44 +3,44 @@
 use std::path::Path;
 
 use estimator_core::{Estimator, FusedOps, Q};
-use proprio_session::{Kind, NamedTable, Progress, Row, SessionReader, is_version_0_1};
+use proprio_session::{FileFormat, LoadedTable, Progress, Row, SessionReader, is_version_0_1};
 use telemetry::{Hello, TICK_HZ};
 
 use crate::agreement::RecordedBy;
 use crate::error::Error;
 use crate::outcome::{HostEstimator, Outcome};
 
-/// The extent of a session.
+/// Summary of a session.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Extent {
+pub struct SessionSummary {
     /// Number of rows.
     pub samples: u64,
-    /// From the first row to the last.
+    /// Time from the first row to the last, s.
     pub seconds: f64,
-    /// Whether the file's last line is ended; if not, its last number may have been cut.
+    /// True where the file's last line has a line end; otherwise its last number may be cut.
     pub ends_with_line: bool,
-    /// Of a board's recording.
-    pub recording: Option<Recording>,
+    /// Facts about a board's recording; `None` for a CSV.
+    pub recording: Option<RecordingFacts>,
 }
 
-/// What is known of a recording, when it is replayed.
+/// Facts about a recording that is replayed.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Recording {
+pub struct RecordingFacts {
     /// Version and revision of the board's firmware; `None` where its `Hello` is not in the recording.
     pub firmware: Option<String>,
-    /// Whether the board's table was the one of the replay, likewise. `None` of firmware of version 0.1, too, where the same
-    /// table had another checksum.
+    /// True where the board's table was that of the replay. `None` where its `Hello` is not in the recording, and for firmware
+    /// of version 0.1, in which the same table has another checksum.
     pub table_matches: Option<bool>,
     /// The estimator of the board's firmware.
     pub recorded_by: RecordedBy,
 }
 
-impl Recording {
-    fn new(hello: Option<&Hello>, table: &NamedTable) -> Result<Self, Error> {
+impl RecordingFacts {
+    fn new(hello: Option<&Hello>, table: &LoadedTable) -> Result<Self, Error> {
         let Some(hello) = hello else {
             return Ok(Self { firmware: None, table_matches: None, recorded_by: RecordedBy::default() });
         };
-        let checksum = table.bake::<Q>(TICK_HZ)?.checksum();
+        let checksum = table.compile::<Q>(TICK_HZ)?.checksum();
         let firmware = Some(format!("{} ({})", hello.firmware, hello.revision));
         Ok(Self {
             firmware,
@@ -59,21 +59,21 @@ impl Recording {
 /// Never: the checks of the table's file are at least as strict as the estimator's.
 pub fn replay<S: FusedOps>(
     session: &Path,
-    table: &NamedTable,
+    table: &LoadedTable,
     progress: &mut dyn Progress,
     mut visit: impl FnMut(&Row, &Outcome<S>) -> Result<(), Error>,
-) -> Result<Extent, Error> {
+) -> Result<SessionSummary, Error> {
     let mut rows = SessionRows::open(session, table, "replaying", progress)?;
-    let baked = table.bake::<S>(rows.rate_hz(table))?;
-    let baked = baked.config();
-    let mut estimator: Box<HostEstimator<S>> = Box::new(Estimator::new(&baked).expect("the file was checked"));
+    let compiled = table.compile::<S>(rows.rate_hz(table))?;
+    let compiled = compiled.config();
+    let mut estimator: Box<HostEstimator<S>> = Box::new(Estimator::new(&compiled).expect("the file was checked"));
     while let Some(row) = rows.next_row()? {
         visit(&row, &Outcome::of_row(&mut estimator, &row))?;
     }
-    rows.extent(table)
+    rows.summary(table)
 }
 
-/// Rows of a session, with their progress and extent.
+/// Rows of a session, with their progress and summary.
 pub(crate) struct SessionRows<'p> {
     reader: SessionReader,
     progress: &'p mut dyn Progress,
@@ -85,14 +85,19 @@ pub(crate) struct SessionRows<'p> {
 
 impl<'p> SessionRows<'p> {
     /// Opens a session; `work` names what is done with it.
-    pub fn open(session: &Path, table: &NamedTable, work: &str, progress: &'p mut dyn Progress) -> Result<Self, Error> {
-        let reader = SessionReader::open(session, &table.needs()?)?;
+    pub fn open(
+        session: &Path,
+        table: &LoadedTable,
+        work: &str,
+        progress: &'p mut dyn Progress,
+    ) -> Result<Self, Error> {
+        let reader = SessionReader::open(session, &table.required_columns()?)?;
         let work = format!("{work} {}", session.display());
         Ok(Self { reader, progress, work, samples: 0, first_us: None, last_us: 0 })
     }
 
     /// Rate of the rows; that of the table where there are too few.
-    pub fn rate_hz(&self, table: &NamedTable) -> f64 {
+    pub fn rate_hz(&self, table: &LoadedTable) -> f64 {
         self.reader.rate_hz(table.file.rate_hz)
     }
 
@@ -108,11 +113,12 @@ impl<'p> SessionRows<'p> {
         Ok(row)
     }
 
-    /// The extent, after the last row.
-    pub fn extent(self, table: &NamedTable) -> Result<Extent, Error> {
+    /// The summary, after the last row.
+    pub fn summary(self, table: &LoadedTable) -> Result<SessionSummary, Error> {
         let Self { reader, samples, first_us, last_us, .. } = self;
-        let recording = if reader.kind() == Kind::Csv { None } else { Some(Recording::new(reader.hello(), table)?) };
+        let recording =
+            if reader.kind() == FileFormat::Csv { None } else { Some(RecordingFacts::new(reader.hello(), table)?) };
         let seconds = (last_us - first_us.unwrap_or(last_us)) as f64 / 1e6;
-        Ok(Extent { samples, seconds, ends_with_line: reader.ends_with_line(), recording })
+        Ok(SessionSummary { samples, seconds, ends_with_line: reader.ends_with_line(), recording })
     }
 }

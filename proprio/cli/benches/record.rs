@@ -8,10 +8,10 @@ use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 use std::{env, fs};
 
-use proprio_link::{Intake, Taken};
+use proprio_link::{Received, StreamDecoder};
 use proprio_monitor::{Monitor, Options};
 use proprio_session::recording::Recorder;
-use proprio_session::{HostNs, NamedTable};
+use proprio_session::{HostNs, LoadedTable};
 use telemetry::{
     BEND_SENSORS, Encoder, Estimate, Hello, MAX_FRAME, Message, PROTOCOL_VERSION, ResetCause, SCHEMA, SEGMENTS, Sample,
     SegmentEstimate, Text,
@@ -24,7 +24,7 @@ const DAY_S: f64 = 86_400.0;
 const START_NS: u64 = 1_764_000_000_000_000_000;
 const TABLE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../calibration-tables/planar-6.toml");
 
-/// With it, this program opens what comes to it on the page.
+/// With it, this program opens the recording on the page.
 const OPEN: &str = "--open-on-the-page";
 
 fn main() {
@@ -42,7 +42,7 @@ fn main() {
     for (name, ticks) in [("a quarter of a day", DAY_TICKS / 4), ("a day", DAY_TICKS)] {
         let mut replay = Command::new(env!("CARGO_BIN_EXE_proprio"));
         replay.args(["replay", "/dev/stdin", "--table", TABLE]);
-        let mut open = Command::new(env::current_exe().expect("the system tells"));
+        let mut open = Command::new(env::current_exe().expect("the system reports it"));
         open.arg(OPEN);
         for (done, mut command) in [("replayed", replay), ("opened on the page", open)] {
             let start = Instant::now();
@@ -56,8 +56,8 @@ fn main() {
 /// Records so many ticks of a board.
 fn record(sink: impl Write, ticks: u32, mut show: impl FnMut(u32)) -> io::Result<()> {
     let mut recorder = Recorder::new(sink, HostNs(START_NS), "a bench")?;
-    let (mut encoder, mut intake) = (Encoder::new(), Intake::new(None));
-    intake.open();
+    let (mut encoder, mut decoder) = (Encoder::new(), StreamDecoder::new(None));
+    decoder.open();
     for tick in 0..ticks {
         let at = HostNs(START_NS + u64::from(tick) * 10_000_000);
         for message in messages(tick) {
@@ -66,8 +66,8 @@ fn record(sink: impl Write, ticks: u32, mut show: impl FnMut(u32)) -> io::Result
             recorder.bytes(at, frame)?;
             let mut done = Ok(());
             for byte in frame {
-                intake.push(*byte, |taken| {
-                    if let Taken::Message(message) = taken {
+                decoder.push(*byte, |taken| {
+                    if let Received::Message(message) = taken {
                         done = recorder.message(at, &message);
                     }
                 });
@@ -76,7 +76,7 @@ fn record(sink: impl Write, ticks: u32, mut show: impl FnMut(u32)) -> io::Result
         }
         show(tick);
     }
-    assert_eq!(intake.counts().lost, 0);
+    assert_eq!(decoder.counts().lost, 0);
     recorder.finish().map(drop)
 }
 
@@ -100,7 +100,7 @@ fn feed(command: &mut Command, ticks: u32) -> Option<String> {
 
 /// The page's session, as a browser fetches it.
 fn open_on_the_page() {
-    let table = NamedTable::load(Path::new(TABLE)).expect("the reference table");
+    let table = LoadedTable::load(Path::new(TABLE)).expect("the reference table");
     let (folder, session) = (env::temp_dir(), Some("/dev/stdin".into()));
     let options = Options { port: 0, table: Some(table), folder, token: None, session, help: ToString::to_string };
     let monitor = Monitor::start(None, options).expect("a free port");
@@ -120,7 +120,7 @@ fn messages(tick: u32) -> impl Iterator<Item = Message> {
     let sample = Sample {
         tick,
         time_us: u64::from(tick) * 10_000,
-        tare: 1,
+        tare_epoch: 1,
         bend: [Some((1500 + tick % 1000) as u16); BEND_SENSORS],
         imu: [Some(quaternion); SEGMENTS],
     };
@@ -143,7 +143,7 @@ fn hello() -> Hello {
     }
 }
 
-/// A process's peak resident memory, where the system tells.
+/// A process's peak resident memory, where the system reports it.
 fn peak_memory(process: &str) -> Option<String> {
     let status = fs::read_to_string(format!("/proc/{process}/status")).ok()?;
     Some(status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?.trim().to_owned())

@@ -8,7 +8,7 @@ use std::path::Path;
 use divan::Bencher;
 use divan::counter::ItemsCount;
 use estimator_core::{FusedOps, Q};
-use proprio_analysis::metrics::{Figures, Score};
+use proprio_analysis::metrics::{ErrorMetrics, Metrics};
 use proprio_analysis::replay::replay;
 use proprio_session::NoProgress;
 
@@ -19,26 +19,26 @@ fn main() {
     for seconds in [SECONDS / 100, SECONDS / 10, SECONDS] {
         let session = common::session(seconds, RATE_HZ);
         common::print_peak(&format!("replay of {} samples", seconds * RATE_HZ), || {
-            score::<Q>(&session, seconds * RATE_HZ);
+            metrics::<Q>(&session, seconds * RATE_HZ);
         });
     }
     divan::main();
 }
 
-fn score<S: FusedOps>(session: &Path, samples: u32) -> [Figures; 4] {
+fn metrics<S: FusedOps>(session: &Path, samples: u32) -> [Metrics; 4] {
     let table = common::table();
-    let mut score = Score::new(table.file.length_mm());
-    let extent = replay::<S>(session, &table, &mut NoProgress, |row, outcome| {
-        score.add(row, outcome);
+    let mut errors = ErrorMetrics::new(table.file.length_mm());
+    let summary = replay::<S>(session, &table, &mut NoProgress, |row, outcome| {
+        errors.add(row, outcome);
         Ok(())
     });
-    assert_eq!(extent.expect("a good session").samples, u64::from(samples));
-    score.figures()
+    assert_eq!(summary.expect("a good session").samples, u64::from(samples));
+    errors.metrics()
 }
 
 fn replays<S: FusedOps>(bencher: Bencher) {
     let (session, samples) = (common::session(SECONDS, RATE_HZ), SECONDS * RATE_HZ);
-    bencher.counter(ItemsCount::new(samples)).bench_local(|| score::<S>(&session, samples));
+    bencher.counter(ItemsCount::new(samples)).bench_local(|| metrics::<S>(&session, samples));
 }
 
 #[divan::bench(sample_count = 3, sample_size = 1)]

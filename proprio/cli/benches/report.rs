@@ -5,7 +5,7 @@ mod common;
 
 use divan::Bencher;
 use divan::counter::ItemsCount;
-use proprio_analysis::report::Gathering;
+use proprio_analysis::report::ReportBuilder;
 use proprio_session::NoProgress;
 
 const SECONDS: u32 = 2700;
@@ -25,7 +25,7 @@ fn main() {
 /// Page, JSON and CSV.
 fn report(rate_hz: u32) -> [String; 3] {
     let (session, table) = (common::session(SECONDS, rate_hz), common::table());
-    let mut gathering = Gathering::new(&table);
+    let mut gathering = ReportBuilder::new(&table);
     for _ in 0..SESSIONS {
         gathering.add(&session, &mut NoProgress).expect("a good session");
     }

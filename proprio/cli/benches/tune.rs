@@ -8,7 +8,7 @@ use calibration_tables::ArmFile;
 use divan::Bencher;
 use divan::counter::ItemsCount;
 use proprio_calibration::tune::Tuner;
-use proprio_session::{NamedTable, NoProgress, OutputFile};
+use proprio_session::{LoadedTable, NoProgress, OutputFile};
 use proprio_simulation::{ImuColumns, SessionWriter, Simulation};
 use rig_twin::Scenario;
 
@@ -22,13 +22,13 @@ fn main() {
     divan::main();
 }
 
-/// The session, simulated when it is first asked for.
+/// The session, simulated at its first use.
 fn session() -> PathBuf {
     let folder = FOLDER.get_or_init(|| {
         let folder = tempfile::tempdir().expect("a temporary folder");
         let file = OutputFile::create(&folder.path().join("session.csv"), &[]).expect("a session file");
         let mut writer = SessionWriter::new(file, ImuColumns::Deg).expect("room on the disk");
-        for sample in Simulation::new(Scenario::One, 7, SECONDS, RATE_HZ).expect("a valid run") {
+        for sample in Simulation::new(Scenario::FreeSwing, 7, SECONDS, RATE_HZ).expect("a valid run") {
             writer.write(&sample).expect("room on the disk");
         }
         writer.into_inner().finish().expect("room on the disk");
@@ -37,9 +37,9 @@ fn session() -> PathBuf {
     folder.path().join("session.csv")
 }
 
-fn table() -> NamedTable<'static> {
+fn table() -> LoadedTable<'static> {
     let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../calibration-tables/planar-6.toml"));
-    NamedTable { file: ArmFile::load(path).expect("the reference table"), path }
+    LoadedTable { file: ArmFile::load(path).expect("the reference table"), path }
 }
 
 /// From the files to the table: reading, the search for an observer, descent until it converges, and the variances.

@@ -1,4 +1,4 @@
-//! What can be typed.
+//! Arguments of the program.
 
 mod link;
 
@@ -8,9 +8,11 @@ use clap::builder::Styles;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 
-pub use link::{Convert, Drive, Flash, LinkArgs, Monitor, Ports, Record, Recover, Status};
+pub use link::{
+    ConvertArgs, DriveArgs, FlashArgs, LinkArgs, MonitorArgs, PortsArgs, RecordArgs, RecoverArgs, StatusArgs,
+};
 
-/// Colours of help and errors; off where stderr is no terminal or NO_COLOR is set.
+/// Colours of help and errors; off where stderr is not a terminal or NO_COLOR is set.
 pub const STYLES: Styles = Styles::styled();
 
 /// The shape of a soft robot arm from its bend sensors and IMUs.
@@ -26,43 +28,43 @@ pub struct Cli {
 
 #[derive(Debug, Subcommand)]
 pub enum Command {
-    /// Give a session the truth that a camera saw by its own clock
-    Align(Align),
-    /// Make a table of a session with camera truth
-    Calibrate(Calibrate),
+    /// Add the truth of a camera with its own clock to a session
+    Align(AlignArgs),
+    /// Make a table from sessions with camera truth
+    Calibrate(CalibrateArgs),
     /// Tune a table's bias filter, or its Kalman filters, on sessions with truth; Ctrl-C keeps the best so far
-    Tune(Tune),
+    Tune(TuneArgs),
     /// Run sessions through the estimator and compare with truth
-    Replay(Replay),
-    /// Make a page of figures of sessions, and the numbers behind them
-    Report(Report),
+    Replay(ReplayArgs),
+    /// Make a page of figures of sessions, and their numbers
+    Report(ReportArgs),
     /// Record a session of the simulated arm
-    Simulate(Simulate),
-    /// Build the firmware with a table, write it onto a board, and hear that it runs
-    Flash(Flash),
-    /// List the serial ports, and which of them a Due is on
-    Ports(Ports),
-    /// Say how a board is: versions, sensors, rates, losses
-    Status(Status),
-    /// Record what a board says
-    Record(Record),
+    Simulate(SimulateArgs),
+    /// Build the firmware with a table, flash it and verify that it runs
+    Flash(FlashArgs),
+    /// List the serial ports and the Dues on them
+    Ports(PortsArgs),
+    /// Show the status of a board: versions, sensors, rates, losses
+    Status(StatusArgs),
+    /// Record a board's data to an MCAP file
+    Record(RecordArgs),
     /// Drive the arm's pressures, and vent them at the end
-    Drive(Drive),
+    Drive(DriveArgs),
     /// Show a live arm, or a session, on a page in the browser
-    Monitor(Monitor),
-    /// Turn a session into CSV, a recording or raw bytes
-    Convert(Convert),
-    /// Save what is whole of a recording that was cut
-    Recover(Recover),
+    Monitor(MonitorArgs),
+    /// Convert a session to CSV, a recording or raw bytes
+    Convert(ConvertArgs),
+    /// Recover the complete part of a recording that was cut
+    Recover(RecoverArgs),
     /// Print a completion script for a shell
-    Completions(Completions),
+    Completions(CompletionsArgs),
 }
 
 #[derive(Debug, Args)]
-pub struct Align {
+pub struct AlignArgs {
     /// Session without truth, as it was recorded
     pub session: PathBuf,
-    /// What the camera saw: poses of the markers, a row a frame
+    /// Camera's file: poses of the markers, one row per frame
     #[arg(long, value_name = "CAMERA.csv")]
     pub camera: PathBuf,
     /// Arm description, or table
@@ -74,7 +76,7 @@ pub struct Align {
 }
 
 #[derive(Debug, Args)]
-pub struct Calibrate {
+pub struct CalibrateArgs {
     /// Sessions with truth: slow sweeps of every segment through its whole range, of one day or of several
     #[arg(required = true, value_name = "SESSION")]
     pub sessions: Vec<PathBuf>,
@@ -104,16 +106,16 @@ pub enum MapName {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum HysteresisName {
-    /// Where it lowers the error on held-back data
+    /// For sensors and segments whose held-back error it lowers
     Auto,
-    /// Everywhere
+    /// For all
     Always,
-    /// Nowhere
+    /// For none
     Never,
 }
 
 #[derive(Debug, Args)]
-pub struct Tune {
+pub struct TuneArgs {
     /// Training sessions with truth, all of the same arm
     #[arg(required = true, value_name = "SESSION")]
     pub sessions: Vec<PathBuf>,
@@ -126,7 +128,7 @@ pub struct Tune {
 }
 
 #[derive(Debug, Args)]
-pub struct Replay {
+pub struct ReplayArgs {
     /// Sessions to replay, one after the other
     #[arg(required = true, value_name = "SESSION")]
     pub sessions: Vec<PathBuf>,
@@ -136,7 +138,7 @@ pub struct Replay {
     /// Write the estimates of the session: bend angles and world points of all methods
     #[arg(long, value_name = "EST.csv")]
     pub out: Option<PathBuf>,
-    /// Smooth: estimate every sample by the readings after it, too; takes a table with the bias filter
+    /// Smooth: use the readings after each sample, too; needs a table with the bias filter
     #[arg(long)]
     pub smooth: bool,
     /// Print the figures as JSON
@@ -148,7 +150,7 @@ pub struct Replay {
 }
 
 #[derive(Debug, Args)]
-pub struct Report {
+pub struct ReportArgs {
     /// Sessions to show, with or without truth
     #[arg(required = true, value_name = "SESSION")]
     pub sessions: Vec<PathBuf>,
@@ -158,20 +160,20 @@ pub struct Report {
     /// Page to write
     #[arg(short, long, value_name = "REPORT.html")]
     pub output: PathBuf,
-    /// Write the numbers behind the figures as JSON
+    /// Write the numbers of the figures as JSON
     #[arg(long, value_name = "FILE.json")]
     pub json: Option<PathBuf>,
-    /// Write the numbers behind the figures as CSV, a row a number
+    /// Write the numbers of the figures as CSV, one row per number
     #[arg(long, value_name = "FILE.csv")]
     pub csv: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]
-pub struct Simulate {
-    /// What touches the arm, and how large its swings are
+pub struct SimulateArgs {
+    /// Scenario: contacts of the arm, and size of its swings
     #[arg(long, value_enum)]
     pub scenario: ScenarioName,
-    /// How the arm moves
+    /// Motion of the arm
     #[arg(long, value_enum, default_value_t = MotionName::Swings)]
     pub motion: MotionName,
     /// Duration, s
@@ -241,7 +243,7 @@ pub enum MotionName {
 }
 
 #[derive(Debug, Args)]
-pub struct Completions {
+pub struct CompletionsArgs {
     /// The shell
     pub shell: Shell,
 }

@@ -29,10 +29,10 @@ pub enum Error {
     /// A board cannot be reached.
     #[error(transparent)]
     Link(#[from] LinkError),
-    /// A board is not driven, or not any more.
+    /// A board cannot be driven, or not any more.
     #[error(transparent)]
     Drive(#[from] DriveError),
-    /// A board is not flashed.
+    /// A board cannot be flashed.
     #[error(transparent)]
     Flash(#[from] FlashError),
     /// A session cannot be simulated.
@@ -45,7 +45,7 @@ pub enum Error {
     #[error("standard output cannot be written: {0}")]
     Stdout(io::Error),
     /// The monitor is given a session and no table.
-    #[error("a session is shown by what the estimator makes of it, and that takes a table")]
+    #[error("a session is shown with the estimates of a replay, which needs a table")]
     SessionWithoutTable,
     /// `--out` with several sessions.
     #[error("--out takes the estimates of one session, found {0} sessions")]

@@ -1,4 +1,4 @@
-//! Ctrl-C and termination: the program ends at once, except in work that can end early and has a result to keep.
+//! Ctrl-C and termination: the program ends at once, except in work that can end early with a result.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -12,7 +12,7 @@ static IS_REQUESTED: AtomicBool = AtomicBool::new(false);
 
 /// Handles interrupts from now on.
 pub fn install() {
-    // Without a handler an interrupt leaves an unfinished file behind; nothing else depends on it.
+    // Without a handler an interrupt leaves a temporary file; nothing else depends on it.
     let _ = ctrlc::set_handler(|| {
         // The second request ends the program at once.
         if !IS_GUARDED.load(Ordering::SeqCst) || IS_REQUESTED.swap(true, Ordering::SeqCst) {

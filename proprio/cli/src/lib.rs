@@ -2,15 +2,17 @@
 //!
 //! | file or folder | purpose |
 //! |---|---|
-//! | `args/` | everything that can be typed |
+//! | `args/` | arguments |
 //! | `commands/` | one file for each command |
-//! | `flash/` | the firmware onto a board |
+//! | `flash/` | flashing of the firmware |
 //! | `error.rs`, `help/` | errors that stop a command, and their remedies |
 //! | `terminal.rs`, `text_tables.rs`, `status_line.rs`, `progress_bar.rs` | output for people |
 //! | `interrupt.rs` | Ctrl-C |
 
 mod args;
 mod commands;
+#[cfg(test)]
+mod commands_page;
 mod error;
 pub mod flash;
 mod help;

@@ -8,10 +8,10 @@ use proprio_session::Progress;
 /// Delay before the bar is shown.
 const DELAY: Duration = Duration::from_secs(1);
 
-/// Calls of [`Progress::advance`] for one look at the clock.
+/// Calls of [`Progress::advance`] for one reading of the clock.
 const CALLS: u64 = 1024;
 
-/// A bar for one piece of work after the other.
+/// A bar for consecutive pieces of work.
 pub struct Bar {
     shown: ProgressBar,
     work: String,

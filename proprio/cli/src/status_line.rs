@@ -5,11 +5,11 @@ use std::io::IsTerminal;
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
-use proprio_link::What;
+use proprio_link::EventKind;
 
 use crate::terminal;
 
-/// The line; there is none where standard error is no terminal.
+/// The line; hidden where standard error is not a terminal.
 pub struct StatusLine {
     bar: ProgressBar,
 }
@@ -26,9 +26,9 @@ impl StatusLine {
         self.bar.set_message(line);
     }
 
-    /// Warns of what has happened on the link, where that deserves it.
-    pub fn warn_of(&self, what: &What) {
-        if let Some(warning) = what.warning() {
+    /// Prints the warning of an event on the link, if it has one.
+    pub fn warn_of(&self, kind: &EventKind) {
+        if let Some(warning) = kind.warning() {
             self.bar.suspend(|| terminal::warn(&warning));
         }
     }

@@ -1,18 +1,18 @@
-//! Tables for people.
+//! Text tables for people.
 
 use std::time::Duration;
 
-use calibration_tables::{DriftTuningKeys, RmseKeys, Stopped, TuningKeys};
+use calibration_tables::{DriftTuningToml, RmseToml, StopReason, TuningToml};
 use comfy_table::presets::NOTHING;
 use comfy_table::{CellAlignment, Table};
 use estimator_core::Method;
-use proprio_analysis::consistency::HonestyFigures;
-use proprio_analysis::figures::{AllFigures, ByMethod};
-use proprio_analysis::metrics::Figures;
+use proprio_analysis::consistency::ConsistencyMetrics;
+use proprio_analysis::metrics::Metrics;
+use proprio_analysis::session_metrics::{AllMetrics, ByMethod};
 use proprio_calibration::calibrate::{HeldOut, MapKind, SegmentReport, SensorReport};
 use proprio_link::Port;
 
-/// One line a bend sensor.
+/// One line for each bend sensor.
 pub fn sensors(sensors: &[SensorReport]) -> String {
     let mut table = table(&["sensor", "samples", "RMSE deg", "range deg", "range V"]);
     for sensor in sensors {
@@ -60,38 +60,38 @@ pub fn held_out(held_out: &HeldOut) -> String {
     format!("\non the last fifth, by a table of the rest:\n{}\n", text(&mut table))
 }
 
-/// A word for both sensors where they agree.
+/// The words of a segment's sensors, one for both where they agree.
 fn joined<'w>(words: impl Iterator<Item = &'w str>) -> String {
     let mut words: Vec<&str> = words.collect();
     words.dedup();
     words.join(", ")
 }
 
-/// What a tuning has brought, of which each iteration took `iteration_time`.
-pub fn tuning(record: &TuningKeys, iteration_time: Duration) -> String {
-    let mut table = table(&["RMSE", "before", "after", "held back, before", "after"]);
-    let parts = [&record.before, &record.after, &record.held_back_before, &record.held_back_after];
-    let mut add = |name: &str, figure: fn(&RmseKeys) -> f64| {
+/// Result of a tuning, each iteration of which took `iteration_time`.
+pub fn tuning(record: &TuningToml, iteration_time: Duration) -> String {
+    let mut table = table(&["RMSE", "before", "after", "validation, before", "after"]);
+    let parts = [&record.before, &record.after, &record.validation_before, &record.validation_after];
+    let mut add = |name: &str, figure: fn(&RmseToml) -> f64| {
         table.add_row([name.to_owned()].into_iter().chain(parts.map(|of| format!("{:.2}", figure(of)))));
     };
     add("tip, mm", |of| of.tip_rmse_mm);
     add("all ends, mm", |of| of.position_rmse_mm);
     add("headings, deg", |of| of.heading_rmse_deg);
-    let stopped = match record.stopped {
-        Stopped::Converged => "converged",
-        Stopped::Interrupted => "interrupted",
+    let stopped = match record.stop_reason {
+        StopReason::Converged => "converged",
+        StopReason::Interrupted => "interrupted",
     };
     let each_s = iteration_time.as_secs_f64();
-    let (iterations, kept) = (record.iterations, record.kept);
+    let (iterations, best) = (record.iterations, record.best_iteration);
     let filters = format!(
-        "{}\n{stopped} after {iterations} iterations of {each_s:.3} s; the table has iteration {kept}\n",
+        "{}\n{stopped} after {iterations} iterations of {each_s:.3} s; the table has iteration {best}\n",
         text(&mut table)
     );
     filters + &record.drift.as_ref().map_or_else(String::new, bias_filter) + &variances(record)
 }
 
 /// The bias filter's parameters, before and after.
-fn bias_filter(of: &DriftTuningKeys) -> String {
+fn bias_filter(of: &DriftTuningToml) -> String {
     let mut table = table(&["bias filter", "before", "after"]);
     let keys = [
         ("rate_deg_per_s", of.rate_deg_per_s),
@@ -106,43 +106,45 @@ fn bias_filter(of: &DriftTuningKeys) -> String {
     format!("\n{}\nafter {} runs of the estimator\n", text(&mut table), of.runs)
 }
 
-/// What became of the variances, where the table has any.
-fn variances(record: &TuningKeys) -> String {
-    match record.variances {
+/// Inflation of the variances, where the table has any.
+fn variances(record: &TuningToml) -> String {
+    match record.covariance_inflation {
         None => String::new(),
         Some(factor) if factor > 1.0 => format!("\nvariances are {factor:.2} times as large\n"),
-        Some(_) => "\nvariances are as they were\n".to_owned(),
+        Some(_) => "\nvariances are unchanged\n".to_owned(),
     }
 }
 
-/// Picks one figure of a method.
-type Pick = fn(&Figures) -> Option<f64>;
+/// Selects one metric of a method.
+type Pick = fn(&Metrics) -> Option<f64>;
 
-/// A table for each figure: a line a session, a column a method, and one of the smoothed estimates where there are any.
-pub fn replay(all: &AllFigures) -> String {
+/// A table for each metric: one line per session, one column per method, and one of the smoothed estimates where there are any.
+pub fn replay(all: &AllMetrics) -> String {
     let length = all.length_mm;
     let parts: [(String, Pick); 4] = [
-        ("Tip error, RMSE in mm".to_owned(), |figures| figures.tip_rmse_mm),
-        (format!("Tip error, RMSE in % of {length} mm"), |figures| figures.tip_rmse_percent),
-        ("Tip error, 75th percentile in mm".to_owned(), |figures| figures.tip_p75_mm),
-        ("Bend angles, RMSE in deg".to_owned(), |figures| figures.theta_rmse_deg),
+        ("Tip error, RMSE in mm".to_owned(), |metrics| metrics.tip_rmse_mm),
+        (format!("Tip error, RMSE in % of {length} mm"), |metrics| metrics.tip_rmse_percent),
+        ("Tip error, 75th percentile in mm".to_owned(), |metrics| metrics.tip_p75_mm),
+        ("Bend angles, RMSE in deg".to_owned(), |metrics| metrics.theta_rmse_deg),
     ];
-    let figures = parts.map(|(title, figure)| format!("{title}\n{}\n", figures(all, figure))).join("\n");
-    figures
-        + &honesty(all, "fusion", |figures| figures.uncertainty)
-        + &honesty(all, "the smoothed estimates", |figures| figures.smoothed.and_then(|smoothed| smoothed.uncertainty))
+    let metrics = parts.map(|(title, figure)| format!("{title}\n{}\n", metrics(all, figure))).join("\n");
+    metrics
+        + &consistency(all, "fusion", |metrics| metrics.uncertainty)
+        + &consistency(all, "the smoothed estimates", |metrics| {
+            metrics.smoothed.and_then(|smoothed| smoothed.uncertainty)
+        })
 }
 
-/// How honest the covariances are: a line a session; nothing where there are none.
-fn honesty(all: &AllFigures, of_what: &str, pick: fn(&ByMethod) -> Option<HonestyFigures>) -> String {
+/// Consistency of the covariances: one line per session; empty without covariances.
+fn consistency(all: &AllMetrics, of_what: &str, pick: fn(&ByMethod) -> Option<ConsistencyMetrics>) -> String {
     if pick(&all.all).is_none() {
         return String::new();
     }
     let mut table =
         table(&["session", "tip, NEES", "in 95 % ellipse", "all ends, NEES", "in 95 % ellipse", "angles, NEES"]);
-    let sessions = all.sessions.iter().map(|session| (session.path.as_str(), &session.figures));
-    for (name, figures) in sessions.chain([("all", &all.all)]) {
-        let Some(of) = pick(figures) else { continue };
+    let sessions = all.sessions.iter().map(|session| (session.path.as_str(), &session.metrics));
+    for (name, metrics) in sessions.chain([("all", &all.all)]) {
+        let Some(of) = pick(metrics) else { continue };
         let nees = |value: Option<f64>| value.map_or("–".to_owned(), |value| format!("{value:.2}"));
         let inside = |value: Option<f64>| value.map_or("–".to_owned(), |value| format!("{value:.1} %"));
         table.add_row([
@@ -157,20 +159,20 @@ fn honesty(all: &AllFigures, of_what: &str, pick: fn(&ByMethod) -> Option<Honest
     format!("\nErrors of {of_what} over what the covariances expect\n{}\n", text(&mut table))
 }
 
-fn figures(all: &AllFigures, figure: Pick) -> String {
+fn metrics(all: &AllMetrics, figure: Pick) -> String {
     let mut heads = vec!["session", "samples", "seconds"];
     heads.extend(Method::ALL.map(Method::name));
     let is_smoothed = all.all.smoothed.is_some();
     heads.extend(is_smoothed.then_some("smoothed"));
     let mut table = table(&heads);
     let mut add = |name: String, samples: u64, seconds: f64, of: &ByMethod| {
-        let smoothed = is_smoothed.then(|| of.smoothed.and_then(|of| figure(&of.figures)));
+        let smoothed = is_smoothed.then(|| of.smoothed.and_then(|of| figure(&of.metrics)));
         let cells = of.methods.iter().map(figure).chain(smoothed);
         let cells = cells.map(|value| value.map_or("–".to_owned(), |value| format!("{value:.2}")));
         table.add_row([name, samples.to_string(), format!("{seconds:.1}")].into_iter().chain(cells));
     };
     for session in &all.sessions {
-        add(session.path.clone(), session.samples, session.seconds, &session.figures);
+        add(session.path.clone(), session.samples, session.seconds, &session.metrics);
     }
     let samples = all.sessions.iter().map(|session| session.samples).sum();
     let seconds = all.sessions.iter().map(|session| session.seconds).sum();
@@ -178,7 +180,7 @@ fn figures(all: &AllFigures, figure: Pick) -> String {
     text(&mut table)
 }
 
-/// One line a port.
+/// One line for each port.
 pub fn ports(ports: &[Port]) -> String {
     if ports.is_empty() {
         return "no serial port\n".to_owned();
@@ -191,7 +193,7 @@ pub fn ports(ports: &[Port]) -> String {
     table.trim_fmt() + "\n"
 }
 
-/// Names to the left of what they mean.
+/// Lines of names and values.
 pub fn pairs(lines: &[(&str, String)]) -> String {
     lines.iter().map(|(name, value)| format!("{name:<13} {value}\n")).collect::<Vec<_>>().concat()
 }

@@ -1,11 +1,11 @@
-//! Why there is no link to a board.
+//! Errors of the link to a board.
 
 use std::io;
 use std::path::PathBuf;
 
 use super::requests::RequestError;
 
-/// What keeps a board from being reached.
+/// An error that keeps a board from being reached.
 #[derive(Debug, thiserror::Error)]
 pub enum LinkError {
     /// The system does not list its ports.
@@ -17,7 +17,7 @@ pub enum LinkError {
     /// More than one is.
     #[error("there are several Arduino Dues: {}", .0.join(", "))]
     SeveralDues(Vec<String>),
-    /// The Due that was there is not.
+    /// The Due was unplugged.
     #[error("the Due is not plugged in")]
     Gone,
     /// The port cannot be opened.
@@ -25,11 +25,13 @@ pub enum LinkError {
     Open {
         /// Its name.
         port: String,
-        /// What the system says.
+        /// The system's reason.
         source: serialport::Error,
     },
     /// There is no program that emulates a Due.
-    #[error("the program virtual-due is neither beside proprio nor on the PATH, nor does PROPRIO_VIRTUAL_DUE name it")]
+    #[error(
+        "the program virtual-due is neither in the folder of proprio nor on the PATH, nor does PROPRIO_VIRTUAL_DUE name it"
+    )]
     NoVirtualDue,
     /// The emulated Due has no firmware to run.
     #[error("{}: there is no such firmware for the emulated Due to run", .0.display())]
@@ -39,7 +41,7 @@ pub enum LinkError {
     Start {
         /// The program.
         program: PathBuf,
-        /// What the system says.
+        /// The system's reason.
         source: io::Error,
     },
     /// The link's thread does not start.
@@ -48,12 +50,12 @@ pub enum LinkError {
     /// The line is gone.
     #[error("{0}")]
     Ended(String),
-    /// The board says nothing that is understood.
+    /// No valid `Hello` and `Health` came from the board.
     #[error("{port}: no Hello and Health within {seconds} s; {received} frames were read, {damaged} were damaged")]
     Silent {
         /// The line's name.
         port: String,
-        /// How long was waited.
+        /// Time of waiting, s.
         seconds: u64,
         /// Whole frames.
         received: u32,

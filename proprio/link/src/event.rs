@@ -1,4 +1,4 @@
-//! What the link's thread says.
+//! Events of the link's thread.
 
 use std::fmt;
 use std::sync::Arc;
@@ -6,38 +6,40 @@ use std::sync::Arc;
 use proprio_session::HostNs;
 use telemetry::{DecodeError, Message, PROTOCOL_VERSION, SCHEMA};
 
-/// Something that happened on the link.
+/// An event on the link.
 #[derive(Debug, Clone)]
 pub struct Event {
-    /// When; for bytes and what is in them, when they came.
+    /// Time of the event; for bytes and the messages in them, that of their arrival.
     pub at: HostNs,
-    /// What.
-    pub what: What,
+    /// Gaps in the stream before the event: lost frames, and openings of the line after the first.
+    pub gaps: u32,
+    /// Its kind and contents.
+    pub kind: EventKind,
 }
 
-/// What happened.
+/// Kind of an event, and its contents.
 #[derive(Debug, Clone)]
-pub enum What {
-    /// The line is open: its name.
+pub enum EventKind {
+    /// The line of this name was opened.
     Opened(String),
-    /// The line is gone, and why. It is opened again when it comes back.
+    /// The line was lost, for this reason. It is opened again when it comes back.
     Lost(String),
-    /// The line is gone for good, and why. Nothing follows.
+    /// The line is gone for good, for this reason. No event follows.
     Ended(String),
-    /// Bytes, as they came. What they decode to follows.
+    /// Received bytes. The messages in them follow.
     Bytes(Arc<[u8]>),
     /// A message of the board.
     Message(Message),
-    /// A frame that is no message.
+    /// A frame that is not a valid message.
     Undecoded(DecodeError),
     /// The board has restarted, which is no loss of frames. Its `Hello` follows, or was lost.
     Restarted,
-    /// Board and host do not belong together.
+    /// Board and host are not of the same release or table.
     Mismatch(Mismatch),
 }
 
-impl What {
-    /// What a person should be told of it, where it is out of the ordinary.
+impl EventKind {
+    /// A warning for people, where the event is out of the ordinary.
     #[must_use]
     pub fn warning(&self) -> Option<String> {
         match self {
@@ -50,19 +52,19 @@ impl What {
     }
 }
 
-/// In what board and host differ.
+/// A difference between board and host.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Mismatch {
-    /// The board speaks another version of the protocol; nothing else that it says is understood.
+    /// The board uses another version of the protocol; none of its messages can be decoded.
     Protocol(u8),
-    /// Its messages have another form; none of them is handed on but its `Hello`.
+    /// Its messages have another layout; only its `Hello` is passed on.
     Schema {
         /// The board's, where its `Hello` could be read.
         board: Option<u32>,
         /// The version of its firmware, likewise.
         firmware: Option<String>,
     },
-    /// Its firmware is of another version, but says the same messages.
+    /// Its firmware is of another version with the same messages.
     Firmware(String),
     /// Its table is not the one that was given.
     Table {

@@ -9,8 +9,9 @@ use proprio_session::recording::Recorder;
 use proprio_session::{Error, HostClock, HostNs};
 use telemetry::SetPressures;
 
-use crate::event::{Event, What};
-use crate::handle::{Link, Subscription};
+use crate::event::{Event, EventKind};
+use crate::handle::Link;
+use crate::shared::Subscription;
 
 /// Recording of a link to a new file.
 pub struct FileRecorder {
@@ -51,9 +52,9 @@ impl FileRecorder {
     /// # Errors
     /// [`Error::Output`].
     pub fn event(&mut self, event: &Event) -> Result<(), Error> {
-        let written = match &event.what {
-            What::Bytes(bytes) => self.recorder.bytes(event.at, bytes),
-            What::Message(message) => self.recorder.message(event.at, message),
+        let written = match &event.kind {
+            EventKind::Bytes(bytes) => self.recorder.bytes(event.at, bytes),
+            EventKind::Message(message) => self.recorder.message(event.at, message),
             _ => Ok(()),
         };
         self.named(written)

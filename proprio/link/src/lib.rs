@@ -2,59 +2,61 @@
 //!
 //! One thread reads bytes, stamps them with the time of their arrival, decodes them, and hands [`Event`]s to every
 //! [`Subscription`]. It opens the port again when the cable comes back, begins with a Ping, and sends requests until they
-//! are answered. Whoever listens may be slow: each subscription has its own bounded queue, which drops its oldest events
-//! and counts them, and holds up nobody else.
+//! are answered. A subscriber may be slow: each subscription has its own bounded queue, which drops its oldest events
+//! and counts them, and does not delay the others.
 //!
 //! ```no_run
 //! use std::time::Duration;
 //!
-//! use proprio_link::{Baud, Link, PortSource, What};
+//! use proprio_link::{Baud, EventKind, Link, PortSource};
 //! use telemetry::{Command, Message};
 //!
 //! let (link, events) = Link::start(Box::new(PortSource::new(None, Baud::default())), None)?;
 //! link.request(Command::Tare)?;
 //! while let Some(event) = events.next(Duration::from_secs(1)) {
-//!     if let What::Message(Message::Estimate(estimate)) = event.what {
+//!     if let EventKind::Message(Message::Estimate(estimate)) = event.kind {
 //!         println!("{:?}", estimate.segments);
 //!     }
 //! }
 //! # Ok::<(), proprio_link::LinkError>(())
 //! ```
 //!
-//! | file | what it is for |
+//! | file | purpose |
 //! |---|---|
-//! | `handle.rs` | [`Link`]: what the rest of the program holds of it |
+//! | `handle.rs`, `shared.rs` | [`Link`]: its handle; the state that handle and thread share |
 //! | `worker.rs` | the thread |
-//! | `intake.rs` | bytes to messages; losses, mismatches and restarts |
+//! | `stream_decoder.rs` | bytes to messages; losses, mismatches and restarts |
 //! | `requests.rs` | ids, answers and repetitions |
 //! | `event.rs`, `queue.rs` | events with their time of arrival, and a queue for each subscription |
 //! | `file_recorder.rs` | recording to a file |
 //! | `drive/`, `status.rs` | pressures over time; the state of a board within seconds |
-//! | `source.rs` | where a line comes from, and that it may come again |
-//! | `ports.rs`, `serial.rs`, `virtual_due.rs` | the sources that there are |
+//! | `source.rs` | [`Source`]: opens a line, once or again |
+//! | `ports.rs`, `serial.rs`, `virtual_due.rs` | the sources: serial ports and the emulated Due |
 
 pub mod drive;
 mod error;
 mod event;
 mod file_recorder;
 mod handle;
-mod intake;
 mod ports;
 mod queue;
 mod requests;
 mod serial;
+mod shared;
 mod source;
 pub mod status;
+mod stream_decoder;
 mod virtual_due;
 mod worker;
 
 pub use error::LinkError;
-pub use event::{Event, Mismatch, What};
+pub use event::{Event, EventKind, Mismatch};
 pub use file_recorder::FileRecorder;
-pub use handle::{Link, LinkState, Subscription};
-pub use intake::{Intake, Taken};
-pub use ports::{Kind, Port, find_due, list};
+pub use handle::Link;
+pub use ports::{Port, PortKind, find_due, list};
 pub use requests::RequestError;
 pub use serial::{Baud, PortSource};
+pub use shared::{LinkState, Subscription};
 pub use source::{Source, Transport};
+pub use stream_decoder::{Received, StreamDecoder};
 pub use virtual_due::VirtualDue;

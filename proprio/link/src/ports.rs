@@ -1,4 +1,4 @@
-//! The serial ports of this machine, and which of them a Due is on.
+//! The serial ports of this machine; the one of a Due among them.
 
 use serde::Serialize;
 use serialport::{SerialPortInfo, SerialPortType};
@@ -13,23 +13,23 @@ const NATIVE: u16 = 0x003e;
 /// A serial port.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Port {
-    /// By which it is opened.
+    /// Name to open it by.
     pub name: String,
-    /// What is on it.
-    pub kind: Kind,
+    /// Kind of the device on it.
+    pub kind: PortKind,
     /// USB numbers of the vendor and the product, in hexadecimal.
     pub usb: Option<String>,
     /// USB serial number, which stays when the name changes.
     pub serial_number: Option<String>,
-    /// What the device calls itself.
+    /// The device's own name.
     pub product: Option<String>,
 }
 
-/// What is on a port.
+/// Kind of the device on a port.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Kind {
-    /// The Due's programming port, on which the firmware talks.
+pub enum PortKind {
+    /// The Due's programming port, which the firmware uses.
     DueProgramming,
     /// The Due's native port.
     DueNative,
@@ -37,8 +37,8 @@ pub enum Kind {
     Other,
 }
 
-impl Kind {
-    /// As people call it.
+impl PortKind {
+    /// Its name for people.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -69,12 +69,18 @@ pub fn list() -> Result<Vec<Port>, LinkError> {
 impl From<SerialPortInfo> for Port {
     fn from(found: SerialPortInfo) -> Self {
         let SerialPortType::UsbPort(usb) = found.port_type else {
-            return Self { name: found.port_name, kind: Kind::Other, usb: None, serial_number: None, product: None };
+            return Self {
+                name: found.port_name,
+                kind: PortKind::Other,
+                usb: None,
+                serial_number: None,
+                product: None,
+            };
         };
         let kind = match (ARDUINO.contains(&usb.vid), usb.pid) {
-            (true, PROGRAMMING) => Kind::DueProgramming,
-            (true, NATIVE) => Kind::DueNative,
-            _ => Kind::Other,
+            (true, PROGRAMMING) => PortKind::DueProgramming,
+            (true, NATIVE) => PortKind::DueNative,
+            _ => PortKind::Other,
         };
         Self {
             name: found.port_name,
@@ -91,7 +97,7 @@ impl From<SerialPortInfo> for Port {
 /// # Errors
 /// [`LinkError::NoDue`] and [`LinkError::SeveralDues`].
 pub fn find_due(ports: &[Port]) -> Result<&Port, LinkError> {
-    for kind in [Kind::DueProgramming, Kind::DueNative] {
+    for kind in [PortKind::DueProgramming, PortKind::DueNative] {
         let found: Vec<&Port> = ports.iter().filter(|port| port.kind == kind).collect();
         match found[..] {
             [] => {}
@@ -106,7 +112,7 @@ pub fn find_due(ports: &[Port]) -> Result<&Port, LinkError> {
 mod tests {
     use serialport::UsbPortInfo;
 
-    use super::{Kind, LinkError, Port, SerialPortInfo, SerialPortType, find_due};
+    use super::{LinkError, Port, PortKind, SerialPortInfo, SerialPortType, find_due};
 
     fn usb(name: &str, vid: u16, pid: u16) -> Port {
         let usb = UsbPortInfo { vid, pid, serial_number: None, manufacturer: None, product: None };
@@ -118,7 +124,7 @@ mod tests {
         let ports =
             [usb("a", 0x2341, 0x003e), usb("b", 0x2a03, 0x003d), usb("c", 0x2341, 0x0043), usb("d", 0x0403, 0x003d)];
         let kinds = ports.each_ref().map(|port| port.kind);
-        assert_eq!(kinds, [Kind::DueNative, Kind::DueProgramming, Kind::Other, Kind::Other]);
+        assert_eq!(kinds, [PortKind::DueNative, PortKind::DueProgramming, PortKind::Other, PortKind::Other]);
         assert_eq!(find_due(&ports).expect("there is one").name, "b");
         assert_eq!(find_due(&ports[..1]).expect("its native port").name, "a");
     }

@@ -1,4 +1,4 @@
-//! A bounded queue that never holds up who fills it.
+//! A bounded queue that never blocks the sender.
 
 use std::collections::VecDeque;
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
@@ -19,7 +19,7 @@ struct State<T> {
 }
 
 impl<T> Queue<T> {
-    /// With room for `capacity` items.
+    /// An empty queue for `capacity` items.
     pub fn new(capacity: usize) -> Self {
         let state = State { items: VecDeque::new(), dropped: 0 };
         Self { capacity, state: Mutex::new(state), filled: Condvar::new() }
@@ -41,14 +41,14 @@ impl<T> Queue<T> {
         self.filled.notify_one();
     }
 
-    /// Takes the oldest item, for which it waits as long as `wait`.
+    /// Takes the oldest item; waits up to `wait` for one.
     pub fn pop(&self, wait: Duration) -> Option<T> {
         let state = self.state();
         let waited = self.filled.wait_timeout_while(state, wait, |state| state.items.is_empty());
         waited.unwrap_or_else(PoisonError::into_inner).0.items.pop_front()
     }
 
-    /// How many items were dropped so far.
+    /// Number of items that were dropped.
     pub fn dropped(&self) -> u64 {
         self.state().dropped
     }
@@ -67,7 +67,7 @@ mod tests {
     }
 
     #[test]
-    fn who_waits_gets_what_comes_meanwhile() {
+    fn a_waiting_receiver_gets_an_item_that_comes_meanwhile() {
         let queue = Queue::new(3);
         std::thread::scope(|scope| {
             let waiting = scope.spawn(|| queue.pop(Duration::from_mins(1)));

@@ -1,7 +1,7 @@
 //! The host's side of requests: one after the other, each under its own id and repeated until it is answered.
 //!
-//! A host begins with a Ping: nothing else is sent before one is acknowledged. No request outlives the run of the board
-//! that it was meant for: one that arms the pressures must not arrive after a restart.
+//! A host begins with a Ping: no other request is sent before one is acknowledged. No request outlives the run of the board
+//! that it was made for: one that arms the pressures must not arrive after a restart.
 
 use std::collections::VecDeque;
 use std::sync::mpsc::Sender;
@@ -12,10 +12,10 @@ use telemetry::{Command, Encoder, MAX_FRAME, Outcome, Refusal, Reply, Request};
 /// Time without an answer after which a request is sent again.
 const AGAIN: Duration = Duration::from_millis(100);
 
-/// How often a request is sent before it is given up.
+/// Number of times that a request is sent before it fails.
 const TRIES: u32 = 20;
 
-/// Why a request was not done, as far as the host knows.
+/// A request that was not acknowledged.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum RequestError {
     /// The board has refused it.
@@ -29,7 +29,7 @@ pub enum RequestError {
     Interrupted,
 }
 
-/// Where an answer goes.
+/// Channel for the answer to a request.
 pub type Answer = Sender<Result<(), RequestError>>;
 
 /// The requests that wait, and the one that is under way.
@@ -37,7 +37,7 @@ pub type Answer = Sender<Result<(), RequestError>>;
 pub struct Requests {
     encoder: Encoder,
     last_id: u32,
-    greeted: bool,
+    is_connected: bool,
     current: Option<Current>,
     waiting: VecDeque<(Command, Answer)>,
 }
@@ -45,24 +45,24 @@ pub struct Requests {
 #[derive(Debug)]
 struct Current {
     request: Request,
-    /// `None` for the greeting, which is repeated for ever.
+    /// `None` for the Ping of the handshake, which is repeated without limit.
     answer: Option<Answer>,
     sent: u32,
     due: Instant,
 }
 
 impl Requests {
-    /// Takes a request in.
+    /// Adds a request to the queue.
     pub fn push(&mut self, command: Command, answer: Answer) {
         self.waiting.push_back((command, answer));
     }
 
-    /// Whether the board has acknowledged a Ping since it started.
-    pub fn greeted(&self) -> bool {
-        self.greeted
+    /// True once the board has acknowledged a Ping since its start.
+    pub fn is_connected(&self) -> bool {
+        self.is_connected
     }
 
-    /// The bytes to send now, if any: a zero, which ends what is left of a damaged frame, and a frame.
+    /// The bytes to send now, if any: a zero, which ends the rest of a damaged frame, and a frame.
     pub fn due(&mut self, now: Instant) -> Option<Vec<u8>> {
         if self.current.as_ref().is_some_and(|current| current.sent >= TRIES && current.due <= now) {
             self.finish(Err(RequestError::NoAnswer));
@@ -80,7 +80,7 @@ impl Requests {
 
     /// Makes the next request the one under way.
     fn begin(&mut self, now: Instant) -> Option<()> {
-        let (command, answer) = if self.greeted {
+        let (command, answer) = if self.is_connected {
             let (command, answer) = self.waiting.pop_front()?;
             (command, Some(answer))
         } else {
@@ -92,35 +92,35 @@ impl Requests {
         Some(())
     }
 
-    /// Takes the board's answer.
+    /// Handles a reply of the board.
     pub fn replied(&mut self, reply: Reply) {
         let Some(current) = self.current.as_ref().filter(|current| current.request.id == reply.id) else { return };
         match reply.outcome {
             Outcome::Ack => {
-                self.greeted = true;
+                self.is_connected = true;
                 self.finish(Ok(()));
             }
-            // It was not looked at: it is sent again.
+            // The board has not processed it: it is sent again.
             Outcome::Nack(Refusal::Busy) => {}
-            // A host before has used higher ids; a Ping starts them anew after a while.
+            // An earlier host has used higher ids. The board accepts a Ping with a lower one after its session timeout.
             Outcome::Nack(_) if current.answer.is_none() => {}
             Outcome::Nack(refusal) => self.finish(Err(refusal.into())),
         }
     }
 
-    /// The board has restarted, or its line is another: all begins anew, and what was asked is not asked again.
+    /// Ends all requests after a restart of the board or the loss of its line; none of them is sent again.
     pub fn interrupt(&mut self) {
         self.finish(Err(RequestError::Interrupted));
         for (_, answer) in self.waiting.drain(..) {
-            // Who asked may have left.
+            // The requesting thread may have stopped waiting.
             let _ = answer.send(Err(RequestError::Interrupted));
         }
-        self.greeted = false;
+        self.is_connected = false;
     }
 
     fn finish(&mut self, outcome: Result<(), RequestError>) {
         if let Some(answer) = self.current.take().and_then(|current| current.answer) {
-            // Who asked may have left.
+            // The requesting thread may have stopped waiting.
             let _ = answer.send(outcome);
         }
     }

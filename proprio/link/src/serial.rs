@@ -9,10 +9,10 @@ use serialport::{DataBits, FlowControl, Parity, SerialPort, StopBits};
 use super::ports::{Port, find_due, list};
 use super::{LinkError, Source, Transport};
 
-/// How long a read waits: requests are sent between two reads.
+/// Longest wait of a read: requests are sent between two reads.
 const WAIT: Duration = Duration::from_millis(10);
 
-/// At this speed the Due's programming port takes an opening for the wish to erase its flash.
+/// Speed at which opening the Due's programming port erases its flash, Bd.
 const ERASES: u32 = 1200;
 
 /// Speed of a line: never the one that erases the board.
@@ -20,7 +20,7 @@ const ERASES: u32 = 1200;
 pub struct Baud(u32);
 
 impl Baud {
-    /// A speed in Bd; `None` for 1200, at which the board would be erased, and 0.
+    /// A speed in Bd; `None` for 1200 Bd, which would erase the board, and 0.
     #[must_use]
     pub const fn new(baud: u32) -> Option<Self> {
         if baud == ERASES || baud == 0 { None } else { Some(Self(baud)) }
@@ -28,7 +28,7 @@ impl Baud {
 }
 
 impl Default for Baud {
-    /// That of the protocol.
+    /// Speed of the protocol.
     fn default() -> Self {
         Self(250_000)
     }
@@ -50,7 +50,7 @@ impl std::fmt::Display for Baud {
     }
 }
 
-/// The port that a Due is on, found again by its USB serial number when it comes back.
+/// The port of a Due, found again by its USB serial number when it comes back.
 #[derive(Debug)]
 pub struct PortSource {
     name: Option<String>,
@@ -59,14 +59,14 @@ pub struct PortSource {
 }
 
 impl PortSource {
-    /// The named port, or that of the one Due that is plugged in.
+    /// The port of this name, or of the only Due that is plugged in.
     #[must_use]
     pub const fn new(name: Option<String>, baud: Baud) -> Self {
         Self { name, baud, found: None }
     }
 
-    /// The name to open by now, and the port where the system lists it: a pseudo-terminal is not listed.
-    fn look(&self) -> Result<(String, Option<Port>), LinkError> {
+    /// The current name of the port, and the port where the system lists it: a pseudo-terminal is not listed.
+    fn find(&self) -> Result<(String, Option<Port>), LinkError> {
         let ports = match (list(), &self.name) {
             (Err(_), Some(_)) => Vec::new(),
             (ports, _) => ports?,
@@ -87,7 +87,7 @@ impl PortSource {
 }
 
 impl Port {
-    /// Whether it is the same device's, by whatever name.
+    /// True for a port of the same device, under any name.
     fn is_same(&self, other: &Self) -> bool {
         match (&self.serial_number, &other.serial_number) {
             (Some(mine), Some(others)) => mine == others && self.usb == other.usb,
@@ -98,13 +98,13 @@ impl Port {
 
 impl Source for PortSource {
     fn open(&mut self) -> Result<(String, Box<dyn Transport>), LinkError> {
-        let (name, port) = self.look()?;
+        let (name, port) = self.find()?;
         let serial = Serial::open(&name, self.baud).map_err(|source| LinkError::Open { port: name.clone(), source })?;
         self.found = port;
         Ok((name, Box::new(serial)))
     }
 
-    fn comes_back(&self) -> bool {
+    fn can_reconnect(&self) -> bool {
         true
     }
 }
@@ -131,7 +131,7 @@ impl Transport for Serial {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         match self.0.read(buffer) {
             Err(error) if matches!(error.kind(), io::ErrorKind::TimedOut | io::ErrorKind::Interrupted) => Ok(0),
-            // Readable, and nothing to read: it was unplugged.
+            // Readable without data: the port was unplugged.
             Ok(0) => Err(io::ErrorKind::UnexpectedEof.into()),
             read => read,
         }
@@ -145,10 +145,10 @@ impl Transport for Serial {
 #[cfg(test)]
 mod tests {
     use super::{Baud, Port};
-    use crate::Kind;
+    use crate::PortKind;
 
     #[test]
-    fn the_speed_that_erases_the_board_is_none() {
+    fn the_speed_that_erases_the_board_is_refused() {
         assert_eq!(Baud::new(1200), None);
         let refusal = "1200".parse::<Baud>().expect_err("it would erase the board");
         assert!(refusal.contains("erases"), "{refusal}");
@@ -158,7 +158,7 @@ mod tests {
     fn port(name: &str, serial_number: Option<&str>) -> Port {
         Port {
             name: name.to_owned(),
-            kind: Kind::DueProgramming,
+            kind: PortKind::DueProgramming,
             usb: Some("2341:003d".to_owned()),
             serial_number: serial_number.map(str::to_owned),
             product: None,

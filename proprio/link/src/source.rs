@@ -1,4 +1,4 @@
-//! Where a line to a board comes from.
+//! Sources of a line to a board.
 
 use std::io;
 
@@ -6,28 +6,28 @@ use super::LinkError;
 
 /// An open line.
 pub trait Transport: Send {
-    /// Takes what has come, or waits some milliseconds for it; 0: nothing came.
+    /// Reads the bytes that have arrived, or waits some milliseconds for them; 0 where none came.
     ///
     /// # Errors
-    /// What the system says when the line is gone.
+    /// The system's error when the line is gone.
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize>;
 
     /// Sends bytes, all of them.
     ///
     /// # Errors
-    /// What the system says when they cannot be sent.
+    /// The system's error when they cannot be sent.
     fn write(&mut self, bytes: &[u8]) -> io::Result<()>;
 }
 
-/// What opens lines.
+/// Source of a line: a serial port, or an emulated board.
 pub trait Source: Send {
-    /// Opens the line, and gives it with its name. Called again where [`comes_back`](Self::comes_back) says so, it looks
-    /// for the same board.
+    /// Opens the line and returns its name and the line. Further calls, where [`can_reconnect`](Self::can_reconnect) is true,
+    /// look for the same board.
     ///
     /// # Errors
-    /// [`LinkError`]: why there is none.
+    /// [`LinkError`] where no line can be opened.
     fn open(&mut self) -> Result<(String, Box<dyn Transport>), LinkError>;
 
-    /// Whether a line that was lost may come back, as a cable does.
-    fn comes_back(&self) -> bool;
+    /// True where a lost line may come back, as with a cable.
+    fn can_reconnect(&self) -> bool;
 }

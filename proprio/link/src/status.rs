@@ -1,4 +1,4 @@
-//! How a board is, as far as can be seen within seconds.
+//! Status of a board, measured within seconds.
 
 use std::time::{Duration, Instant};
 
@@ -6,50 +6,50 @@ use proprio_session::{Ellipse, is_version_0_1};
 use serde::Serialize;
 use telemetry::{Event, Health, Hello, Message, SEGMENTS, TICK_HZ, Uncertainty};
 
-use crate::{Link, LinkError, Mismatch, Subscription, What};
+use crate::{EventKind, Link, LinkError, Mismatch, Subscription};
 
-/// How long a board may be silent, s.
-const PATIENCE_S: u64 = 10;
-/// Rates are those of at least so long, s.
+/// Longest silence of a board, s.
+const TIMEOUT_S: u64 = 10;
+/// Shortest time over which rates are measured, s.
 const RATES_S: f64 = 1.0;
-/// A board that has just started is looked at until its first tare is over, or so long: its IMUs come up slowly.
+/// Longest wait for the first tare of a board that has just started: its IMUs start slowly.
 const SETTLING: Duration = Duration::from_secs(3);
-/// From the begin of a tare until the arm is known as well as it will be and the board has said so.
+/// Ticks from the begin of a tare until the uncertainty has settled and the board has sent it.
 const TARE_TICKS: u32 = 150;
 
-/// How a board is.
+/// Status of a board.
 #[derive(Debug, Serialize)]
 pub struct Status {
     /// Name of the line.
     pub port: String,
     /// Version of this program.
     pub proprio: &'static str,
-    /// Who the board is and how it came up.
+    /// Its identity, and the cause of its last reset.
     pub hello: Hello,
     /// Its counters and its sensors' states.
     pub health: Health,
-    /// How well it knows the arm's shape, where it has said so.
+    /// Uncertainty of the arm's shape, where the board has sent one.
     pub shape: Option<KnownShape>,
-    /// What came a second.
+    /// Rates of the received messages.
     pub rates: Rates,
-    /// What was received.
-    pub received: Received,
-    /// Whether the board answers requests.
+    /// Numbers of received frames.
+    pub received: FrameCounts,
+    /// True where the board answers requests.
     pub answers: bool,
-    /// Whether its table is the one that was given.
+    /// True where its table is the given one; `None` where that is not known.
     pub table_matches: Option<bool>,
-    /// In what board and host differ.
+    /// Differences between board and host.
     pub mismatches: Vec<String>,
 }
 
-/// How well a board knows the arm's shape.
+/// Uncertainty of the arm's shape on a board, and contact.
 #[derive(Debug, Clone, Copy, Serialize)]
 pub struct KnownShape {
     /// Standard deviation of each bend angle, degrees, from the base; `None`: not known.
     pub theta_sd_deg: [Option<f64>; SEGMENTS],
-    /// Where the tip is about its estimate; `None`: not known.
+    /// 95 % ellipse of the tip; `None`: not known.
     pub tip: Option<Ellipse>,
-    /// Whether something touches each segment.
+    /// Contact of each segment.
     pub touched: [bool; SEGMENTS],
 }
 
@@ -59,34 +59,34 @@ impl From<&Uncertainty> for KnownShape {
         Self {
             theta_sd_deg: segments.map(|segment| segment.theta_rad2().map(|variance| variance.sqrt().to_degrees())),
             tip: tip.end_m2().map(Ellipse::of),
-            touched: segments.map(|segment| segment.is_touched),
+            touched: segments.map(|segment| segment.in_contact),
         }
     }
 }
 
-/// What came a second.
+/// Rates of the received messages.
 #[derive(Debug, Clone, Copy, Serialize)]
 pub struct Rates {
     /// Samples, Hz.
     pub samples_hz: f64,
     /// Estimates, Hz.
     pub estimates_hz: f64,
-    /// Bytes a second.
+    /// Bytes per second.
     pub bytes_per_s: f64,
 }
 
-/// Frames since the line was opened.
+/// Numbers of frames since the line was opened.
 #[derive(Debug, Clone, Copy, Serialize)]
-pub struct Received {
-    /// That came whole.
+pub struct FrameCounts {
+    /// Frames that arrived undamaged.
     pub frames: u32,
-    /// That came damaged.
+    /// Frames that arrived damaged.
     pub damaged: u32,
-    /// That were sent and never came.
+    /// Frames that were sent and did not arrive.
     pub lost: u32,
 }
 
-/// What was seen so far.
+/// The messages received so far.
 #[derive(Default)]
 struct Seen {
     health: Option<Health>,
@@ -97,23 +97,23 @@ struct Seen {
     samples: u32,
     estimates: u32,
     bytes: u64,
-    /// First and last tick that the rates are of.
+    /// First and last tick of the rates.
     ticks: Option<(u32, u32)>,
 }
 
 impl Status {
-    /// Listens until the board has said who and how it is. `table_given`: the link knows the table that it should have.
+    /// Receives until the board has sent its identity and its health. `table_given`: the link compares the board's table.
     ///
     /// # Errors
     /// [`LinkError::Silent`] and [`LinkError::Ended`].
     pub fn of(link: &Link, events: &Subscription, table_given: bool) -> Result<Self, LinkError> {
         let (start, mut seen) = (Instant::now(), Seen::default());
         loop {
-            match events.next(Duration::from_millis(50)).map(|event| event.what) {
-                Some(What::Ended(reason)) => return Err(LinkError::Ended(reason)),
-                Some(What::Bytes(bytes)) if seen.ticks.is_some() => seen.bytes += bytes.len() as u64,
-                Some(What::Message(message)) => seen.take(&message),
-                Some(What::Restarted) => seen = Seen::default(),
+            match events.next(Duration::from_millis(50)).map(|event| event.kind) {
+                Some(EventKind::Ended(reason)) => return Err(LinkError::Ended(reason)),
+                Some(EventKind::Bytes(bytes)) if seen.ticks.is_some() => seen.bytes += bytes.len() as u64,
+                Some(EventKind::Message(message)) => seen.take(&message),
+                Some(EventKind::Restarted) => seen = Seen::default(),
                 _ => {}
             }
             let state = link.state();
@@ -127,21 +127,21 @@ impl Status {
                     health,
                     shape: seen.shape,
                     rates,
-                    received: Received {
+                    received: FrameCounts {
                         frames: state.counts.received,
                         damaged: state.counts.damaged,
                         lost: state.counts.lost,
                     },
-                    answers: state.greeted,
+                    answers: state.is_connected,
                     table_matches: (table_given && is_comparable).then(|| !state.mismatches.iter().any(differs)),
                     mismatches: state.mismatches.iter().map(ToString::to_string).collect(),
                 });
             }
-            if start.elapsed().as_secs() >= PATIENCE_S && seen.health.is_none() {
+            if start.elapsed().as_secs() >= TIMEOUT_S && seen.health.is_none() {
                 return Err(silent(link));
             }
-            // An emulated board may be slow, and takes its time to settle.
-            if start.elapsed().as_secs() >= 3 * PATIENCE_S {
+            // An emulated board may be slow and settle late.
+            if start.elapsed().as_secs() >= 3 * TIMEOUT_S {
                 return Err(silent(link));
             }
         }
@@ -155,7 +155,7 @@ fn silent(link: &Link) -> LinkError {
     }
     LinkError::Silent {
         port: state.port.unwrap_or_else(|| "the line".to_owned()),
-        seconds: PATIENCE_S,
+        seconds: TIMEOUT_S,
         received: state.counts.received,
         damaged: state.counts.damaged,
     }
@@ -170,7 +170,7 @@ impl Seen {
                 self.pass(health.tick);
             }
             Message::Sample(sample) => {
-                if sample.tare > 0 {
+                if sample.tare_epoch > 0 {
                     self.tared.get_or_insert(sample.tick);
                 }
                 self.samples += u32::from(self.ticks.is_some());
@@ -189,7 +189,7 @@ impl Seen {
         self.ticks = Some((self.ticks.map_or(tick, |(first, _)| first), tick));
     }
 
-    /// By the board's clock, once it has settled and enough has come.
+    /// The rates by the board's clock; `None` before it has settled and enough has arrived.
     fn rates(&self) -> Option<Rates> {
         let (first, last) = self.ticks?;
         let is_tared = self.tared.is_some_and(|tick| last.saturating_sub(tick) >= TARE_TICKS);

@@ -12,13 +12,13 @@ use std::time::Duration;
 
 use super::{LinkError, Source, Transport};
 
-/// Names the program where it is in no usual place.
+/// Environment variable with the path of the program, where it is in no usual folder.
 const VARIABLE: &str = "PROPRIO_VIRTUAL_DUE";
 
-/// How long a read waits, as on a serial port.
+/// Longest wait of a read, as on a serial port.
 const WAIT: Duration = Duration::from_millis(10);
 
-/// Last lines of what the program says that are kept for an error.
+/// Number of the program's last lines of output that an error shows.
 const LINES: usize = 5;
 
 /// A run of the emulated Due.
@@ -26,9 +26,9 @@ const LINES: usize = 5;
 pub struct VirtualDue {
     /// ELF of the firmware; `None`: where cargo leaves it.
     pub firmware: Option<PathBuf>,
-    /// What the arm does until the firmware drives its regulators: 1 to 3.
+    /// Scenario of the arm until the firmware drives its regulators: 1 to 3.
     pub scenario: u8,
-    /// Draws the arm's motion and the sensors' noise.
+    /// Seed of the arm's motion and the sensors' noise.
     pub seed: u64,
 }
 
@@ -48,7 +48,7 @@ impl Source for VirtualDue {
         Ok(("virtual Due".to_owned(), Box::new(Running::new(child)?)))
     }
 
-    fn comes_back(&self) -> bool {
+    fn can_reconnect(&self) -> bool {
         false
     }
 }
@@ -66,19 +66,19 @@ fn detach(command: &mut Command) {
     std::os::windows::process::CommandExt::creation_flags(command, CREATE_NEW_PROCESS_GROUP);
 }
 
-/// The program: named by the variable, beside this one or in cargo's folder for the dev profile, or on the PATH.
+/// The program: named by the variable, in the folder of this one, in cargo's folder for the dev profile, or on the PATH.
 fn program() -> Option<PathBuf> {
     let name = format!("virtual-due{}", env::consts::EXE_SUFFIX);
     let own = env::current_exe().ok();
-    let beside = own.as_deref().and_then(Path::parent);
-    let built = beside.and_then(Path::parent).map(|target| target.join("debug"));
+    let own_folder = own.as_deref().and_then(Path::parent);
+    let built = own_folder.and_then(Path::parent).map(|target| target.join("debug"));
     let path = env::var_os("PATH").unwrap_or_default();
-    let folders = beside.map(Path::to_owned).into_iter().chain(built).chain(env::split_paths(&path));
+    let folders = own_folder.map(Path::to_owned).into_iter().chain(built).chain(env::split_paths(&path));
     let named = env::var_os(VARIABLE).map(PathBuf::from);
     named.into_iter().chain(folders.map(|folder| folder.join(&name))).find(|program| program.is_file())
 }
 
-/// Where cargo leaves the firmware: beside the folder of the program, or below the current one.
+/// Path of the firmware that cargo has built: in the target folder of the program, or below the current folder.
 fn built_firmware(program: &Path) -> PathBuf {
     let below: PathBuf = ["thumbv7m-none-eabi", "release", "firmware"].iter().collect();
     let targets = program.parent().and_then(Path::parent).map(Path::to_owned);
@@ -93,9 +93,9 @@ struct Running {
     child: Child,
     input: ChildStdin,
     output: Receiver<Vec<u8>>,
-    /// What did not fit the reader's buffer.
+    /// Bytes that did not fit the reader's buffer.
     rest: Vec<u8>,
-    said: Arc<Mutex<VecDeque<String>>>,
+    last_lines: Arc<Mutex<VecDeque<String>>>,
 }
 
 impl Running {
@@ -103,15 +103,15 @@ impl Running {
         let missing = || LinkError::Ended("the virtual Due has no pipes".to_owned());
         let input = child.stdin.take().ok_or_else(missing)?;
         let output = pump(child.stdout.take().ok_or_else(missing)?)?;
-        let said = listen(child.stderr.take().ok_or_else(missing)?)?;
-        Ok(Self { child, input, output, rest: Vec::new(), said })
+        let last_lines = read_lines(child.stderr.take().ok_or_else(missing)?)?;
+        Ok(Self { child, input, output, rest: Vec::new(), last_lines })
     }
 
     fn ended(&mut self) -> io::Error {
         let status = self.child.wait().map_or_else(|error| error.to_string(), |status| status.to_string());
-        let said = self.said.lock().unwrap_or_else(PoisonError::into_inner);
-        let said: Vec<&str> = said.iter().map(String::as_str).collect();
-        io::Error::other(format!("the virtual Due has ended ({status}): {}", said.join("; ")))
+        let lines = self.last_lines.lock().unwrap_or_else(PoisonError::into_inner);
+        let lines: Vec<&str> = lines.iter().map(String::as_str).collect();
+        io::Error::other(format!("the virtual Due has ended ({status}): {}", lines.join("; ")))
     }
 }
 
@@ -131,20 +131,20 @@ fn pump(mut output: ChildStdout) -> Result<Receiver<Vec<u8>>, LinkError> {
 }
 
 /// Keeps the last lines of its standard error.
-fn listen(errors: ChildStderr) -> Result<Arc<Mutex<VecDeque<String>>>, LinkError> {
-    let said = Arc::new(Mutex::new(VecDeque::new()));
-    let ours = Arc::clone(&said);
+fn read_lines(errors: ChildStderr) -> Result<Arc<Mutex<VecDeque<String>>>, LinkError> {
+    let last_lines = Arc::new(Mutex::new(VecDeque::new()));
+    let shared = Arc::clone(&last_lines);
     let work = move || {
         for line in BufReader::new(errors).lines().map_while(Result::ok) {
-            let mut said = said.lock().unwrap_or_else(PoisonError::into_inner);
-            if said.len() == LINES {
-                said.pop_front();
+            let mut lines = shared.lock().unwrap_or_else(PoisonError::into_inner);
+            if lines.len() == LINES {
+                lines.pop_front();
             }
-            said.push_back(line);
+            lines.push_back(line);
         }
     };
     std::thread::Builder::new().name("virtual-due errors".to_owned()).spawn(work).map_err(LinkError::Thread)?;
-    Ok(ours)
+    Ok(last_lines)
 }
 
 impl Transport for Running {
@@ -169,7 +169,7 @@ impl Transport for Running {
 
 impl Drop for Running {
     fn drop(&mut self) {
-        // It may have ended by itself.
+        // It may have ended already.
         let _ = self.child.kill();
         let _ = self.child.wait();
     }

@@ -7,31 +7,37 @@ use std::time::{Duration, Instant};
 use proprio_session::{HostClock, HostNs};
 use telemetry::Message;
 
-use super::handle::{Ask, Shared};
-use super::intake::{Intake, Taken};
-use super::requests::Requests;
-use super::{Event, Source, Transport, What};
+use crate::event::{Event, EventKind};
+use crate::requests::Requests;
+use crate::shared::{LinkRequest, SharedLink};
+use crate::source::{Source, Transport};
+use crate::stream_decoder::{Received, StreamDecoder};
 
-/// Time between two looks for a board that is gone.
-const LOOK: Duration = Duration::from_millis(300);
+/// Time between two attempts to open a line that is gone.
+const RETRY_PERIOD: Duration = Duration::from_millis(300);
 
-/// What the thread owns.
+/// State of the thread.
 pub(super) struct Worker {
     source: Box<dyn Source>,
-    asked: Receiver<Ask>,
-    shared: Arc<Shared>,
+    received: Receiver<LinkRequest>,
+    shared: Arc<SharedLink>,
     clock: HostClock,
-    intake: Intake,
+    decoder: StreamDecoder,
     requests: Requests,
 }
 
-/// Its holder has dropped the link.
-struct Stopped;
+/// The link was dropped.
+struct LinkDropped;
 
 impl Worker {
-    pub fn new(source: Box<dyn Source>, table: Option<u32>, asked: Receiver<Ask>, shared: Arc<Shared>) -> Self {
-        let (clock, intake, requests) = (HostClock::new(), Intake::new(table), Requests::default());
-        Self { source, asked, shared, clock, intake, requests }
+    pub fn new(
+        source: Box<dyn Source>,
+        table: Option<u32>,
+        received: Receiver<LinkRequest>,
+        shared: Arc<SharedLink>,
+    ) -> Self {
+        let (clock, decoder, requests) = (HostClock::new(), StreamDecoder::new(table), Requests::default());
+        Self { source, received, shared, clock, decoder, requests }
     }
 
     /// Works until the link is dropped or its line is gone for good.
@@ -40,30 +46,30 @@ impl Worker {
             let Ok(reason) = self.work(&name, transport.as_mut()) else { return };
             drop(transport);
             self.requests.interrupt();
-            if !self.source.comes_back() {
-                return self.tell(What::Ended(reason));
+            if !self.source.can_reconnect() {
+                return self.publish(EventKind::Ended(reason));
             }
-            self.tell(What::Lost(reason));
+            self.publish(EventKind::Lost(reason));
             match self.open_again() {
                 Ok(opened) => (name, transport) = opened,
-                Err(Stopped) => return,
+                Err(LinkDropped) => return,
             }
         }
     }
 
-    /// Works on an open line until it is lost, and says why.
-    fn work(&mut self, name: &str, transport: &mut dyn Transport) -> Result<String, Stopped> {
-        self.intake.open();
+    /// Works on an open line until it is lost; returns the reason.
+    fn work(&mut self, name: &str, transport: &mut dyn Transport) -> Result<String, LinkDropped> {
+        self.decoder.open();
         self.shared.state().port = Some(name.to_owned());
-        self.tell(What::Opened(name.to_owned()));
+        self.publish(EventKind::Opened(name.to_owned()));
         let mut buffer = [0; 4096];
         loop {
-            self.take_asks()?;
+            self.take_requests()?;
             let due = self.requests.due(Instant::now());
             let sent = due.map_or(Ok(()), |bytes| transport.write(&bytes));
             match sent.and_then(|()| transport.read(&mut buffer)) {
                 Ok(0) => {}
-                Ok(count) => self.take(&buffer[..count]),
+                Ok(count) => self.decode(&buffer[..count]),
                 Err(error) => {
                     self.shared.state().port = None;
                     return Ok(format!("{name}: {error}"));
@@ -72,11 +78,11 @@ impl Worker {
         }
     }
 
-    fn open_again(&mut self) -> Result<(String, Box<dyn Transport>), Stopped> {
+    fn open_again(&mut self) -> Result<(String, Box<dyn Transport>), LinkDropped> {
         loop {
-            std::thread::sleep(LOOK);
-            self.take_asks()?;
-            // Nobody is there to answer.
+            std::thread::sleep(RETRY_PERIOD);
+            self.take_requests()?;
+            // Without a line there is no answer.
             self.requests.interrupt();
             if let Ok(opened) = self.source.open() {
                 self.shared.state().reopened += 1;
@@ -85,56 +91,64 @@ impl Worker {
         }
     }
 
-    fn take_asks(&mut self) -> Result<(), Stopped> {
+    fn take_requests(&mut self) -> Result<(), LinkDropped> {
         loop {
-            match self.asked.try_recv() {
-                Ok(Ask::Request(command, answer)) => self.requests.push(command, answer),
-                Ok(Ask::Stop) | Err(TryRecvError::Disconnected) => return Err(Stopped),
+            match self.received.try_recv() {
+                Ok(LinkRequest::Command(command, answer)) => self.requests.push(command, answer),
+                Ok(LinkRequest::Stop) | Err(TryRecvError::Disconnected) => return Err(LinkDropped),
                 Err(TryRecvError::Empty) => return Ok(()),
             }
         }
     }
 
-    fn take(&mut self, bytes: &[u8]) {
+    fn decode(&mut self, bytes: &[u8]) {
         let at = self.clock.now();
-        self.shared.tell(&Event { at, what: What::Bytes(bytes.into()) });
-        let Self { intake, requests, shared, .. } = self;
+        self.publish_at(at, EventKind::Bytes(bytes.into()));
+        let mut received = Vec::new();
         for byte in bytes {
-            intake.push(*byte, |taken| shared.tell(&event(at, taken, requests)));
+            self.decoder.push(*byte, |part| received.push(part));
+            for part in received.drain(..) {
+                let kind = event_kind(part, &mut self.requests);
+                self.publish_at(at, kind);
+            }
         }
+        let Self { decoder, requests, shared, .. } = self;
         let mut state = shared.state();
         state.bytes += bytes.len() as u64;
-        state.counts = intake.counts();
-        state.greeted = requests.greeted();
-        state.restarts = intake.restarts();
-        if state.hello.as_ref() != intake.hello() {
-            state.hello = intake.hello().cloned();
+        state.counts = decoder.counts();
+        state.is_connected = requests.is_connected();
+        state.restarts = decoder.restarts();
+        if state.hello.as_ref() != decoder.hello() {
+            state.hello = decoder.hello().cloned();
         }
-        if state.mismatches.len() != intake.mismatches().len() {
-            state.mismatches = intake.mismatches().to_vec();
+        if state.mismatches.len() != decoder.mismatches().len() {
+            state.mismatches = decoder.mismatches().to_vec();
         }
     }
 
-    fn tell(&self, what: What) {
-        self.shared.tell(&Event { at: self.clock.now(), what });
+    fn publish(&self, kind: EventKind) {
+        self.publish_at(self.clock.now(), kind);
+    }
+
+    fn publish_at(&self, at: HostNs, kind: EventKind) {
+        self.shared.publish(&Event { at, gaps: self.decoder.gaps(), kind });
     }
 }
 
-/// What came, as an event; requests see it first.
-fn event(at: HostNs, taken: Taken, requests: &mut Requests) -> Event {
-    let what = match taken {
-        Taken::Message(message) => {
+/// The event of a part of the stream; replies go to the requests first.
+fn event_kind(received: Received, requests: &mut Requests) -> EventKind {
+    match received {
+        Received::Message(message) => {
             if let Message::Reply(reply) = message {
                 requests.replied(reply);
             }
-            What::Message(message)
+            EventKind::Message(message)
         }
-        Taken::Undecoded(error) => What::Undecoded(error),
-        Taken::Restarted => {
+        Received::Undecoded(error) => EventKind::Undecoded(error),
+        Received::Restarted => {
             requests.interrupt();
-            What::Restarted
+            EventKind::Restarted
         }
-        Taken::Mismatch(mismatch) => What::Mismatch(mismatch),
-    };
-    Event { at, what }
+        Received::Mismatch(mismatch) => EventKind::Mismatch(mismatch),
+    }
 }

@@ -2,7 +2,7 @@
 
 use std::io;
 
-/// A page that cannot be served, or a file that it asks for.
+/// A page that cannot be served, or a file that it requests.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
     /// A session, a table or a recording.

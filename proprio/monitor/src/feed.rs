@@ -1,25 +1,25 @@
-//! What the page is told, as JSON.
+//! Messages to the page, as JSON.
 
 use calibration_tables::{ArmFile, Side};
 use proprio_link::LinkState;
 use proprio_link::status::Rates;
-use proprio_session::Drift;
+use proprio_session::{CHI2_2_95, ClockDrift};
 use serde::Serialize;
 use telemetry::{Actuation, Health, SEGMENTS, SegmentUncertainty, SensorHealth, SensorState};
 
 use super::latency::Percentiles;
-use super::recording::Progress;
-use super::row;
+use super::page_row;
+use super::recording::RecordingProgress;
 
 /// A message to the page.
 #[derive(Debug, Serialize)]
 #[serde(tag = "type", rename_all = "snake_case")]
 pub(super) enum Feed<'a> {
-    /// First of all.
-    Arm(&'a Arm),
+    /// First message.
+    Arm(&'a ArmDescription),
     Rows(Batch),
-    Status(Box<Status>),
-    /// This page was too slow: so many messages are not sent to it.
+    Status(Box<PageStatus>),
+    /// This page was too slow: this number of messages was not sent to it.
     Skipped {
         messages: u64,
     },
@@ -31,32 +31,35 @@ impl Feed<'_> {
     }
 }
 
-/// What there is to be shown.
+/// Description of the arm and of what the page can do.
 #[derive(Debug, Clone, Serialize)]
-pub(super) struct Arm {
+pub(super) struct ArmDescription {
     /// Version of this program.
     pub proprio: &'static str,
     pub segments: usize,
     pub columns: Vec<String>,
-    /// Of each segment, where a table says it.
+    /// Geometry of each segment; `None` without a table.
     pub geometry: Option<Vec<Geometry>>,
-    /// Whether there is a board.
+    /// Semi-axis of a 95 % ellipse in standard deviations.
+    pub ellipse_sigmas: f64,
+    /// A board is connected.
     pub is_live: bool,
-    /// Whether the page may ask the board for something.
+    /// The page may send requests to the board.
     pub allows_control: bool,
-    /// Whether sessions can be opened, which takes a table.
+    /// Sessions can be opened, which needs a table.
     pub opens_sessions: bool,
     /// The session to open at once.
     pub session: Option<String>,
 }
 
-impl Arm {
+impl ArmDescription {
     pub fn new(segments: usize, table: Option<&ArmFile>) -> Self {
         Self {
             proprio: env!("CARGO_PKG_VERSION"),
             segments,
-            columns: row::names(segments),
+            columns: page_row::names(segments),
             geometry: table.map(|table| table.segments.iter().map(Geometry::from).collect()),
+            ellipse_sigmas: CHI2_2_95.sqrt(),
             is_live: false,
             allows_control: false,
             opens_sessions: table.is_some(),
@@ -65,7 +68,7 @@ impl Arm {
     }
 }
 
-/// A segment.
+/// Geometry of a segment.
 #[derive(Debug, Clone, Copy, Serialize)]
 pub(super) struct Geometry {
     length_mm: f64,
@@ -74,71 +77,71 @@ pub(super) struct Geometry {
     offset_at_end: bool,
 }
 
-impl From<&calibration_tables::SegmentKeys> for Geometry {
-    fn from(segment: &calibration_tables::SegmentKeys) -> Self {
+impl From<&calibration_tables::SegmentToml> for Geometry {
+    fn from(segment: &calibration_tables::SegmentToml) -> Self {
         let offset_at_end = segment.offset_at == Side::End;
         Self { length_mm: segment.length_mm, offset_mm: segment.offset_mm, offset_at_end }
     }
 }
 
-/// What came since the message before.
+/// Data since the last batch.
 #[derive(Debug, Default, Serialize)]
 pub(super) struct Batch {
-    /// Time of each row, s, and its values in the order of [`Arm::columns`].
+    /// Time of each row, s, and its values in the order of [`ArmDescription::columns`].
     pub rows: Vec<(f64, Vec<f32>)>,
-    /// When the last one was sampled, µs by this program's clock: the page sends it back once it has drawn it.
+    /// Time of the last sample, µs by this program's clock: the page sends it back once it has drawn the row.
     pub newest_us: u64,
-    /// How well the shape is known, where the board knows it.
-    pub uncertainty: Option<Uncertainty>,
-    /// Which segments touch something.
+    /// Uncertainty of the shape, where the board has sent one.
+    pub uncertainty: Option<EndCovariances>,
+    /// Contact of the segments.
     pub contact: Option<[bool; SEGMENTS]>,
 }
 
-/// How well the shape is known.
+/// Uncertainty of the shape.
 #[derive(Debug, Clone, Serialize)]
-pub(super) struct Uncertainty {
+pub(super) struct EndCovariances {
     /// Covariance xx, xy, yy of each segment's end in {W}, m².
     pub ends_m2: Vec<[f64; 3]>,
 }
 
-impl Uncertainty {
-    /// As far as it is known; `None` where nothing is.
-    pub fn of(told: &telemetry::Uncertainty) -> Option<Self> {
-        let ends_m2: Vec<_> = told.segments.iter().map_while(SegmentUncertainty::end_m2).collect();
+impl EndCovariances {
+    /// The covariances up to the first segment without one; `None` without any.
+    pub fn of(uncertainty: &telemetry::Uncertainty) -> Option<Self> {
+        let ends_m2: Vec<_> = uncertainty.segments.iter().map_while(SegmentUncertainty::end_m2).collect();
         (!ends_m2.is_empty()).then_some(Self { ends_m2 })
     }
 }
 
-/// How board and link are.
+/// Status of board and link.
 #[derive(Debug, Serialize)]
-pub(super) struct Status {
+pub(super) struct PageStatus {
     /// Name of the line; `None` while it is gone.
     pub port: Option<String>,
     pub answers: bool,
-    pub board: Option<Board>,
+    pub board: Option<BoardInfo>,
     pub health: Option<BoardHealth>,
-    pub sensors: Vec<Sensor>,
+    pub sensors: Vec<SensorStatus>,
     #[serde(flatten)]
     pub rates: Rates,
     pub frames: u32,
     pub damaged: u32,
     pub lost: u32,
     pub restarts: u32,
-    /// Events that this program was too slow for.
+    /// Events that were dropped because this program was too slow.
     pub dropped_events: u64,
     pub clock: Option<BoardTime>,
-    /// From the sample to the screen.
+    /// Latency from the sample to the screen.
     pub latency: Option<Percentiles>,
-    /// The part of it that is not measured but reckoned: the board's work and the frame on the line.
+    /// The part of it that is computed and not measured: the board's latency and the frame on the line.
     pub least_delay_ms: Option<f64>,
-    pub recording: Option<Progress>,
-    /// What a person should know.
+    pub recording: Option<RecordingProgress>,
+    /// Warnings for people.
     pub notes: Vec<String>,
 }
 
-/// Who the board is.
+/// Identity of the board.
 #[derive(Debug, Serialize)]
-pub(super) struct Board {
+pub(super) struct BoardInfo {
     arm: String,
     firmware: String,
     boot: u32,
@@ -146,7 +149,7 @@ pub(super) struct Board {
     last_panic: Option<String>,
 }
 
-/// How it is.
+/// Health of the board.
 #[derive(Debug, Serialize)]
 pub(super) struct BoardHealth {
     load_percent: f64,
@@ -163,7 +166,7 @@ impl From<&Health> for BoardHealth {
     fn from(health: &Health) -> Self {
         Self {
             load_percent: f64::from(health.load_permille) / 10.0,
-            longest_tick_ms: f64::from(health.longest_tick_us) / 1e3,
+            longest_tick_ms: f64::from(health.max_estimate_latency_us) / 1e3,
             overruns: health.overruns,
             dropped_frames: health.dropped_frames,
             bus_recoveries: health.bus_recoveries,
@@ -174,23 +177,23 @@ impl From<&Health> for BoardHealth {
     }
 }
 
-/// How a sensor is.
+/// Status of a sensor.
 #[derive(Debug, Serialize)]
-pub(super) struct Sensor {
+pub(super) struct SensorStatus {
     pub state: SensorState,
     pub reason: &'static str,
     pub missed: u16,
 }
 
-impl From<SensorHealth> for Sensor {
+impl From<SensorHealth> for SensorStatus {
     fn from(SensorHealth { state, missed }: SensorHealth) -> Self {
         let reason = match state {
             SensorState::Ok => "reads well",
-            SensorState::Off => "does not answer, or reads at a rail",
+            SensorState::NoResponse => "does not answer, or reads at a rail",
             SensorState::Stuck => "repeats itself while others move",
-            SensorState::Garbage => "says what cannot be",
-            SensorState::Wrong => "contradicts the others",
-            SensorState::Slow => "answers too late",
+            SensorState::Invalid => "answers with invalid data",
+            SensorState::Inconsistent => "contradicts the others",
+            SensorState::Timeout => "answers too late",
             SensorState::Intermittent => "comes and goes",
         };
         Self { state, reason, missed }
@@ -205,33 +208,19 @@ pub(super) struct BoardTime {
     pub drift: Option<ClockDrift>,
 }
 
-/// How fast the board's clock parts from the host's.
-#[derive(Debug, Serialize)]
-pub(super) struct ClockDrift {
-    board_ppm: f64,
-    error_ppm: f64,
-    seconds: f64,
-}
-
-impl From<Drift> for ClockDrift {
-    fn from(Drift { board_ppm, error_ppm, seconds }: Drift) -> Self {
-        Self { board_ppm, error_ppm, seconds }
-    }
-}
-
-impl Status {
-    /// What the link tells; the rest is for whom it concerns.
+impl PageStatus {
+    /// The status of the link; the other fields are empty.
     pub fn new(link: LinkState, rates: Rates) -> Self {
-        let board = link.hello.map(|hello| Board {
+        let board = link.hello.map(|hello| BoardInfo {
             arm: hello.arm.as_str().to_owned(),
             firmware: hello.firmware.as_str().to_owned(),
             boot: hello.boot,
             reset: hello.reset,
-            last_panic: hello.last_panic.map(|said| said.as_str().to_owned()),
+            last_panic: hello.last_panic.map(|message| message.as_str().to_owned()),
         });
         Self {
             port: link.port,
-            answers: link.greeted,
+            answers: link.is_connected,
             board,
             health: None,
             sensors: Vec::new(),

@@ -1,10 +1,10 @@
-//! The last minutes, for a page that is opened later, and a session's rows, for one that shows it.
+//! Rows of the last minutes, for a page that is opened later, or of a session.
 
 use std::collections::VecDeque;
 
 use serde::Serialize;
 
-use super::row::Row;
+use super::page_row::PageRow;
 
 /// Rows that a page holds: ten minutes at 100 Hz.
 pub(super) const ROOM: usize = 60_000;
@@ -16,7 +16,7 @@ pub(super) struct History {
     columns: Vec<VecDeque<f32>>,
 }
 
-/// What is said in front of the rows of a [`History`].
+/// Header in front of the rows of a [`History`].
 #[derive(Debug, Serialize)]
 struct Head<'a, T> {
     rows: usize,
@@ -30,7 +30,7 @@ impl History {
         Self { times_s: VecDeque::new(), columns: vec![VecDeque::new(); columns] }
     }
 
-    pub fn push(&mut self, row: &Row) {
+    pub fn push(&mut self, row: &PageRow) {
         if self.times_s.len() == ROOM {
             self.times_s.pop_front();
             for column in &mut self.columns {
@@ -53,8 +53,8 @@ impl History {
         }
     }
 
-    /// One line of JSON that says how much there is and what it is of, padded to eight bytes; then the times as f64, then each
-    /// column as f32, little-endian.
+    /// One line of JSON with the numbers of rows and columns and `about`, padded to eight bytes; then the times as f64, then
+    /// each column as f32, little-endian.
     pub fn to_bytes(&self, about: &impl Serialize) -> Vec<u8> {
         let (rows, columns) = (self.times_s.len(), self.columns.len());
         let head = Head { rows, columns, about };

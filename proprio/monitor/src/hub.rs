@@ -5,101 +5,105 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use estimator_core::ArmConfig;
-use proprio_link::{Event, Link, Subscription, What};
+use proprio_link::{Event, EventKind, Link, Subscription};
 use proprio_session::HostNs;
 
-use super::feed::{Batch, Feed, Status, Uncertainty};
-use super::live::{Live, Taken};
-use super::shadow::Shadow;
-use super::shared::Shared;
+use super::feed::{Batch, EndCovariances, Feed, PageStatus};
+use super::host_replica::HostReplica;
+use super::live::{Live, TimedRow};
+use super::monitor_state::MonitorState;
 
 /// Time from one batch of rows to the next: 50 a second.
 const PERIOD: Duration = Duration::from_millis(20);
 /// Time from one status to the next.
 const STATUS: Duration = Duration::from_millis(200);
-/// Notes that are kept.
+/// Number of notes that are kept.
 const NOTES: usize = 6;
 
-/// The thread's own.
+/// State of the thread.
 pub(super) struct Hub<'t> {
-    shared: Arc<Shared>,
+    shared: Arc<MonitorState>,
     events: Subscription,
     live: Live<'t>,
     batch: Batch,
-    batched: Instant,
-    told: Instant,
+    batch_sent: Instant,
+    status_sent: Instant,
     notes: Vec<String>,
 }
 
 impl<'t> Hub<'t> {
-    pub fn new(shared: Arc<Shared>, events: Subscription, table: Option<&'t ArmConfig<'t, estimator_core::Q>>) -> Self {
-        let live = Live::new(table.map(Shadow::new));
+    pub fn new(
+        shared: Arc<MonitorState>,
+        events: Subscription,
+        table: Option<&'t ArmConfig<'t, estimator_core::Q>>,
+    ) -> Self {
+        let live = Live::new(table.map(HostReplica::new));
         let now = Instant::now();
-        Self { shared, events, live, batch: Batch::default(), batched: now, told: now, notes: Vec::new() }
+        Self { shared, events, live, batch: Batch::default(), batch_sent: now, status_sent: now, notes: Vec::new() }
     }
 
-    /// Works until it is told to stop.
+    /// Works until `stop` is set.
     pub fn run(mut self, link: &Link, stop: &AtomicBool) {
         while !stop.load(Ordering::Relaxed) {
-            let wait = PERIOD.saturating_sub(self.batched.elapsed());
+            let wait = PERIOD.saturating_sub(self.batch_sent.elapsed());
             if let Some(event) = self.events.next(wait) {
                 self.take(&event);
             }
-            if self.batched.elapsed() >= PERIOD {
-                self.batched = Instant::now();
+            if self.batch_sent.elapsed() >= PERIOD {
+                self.batch_sent = Instant::now();
                 self.send_rows();
             }
-            if self.told.elapsed() >= STATUS {
-                self.told = Instant::now();
+            if self.status_sent.elapsed() >= STATUS {
+                self.status_sent = Instant::now();
                 self.send_status(link);
             }
         }
     }
 
     fn take(&mut self, event: &Event) {
-        // The status has what stays.
-        if !matches!(event.what, What::Mismatch(_))
-            && let Some(warning) = event.what.warning()
+        // The status has the mismatches.
+        if !matches!(event.kind, EventKind::Mismatch(_))
+            && let Some(warning) = event.kind.warning()
         {
             self.note(event.at, &warning);
         }
-        if let Some(Taken { row, sampled }) = self.live.take(event) {
+        if let Some(TimedRow { row, sampled }) = self.live.take(event) {
             self.shared.history().push(&row);
             self.batch.newest_us = sampled.0 / 1000;
             self.batch.rows.push((row.time_s, row.values));
         }
     }
 
-    fn note(&mut self, at: HostNs, what: &str) {
+    fn note(&mut self, at: HostNs, text: &str) {
         let of_day = at.0 / 1_000_000_000 % 86_400;
         let (hour, minute, second) = (of_day / 3600, of_day / 60 % 60, of_day % 60);
         if self.notes.len() == NOTES {
             self.notes.remove(0);
         }
-        self.notes.push(format!("{hour:02}:{minute:02}:{second:02} UTC: {what}"));
+        self.notes.push(format!("{hour:02}:{minute:02}:{second:02} UTC: {text}"));
     }
 
     fn send_rows(&mut self) {
         let mut batch = std::mem::take(&mut self.batch);
         if !batch.rows.is_empty() {
-            let told = self.live.uncertainty.as_ref();
-            batch.uncertainty = told.and_then(Uncertainty::of);
-            batch.contact = told.map(|told| told.segments.map(|segment| segment.is_touched));
-            self.shared.tell(&Feed::Rows(batch));
+            let uncertainty = self.live.uncertainty.as_ref();
+            batch.uncertainty = uncertainty.and_then(EndCovariances::of);
+            batch.contact = uncertainty.map(|of| of.segments.map(|segment| segment.in_contact));
+            self.shared.publish(&Feed::Rows(batch));
         }
     }
 
     fn send_status(&mut self, link: &Link) {
         let rates = self.live.rates(self.shared.clock.now());
-        let mut status = Status::new(link.state(), rates);
+        let mut status = PageStatus::new(link.state(), rates);
         status.health = self.live.health.as_ref().map(Into::into);
         status.sensors = self.live.sensors().into_iter().map(Into::into).collect();
         status.dropped_events = self.events.dropped();
         status.clock = self.live.board_time();
         status.latency = self.shared.latency().percentiles();
-        status.least_delay_ms = self.live.least_delay_us().map(|delay_us| f64::from(delay_us) / 1e3);
+        status.least_delay_ms = self.live.min_delay_us().map(|delay_us| f64::from(delay_us) / 1e3);
         status.recording = self.shared.recording();
         status.notes.extend(self.notes.iter().rev().cloned());
-        self.shared.tell(&Feed::Status(Box::new(status)));
+        self.shared.publish(&Feed::Status(Box::new(status)));
     }
 }

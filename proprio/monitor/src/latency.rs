@@ -1,13 +1,13 @@
-//! From a sample to the screen.
+//! Latency from a sample to the screen.
 
 use std::collections::VecDeque;
 
 use serde::Serialize;
 
-/// Reports that count: those of the last minute and more.
-const ROOM: usize = 3000;
+/// Number of reports that are kept: those of the last minute and more.
+const CAPACITY: usize = 3000;
 
-/// How long the last samples took.
+/// Latencies of the last samples.
 #[derive(Debug, Default)]
 pub(super) struct Latency {
     reports_us: VecDeque<u64>,
@@ -26,13 +26,13 @@ pub(super) struct Percentiles {
 
 impl Latency {
     pub fn push(&mut self, latency_us: u64) {
-        if self.reports_us.len() == ROOM {
+        if self.reports_us.len() == CAPACITY {
             self.reports_us.pop_front();
         }
         self.reports_us.push_back(latency_us);
     }
 
-    /// `None` where nobody has reported.
+    /// Percentiles of the latencies; `None` before the first report.
     pub fn percentiles(&self) -> Option<Percentiles> {
         let mut sorted: Vec<u64> = self.reports_us.iter().copied().collect();
         sorted.sort_unstable();

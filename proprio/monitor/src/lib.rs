@@ -1,34 +1,36 @@
-//! The live page: an arm and its sensors in a browser on this machine, and sessions that were recorded.
+//! The live page: an arm and its sensors in a browser on this machine, and recorded sessions.
 //!
 //! The link's events go two ways: to the hub, which makes rows of them and sends batches to every page, and to the
-//! recording, which has a queue of its own. Each page has a bounded queue of messages as well, which drops the oldest; a
-//! browser that is slow loses pictures and holds up nobody.
+//! recording, which has a queue of its own. Each page has a bounded queue of messages as well, which drops the oldest: a
+//! slow browser skips rows and delays no other.
 //!
-//! | file | what it is for |
+//! | file | purpose |
 //! |---|---|
-//! | `live.rs`, `shadow.rs`, `row.rs` | what the link says, as rows; drift and innovations by an estimator beside the board's |
+//! | `live.rs`, `host_replica.rs`, `page_row.rs` | the link's events as rows; drift and innovations by a replica of the board's estimator |
 //! | `hub.rs`, `feed.rs`, `history.rs` | batches and status; the last ten minutes |
-//! | `latency.rs` | from a sample to the screen |
-//! | `recording.rs`, `sessions.rs` | sessions that are recorded, and opened |
-//! | `server.rs`, `socket.rs`, `actions.rs`, `access.rs` | HTTP: the page, the feed, what a page asks for, and who may |
-//! | `plain.rs` | a line a second instead, for a terminal |
-//! | `page/` | the page itself, embedded in the program |
+//! | `latency.rs` | latency from a sample to the screen |
+//! | `recording.rs`, `sessions.rs` | recording and opening of sessions |
+//! | `server.rs`, `socket.rs`, `actions.rs`, `access.rs` | HTTP: the page, the feed, handlers of requests, access control |
+//! | `monitor_state.rs`, `app_state.rs` | state of the threads; state of the handlers |
+//! | `plain.rs` | one line per second instead, for a terminal |
+//! | `page/` | the page, embedded in the program |
 
 mod access;
 mod actions;
+mod app_state;
 mod error;
 mod feed;
 mod history;
+mod host_replica;
 mod hub;
 mod latency;
 mod live;
+mod monitor_state;
+mod page_row;
 mod plain;
 mod recording;
-mod row;
 mod server;
 mod sessions;
-mod shadow;
-mod shared;
 mod socket;
 
 use std::net::{Ipv4Addr, SocketAddr, TcpListener};
@@ -37,36 +39,37 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::JoinHandle;
 
-use calibration_tables::Baked;
+use calibration_tables::CompiledTable;
 use estimator_core::Q;
 use proprio_link::{Link, Subscription};
-use proprio_session::NamedTable;
+use proprio_session::LoadedTable;
 use telemetry::{Command, SEGMENTS, TICK_HZ};
 
 pub use access::Token;
 pub use error::Error;
 pub use plain::Plain;
 
-use feed::Arm;
+use app_state::AppState;
+use feed::ArmDescription;
 use hub::Hub;
-use server::Server;
-use sessions::Sessions;
-use shared::Shared;
 
-/// What a monitor shows, and where.
+use monitor_state::MonitorState;
+use sessions::Sessions;
+
+/// Options of a monitor.
 #[derive(Debug)]
 pub struct Options<'p> {
-    /// Port of 127.0.0.1; 0: any that is free.
+    /// Port of 127.0.0.1; 0: any free one.
     pub port: u16,
     /// Table of the arm: without it there is neither drift nor innovation, and no session can be opened.
-    pub table: Option<NamedTable<'p>>,
-    /// Where recordings are written, and sessions found.
+    pub table: Option<LoadedTable<'p>>,
+    /// Folder of recordings and sessions.
     pub folder: PathBuf,
-    /// What a page must know to drive the board; `None`: the board is only watched.
+    /// Token that a page needs to drive the board; `None`: no page may.
     pub token: Option<Token>,
     /// The session to open at once, where there is no board.
     pub session: Option<PathBuf>,
-    /// The remedy of an error, which the page shows with it.
+    /// Returns the remedy of an error, which the page shows with it.
     pub help: fn(&Error) -> String,
 }
 
@@ -74,14 +77,14 @@ pub struct Options<'p> {
 #[derive(Debug)]
 pub struct Monitor {
     address: SocketAddr,
-    shared: Arc<Shared>,
+    shared: Arc<MonitorState>,
     stop: Arc<AtomicBool>,
     stop_server: Option<tokio::sync::oneshot::Sender<()>>,
     threads: Vec<JoinHandle<()>>,
 }
 
 impl Monitor {
-    /// Starts to serve what a link says, if there is one.
+    /// Starts to serve the data of a link, if there is one, and sessions.
     ///
     /// # Errors
     /// [`Error::Listen`], and [`Error::File`] on an arm description.
@@ -91,7 +94,7 @@ impl Monitor {
         let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port)).map_err(failed)?;
         listener.set_nonblocking(true).map_err(failed)?;
         let address = listener.local_addr().map_err(failed)?;
-        let baked = options.table.as_ref().map(|table| table.bake::<Q>(TICK_HZ)).transpose()?;
+        let compiled = options.table.as_ref().map(|table| table.compile::<Q>(TICK_HZ)).transpose()?;
         let (link, events) = live.unzip();
         let shared = Arc::new(shared(link, options));
         let stop = Arc::new(AtomicBool::new(false));
@@ -99,21 +102,21 @@ impl Monitor {
         let mut monitor = Self { address, shared, stop, stop_server: Some(stop_server), threads: Vec::new() };
         if let Some(events) = events {
             let (shared, stop) = (Arc::clone(&monitor.shared), Arc::clone(&monitor.stop));
-            monitor.spawn("hub", move || hub(&shared, events, baked.as_ref(), &stop)).map_err(failed)?;
+            monitor.spawn("hub", move || hub(&shared, events, compiled.as_ref(), &stop)).map_err(failed)?;
         }
-        let server = Server { shared: Arc::clone(&monitor.shared), port: address.port() };
+        let state = AppState { monitor: Arc::clone(&monitor.shared), port: address.port() };
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(failed)?;
         let work = async move {
             let listener = tokio::net::TcpListener::from_std(listener)?;
             tokio::select! {
-                served = axum::serve(listener, server::router(server)) => served,
+                served = axum::serve(listener, server::router(state)) => served,
                 _ = stopped => Ok(()),
             }
         };
         let serve = move || {
-            // That it ends early leaves nothing to be told to anybody.
+            // A server error cannot be reported at this point.
             let _ = runtime.block_on(work);
-            // A long session that is being opened is not waited for.
+            // Do not wait for a long session that is being opened.
             runtime.shutdown_background();
         };
         monitor.spawn("server", serve).map_err(failed)?;
@@ -125,19 +128,19 @@ impl Monitor {
         Ok(())
     }
 
-    /// Where it listens.
+    /// Its address.
     #[must_use]
     pub fn address(&self) -> SocketAddr {
         self.address
     }
 
-    /// Ends it: vents the board, where a page could have driven it, and completes the recording. Gives its name.
+    /// Ends the monitor: vents the board, where a page could have driven it, and completes the recording. Returns its path.
     ///
     /// # Errors
     /// [`Error::File`] of a recording.
     pub fn finish(self) -> Result<Option<String>, Error> {
         if let (Some(link), Some(_)) = (&self.shared.link, &self.shared.token) {
-            // A board that does not answer vents by itself.
+            // A board that does not answer vents at its own deadline.
             let _ = link.request(Command::Disarm);
         }
         Ok(self.shared.finish_recording()?.map(|progress| progress.file))
@@ -148,7 +151,7 @@ impl Drop for Monitor {
     fn drop(&mut self) {
         self.stop.store(true, Ordering::Relaxed);
         if let Some(stop) = self.stop_server.take() {
-            // It may have ended by itself.
+            // The server may have ended already.
             let _ = stop.send(());
         }
         for thread in self.threads.drain(..) {
@@ -157,22 +160,23 @@ impl Drop for Monitor {
     }
 }
 
-/// What the threads share, and what the page is told first.
-fn shared(link: Option<Link>, options: Options) -> Shared {
+/// The state that the threads share.
+fn shared(link: Option<Link>, options: Options) -> MonitorState {
     let table = options.table.as_ref();
     let table_segments = table.map(|table| table.file.segments.len());
     let segments = table_segments.filter(|_| link.is_none()).unwrap_or(SEGMENTS);
-    // A table for another number of segments is not this arm's.
-    let mut arm = Arm::new(segments, table.map(|table| &table.file).filter(|_| table_segments == Some(segments)));
+    // A table with another number of segments is not of this arm.
+    let mut arm =
+        ArmDescription::new(segments, table.map(|table| &table.file).filter(|_| table_segments == Some(segments)));
     (arm.is_live, arm.allows_control) = (link.is_some(), options.token.is_some());
     arm.opens_sessions = table.is_some();
     let sessions = Sessions::new(options.folder, table, options.session);
     arm.session = sessions.given();
-    Shared::new(link, arm, options.token, sessions, options.help)
+    MonitorState::new(link, arm, options.token, sessions, options.help)
 }
 
-fn hub(shared: &Arc<Shared>, events: Subscription, baked: Option<&Baked<Q>>, stop: &AtomicBool) {
-    let table = baked.map(Baked::config);
+fn hub(shared: &Arc<MonitorState>, events: Subscription, compiled: Option<&CompiledTable<Q>>, stop: &AtomicBool) {
+    let table = compiled.map(CompiledTable::config);
     let table = table.as_ref().filter(|table| table.segments.len() == SEGMENTS);
     if let Some(link) = &shared.link {
         Hub::new(Arc::clone(shared), events, table).run(link, stop);

@@ -1,31 +1,30 @@
-//! What a link says, as rows and as how the board is.
+//! Rows and status of a live board, from the events of its link.
 
 use std::collections::VecDeque;
 
-use estimator_core::Sample;
 use proprio_link::status::Rates;
-use proprio_link::{Event, What};
-use proprio_session::{BoardClock, HostNs};
-use telemetry::{BEND_SENSORS, Estimate, Health, Message, SEGMENTS, SensorHealth, SensorState, TICK_US, Uncertainty};
+use proprio_link::{Event, EventKind};
+use proprio_session::{ClockSync, HostNs, Row, RowAssembler};
+use telemetry::{BEND_SENSORS, Health, Message, SEGMENTS, SensorHealth, SensorState, Uncertainty};
 
 use super::feed::BoardTime;
-use super::row::Row;
-use super::shadow::Shadow;
+use super::host_replica::HostReplica;
+use super::page_row::PageRow;
 
-/// Time that rates are of, ns.
+/// Time over which rates are measured, ns.
 const RATES_NS: u64 = 2_000_000_000;
 /// Time to send a sample's frame of 98 bytes at 250 000 Bd, µs.
 const SAMPLE_FRAME_US: u32 = 3920;
 
-/// A row, and when its sample was taken.
+/// A row, with the time of its sample.
 #[derive(Debug)]
-pub(super) struct Taken {
-    pub row: Row,
-    /// By the shortest delay of the last samples, and what is known of that delay.
+pub(super) struct TimedRow {
+    pub row: PageRow,
+    /// Time of the sample on the host's clock: that of the shortest delay of the last samples, less the known part of it.
     pub sampled: HostNs,
 }
 
-/// What came until a time.
+/// Numbers of received messages and bytes at a time.
 #[derive(Debug, Clone, Copy, Default)]
 struct Totals {
     at_ns: u64,
@@ -36,43 +35,25 @@ struct Totals {
 
 /// A live board.
 pub(super) struct Live<'t> {
-    shadow: Option<Shadow<'t>>,
-    /// Whether the shadow has seen every sample since the estimator's start.
-    is_shadowed: bool,
-    clock: BoardClock,
+    replica: Option<HostReplica<'t>>,
+    assembler: RowAssembler,
+    clock: ClockSync,
     /// The board's time 0 on the host's clock, ns.
     zero_ns: Option<u64>,
-    /// The row that waits for its estimate, and its tick.
-    open: Option<(u32, Taken)>,
-    last: Option<Last>,
-    /// What is added to the board's time, so that it goes on over a restart, µs.
-    base_us: u64,
-    restarted: bool,
     pub health: Option<Health>,
-    /// The last that came, with the contact that was told since.
+    /// The last one, with the contact of later events.
     pub uncertainty: Option<Uncertainty>,
     totals: Totals,
     totals_before: VecDeque<Totals>,
 }
 
-/// What the sample before was.
-struct Last {
-    at: HostNs,
-    tare: u8,
-    time_us: u64,
-}
-
 impl<'t> Live<'t> {
-    pub fn new(shadow: Option<Shadow<'t>>) -> Self {
+    pub fn new(replica: Option<HostReplica<'t>>) -> Self {
         Self {
-            shadow,
-            is_shadowed: false,
-            clock: BoardClock::default(),
+            replica,
+            assembler: RowAssembler::default(),
+            clock: ClockSync::default(),
             zero_ns: None,
-            open: None,
-            last: None,
-            base_us: 0,
-            restarted: false,
             health: None,
             uncertainty: None,
             totals: Totals::default(),
@@ -80,33 +61,31 @@ impl<'t> Live<'t> {
         }
     }
 
-    /// Takes what happened on the link; gives the row that it completes.
-    pub fn take(&mut self, event: &Event) -> Option<Taken> {
-        match &event.what {
-            What::Bytes(bytes) => self.totals.bytes += bytes.len() as u64,
-            What::Message(message) => return self.message(event.at, message),
-            What::Restarted => {
-                self.restarted = true;
+    /// Takes an event of the link; returns the row that it completes.
+    pub fn take(&mut self, event: &Event) -> Option<TimedRow> {
+        match &event.kind {
+            EventKind::Bytes(bytes) => self.totals.bytes += bytes.len() as u64,
+            EventKind::Message(message) => {
+                self.message(message);
+                // A `Hello` with another schema is a mismatch, of which the link has its own event.
+                let before = self.assembler.message(event.at, message, event.gaps).unwrap_or_default();
+                // The estimate of the row before was lost, or the one of this row has arrived.
+                let row = before.or_else(|| self.assembler.take_estimated());
+                return row.map(|row| self.timed(&row));
+            }
+            EventKind::Opened(_) => self.assembler.line_opened(),
+            EventKind::Restarted | EventKind::Lost(_) | EventKind::Ended(_) => {
                 (self.health, self.uncertainty) = (None, None);
             }
-            What::Lost(_) | What::Ended(_) => (self.health, self.uncertainty) = (None, None),
-            What::Opened(_) | What::Undecoded(_) | What::Mismatch(_) => {}
+            EventKind::Undecoded(_) | EventKind::Mismatch(_) => {}
         }
         None
     }
 
-    fn message(&mut self, at: HostNs, message: &Message) -> Option<Taken> {
+    fn message(&mut self, message: &Message) {
         match message {
-            Message::Sample(sample) => {
-                self.totals.samples += 1;
-                let row = self.sample(at, sample);
-                // The estimate of the one before was lost.
-                return self.open.replace((sample.tick, row)).map(|(_, taken)| taken);
-            }
-            Message::Estimate(estimate) => {
-                self.totals.estimates += 1;
-                return self.estimate(estimate);
-            }
+            Message::Sample(_) => self.totals.samples += 1,
+            Message::Estimate(_) => self.totals.estimates += 1,
             Message::Health(health) => self.health = Some(*health),
             Message::Uncertainty(uncertainty) => self.uncertainty = Some(*uncertainty),
             Message::Event(telemetry::Event::Contact(_, touched)) => self.contact(*touched),
@@ -114,71 +93,51 @@ impl<'t> Live<'t> {
             Message::Event(telemetry::Event::Imu(i, state)) => self.sensor(BEND_SENSORS + usize::from(*i), *state),
             Message::Hello(_) | Message::Event(_) | Message::Reply(_) => {}
         }
-        None
     }
 
-    fn sample(&mut self, at: HostNs, sample: &telemetry::Sample) -> Taken {
-        let restarted = std::mem::take(&mut self.restarted);
-        let mut starts = true;
-        if let Some(last) = &self.last {
-            if restarted || self.base_us + sample.time_us < last.time_us {
-                let passed_us = (at.0.saturating_sub(last.at.0) / 1000).max(TICK_US);
-                self.base_us = (last.time_us + passed_us).saturating_sub(sample.time_us);
-                self.is_shadowed = sample.tick == 0;
-            } else if sample.tare == last.tare {
-                starts = false;
-            } else {
-                self.is_shadowed = true;
+    /// The row for the page. The replica runs from a start of the board's estimator until a sample is lost; from then on its
+    /// state differs from the board's, and the row has no drift and no innovations until the next start.
+    fn timed(&mut self, row: &Row) -> TimedRow {
+        let mut page_row = PageRow::new(row.sample.time_us as f64 / 1e6, SEGMENTS);
+        if let Some(replica) = &mut self.replica {
+            if row.starts {
+                replica.start();
             }
-        } else {
-            self.is_shadowed = sample.tick == 0;
-        }
-        let time_us = self.base_us + sample.time_us;
-        self.last = Some(Last { at, tare: sample.tare, time_us });
-
-        let mut row = Row::new(time_us as f64 / 1e6, SEGMENTS);
-        if let Some(shadow) = &mut self.shadow {
-            if starts {
-                shadow.start();
-            }
-            if self.is_shadowed {
-                shadow.step(&Sample::from(sample), &mut row);
+            if row.board.is_some_and(|board| board.complete) {
+                replica.step(&row.sample, &mut page_row);
             }
         }
-        // The board's own estimate is what is shown.
-        row.set_estimate(&[None; SEGMENTS]);
-        row.set_sample(&Sample::<SEGMENTS>::from(sample));
-        let delay_ns = self.least_delay_us().map_or(0, |delay_us| u64::from(delay_us) * 1000);
-        let sampled = HostNs(self.clock.host_ns(at, sample.time_us).0.saturating_sub(delay_ns));
-        self.zero_ns = Some(sampled.0.saturating_sub(sample.time_us.saturating_mul(1000)));
-        Taken { row, sampled }
+        // The page shows the board's own estimate.
+        let estimate = row.board.and_then(|board| board.estimate);
+        page_row.set_estimate(&estimate.map_or([None; SEGMENTS], |estimate| estimate.segments));
+        page_row.set_sample(&row.sample);
+        let (at, time_us) = row.board.map_or((HostNs(0), 0), |board| (board.at, board.time_us));
+        let delay_ns = self.min_delay_us().map_or(0, |delay_us| u64::from(delay_us) * 1000);
+        let sampled = HostNs(self.clock.host_ns(at, time_us).0.saturating_sub(delay_ns));
+        self.zero_ns = Some(sampled.0.saturating_sub(time_us.saturating_mul(1000)));
+        TimedRow { row: page_row, sampled }
     }
 
-    fn estimate(&mut self, estimate: &Estimate) -> Option<Taken> {
-        let (_, mut taken) = self.open.take_if(|(tick, _)| *tick == estimate.tick)?;
-        taken.row.set_estimate(&estimate.segments);
-        Some(taken)
+    /// Shortest time from a sample to its arrival, µs, which one-way time stamps cannot show: the latency that the board
+    /// reports, and the time of the frame on the line.
+    pub fn min_delay_us(&self) -> Option<u32> {
+        self.health.map(|health| health.max_estimate_latency_us.saturating_add(SAMPLE_FRAME_US))
     }
 
-    /// The shortest time from a sample to its arrival, which no comparison of clocks in one direction can tell: what the board
-    /// says of its own work, and the time of the frame on the line.
-    pub fn least_delay_us(&self) -> Option<u32> {
-        self.health.map(|health| health.longest_tick_us.saturating_add(SAMPLE_FRAME_US))
-    }
-
-    /// How the board's clock stands to the host's.
+    /// The board's clock relative to the host's.
     pub fn board_time(&self) -> Option<BoardTime> {
         let zero_ms = self.zero_ns? as f64 / 1e6;
-        Some(BoardTime { zero_ms, drift: self.clock.drift().map(Into::into) })
+        Some(BoardTime { zero_ms, drift: self.clock.drift() })
     }
 
-    /// Contact has begun or ended. The next uncertainty says the same, up to a quarter of a second later.
+    /// Contact has begun or ended. The next uncertainty has the same, up to a quarter of a second later.
     fn contact(&mut self, touched: [bool; SEGMENTS]) {
         let segments = self.uncertainty.iter_mut().flat_map(|uncertainty| &mut uncertainty.segments);
-        segments.zip(touched).for_each(|(segment, touched)| segment.is_touched = touched);
+        segments.zip(touched).for_each(|(segment, touched)| segment.in_contact = touched);
     }
 
-    /// The state of a sensor has changed: bend sensors first, then IMUs. Health says the same, up to a fifth of a second later.
+    /// The state of a sensor has changed: bend sensors first, then IMUs. The next health has the same, up to a fifth of a second
+    /// later.
     fn sensor(&mut self, i: usize, state: SensorState) {
         let Some(health) = &mut self.health else { return };
         if let Some(sensor) = health.bend.iter_mut().chain(&mut health.imu).nth(i) {
@@ -191,7 +150,7 @@ impl<'t> Live<'t> {
         self.health.iter().flat_map(|health| health.bend.iter().chain(&health.imu).copied()).collect()
     }
 
-    /// What came a second, over the last two; asked for a few times a second.
+    /// Rates over the last two seconds; called a few times per second.
     pub fn rates(&mut self, now: HostNs) -> Rates {
         self.totals.at_ns = now.0;
         while self.totals_before.front().is_some_and(|then| now.0.saturating_sub(then.at_ns) > RATES_NS) {
@@ -206,5 +165,86 @@ impl<'t> Live<'t> {
             estimates_hz: rate(now.estimates - then.estimates),
             bytes_per_s: rate(now.bytes - then.bytes),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use calibration_tables::ArmFile;
+    use estimator_core::Q;
+    use telemetry::{Estimate, Sample, TICK_HZ};
+
+    use super::{Event, EventKind, HostNs, HostReplica, Live, Message, SEGMENTS, TimedRow};
+    use crate::page_row::ColumnGroup;
+
+    /// Ticks from a tare until the replica's estimates are there.
+    const TARE_TICKS: u32 = 150;
+
+    /// A stream of samples, each with its estimate.
+    struct Stream<'t> {
+        live: Live<'t>,
+        gaps: u32,
+        tare: u8,
+    }
+
+    impl Stream<'_> {
+        fn message(&mut self, tick: u32, message: Message) -> Option<TimedRow> {
+            let at = HostNs(1_000_000_000_000 + u64::from(tick) * 10_000_000);
+            self.live.take(&Event { at, gaps: self.gaps, kind: EventKind::Message(message) })
+        }
+
+        /// Sends a tick; returns the drifts and innovations of its row that have a value.
+        fn tick(&mut self, tick: u32) -> usize {
+            let (bend, imu) = ([Some(2000); 2 * SEGMENTS], [Some([16_384, 0, 0, 0]); SEGMENTS]);
+            let sample = Sample { tick, time_us: u64::from(tick) * 10_000, tare_epoch: self.tare, bend, imu };
+            assert!(self.message(tick, Message::Sample(sample)).is_none());
+            let estimate = Estimate { tick, segments: [None; SEGMENTS] };
+            let TimedRow { row, .. } = self.message(tick, Message::Estimate(estimate)).expect("its row");
+            let groups = [ColumnGroup::Drift, ColumnGroup::InnovationImu, ColumnGroup::InnovationBend];
+            groups.iter().flat_map(|group| row.group(*group)).filter(|value| !value.is_nan()).count()
+        }
+
+        fn ticks(&mut self, ticks: std::ops::Range<u32>) -> usize {
+            ticks.map(|tick| self.tick(tick)).last().unwrap_or(0)
+        }
+    }
+
+    #[test]
+    fn drift_and_innovations_are_empty_from_a_lost_sample_to_the_next_tare_or_restart() {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../calibration-tables/planar-6.toml");
+        let compiled = ArmFile::load(&path).and_then(|file| file.compile::<Q>(TICK_HZ)).expect("the reference table");
+        let config = compiled.config();
+        let mut stream = Stream { live: Live::new(Some(HostReplica::new(&config))), gaps: 0, tare: 0 };
+        let all = 3 * SEGMENTS;
+        assert_eq!(stream.ticks(0..TARE_TICKS), all);
+
+        // A tick that the board has skipped is no gap.
+        assert_eq!(stream.ticks(TARE_TICKS + 1..200), all);
+
+        // Sample 200 is lost.
+        stream.gaps += 1;
+        assert_eq!((stream.tick(201), stream.ticks(202..500)), (0, 0));
+
+        stream.tare += 1;
+        assert_eq!(stream.ticks(500..500 + TARE_TICKS), all);
+
+        stream.gaps += 1;
+        assert_eq!(stream.tick(1000), 0);
+        stream.gaps += 1;
+        stream.tare = 0;
+        assert_eq!(stream.ticks(0..TARE_TICKS), all);
+    }
+
+    #[test]
+    fn a_repeated_sample_makes_no_row() {
+        let mut stream = Stream { live: Live::new(None), gaps: 0, tare: 0 };
+        stream.ticks(0..5);
+        let sample =
+            Sample { tick: 3, time_us: 30_000, tare_epoch: 0, bend: [None; 2 * SEGMENTS], imu: [None; SEGMENTS] };
+        let estimate = Estimate { tick: 3, segments: [None; SEGMENTS] };
+        assert!(stream.message(3, Message::Sample(sample)).is_none());
+        assert!(stream.message(3, Message::Estimate(estimate)).is_none());
     }
 }

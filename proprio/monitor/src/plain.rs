@@ -1,36 +1,36 @@
-//! The same for a terminal: one line a second.
+//! The live values for a terminal: one line per second.
 
 use std::fmt::Write;
 
 use estimator_core::Q;
-use proprio_link::{Event, LinkState, What};
+use proprio_link::{Event, EventKind, LinkState};
 use proprio_session::{HostNs, SENSOR_NAMES};
 use telemetry::{Actuation, BEND_SENSORS, Estimate, Message, SensorState};
 
 use super::live::Live;
 
-/// What the lines are made of.
+/// State of the lines for a terminal.
 pub struct Plain {
     live: Live<'static>,
     estimate: Option<Estimate>,
 }
 
 impl Plain {
-    /// Nothing has come yet.
+    /// The state before the first event.
     #[must_use]
     pub fn new() -> Self {
         Self { live: Live::new(None), estimate: None }
     }
 
-    /// Takes what happened on the link.
+    /// Takes an event of the link.
     pub fn take(&mut self, event: &Event) {
-        if let What::Message(Message::Estimate(estimate)) = &event.what {
+        if let EventKind::Message(Message::Estimate(estimate)) = &event.kind {
             self.estimate = Some(*estimate);
         }
         self.live.take(event);
     }
 
-    /// How it is now: bend angles, the tip, what came in the last two seconds, and sensors that are not well.
+    /// The current line: bend angles, the tip, rates of the last two seconds, and sensors with faults.
     #[must_use]
     pub fn line(&mut self, now: HostNs, link: &LinkState) -> String {
         let rates = self.live.rates(now);
@@ -63,8 +63,8 @@ impl Plain {
         for (i, sensor) in self.live.sensors().iter().enumerate().filter(|(_, sensor)| sensor.state != SensorState::Ok)
         {
             let _ = match i.checked_sub(BEND_SENSORS) {
-                Some(imu) => write!(line, "  IMU {} {:?}", imu + 1, sensor.state),
-                None => write!(line, "  bend {}{} {:?}", i / 2 + 1, SENSOR_NAMES[i % 2], sensor.state),
+                Some(imu) => write!(line, "  IMU {} {}", imu + 1, sensor.state),
+                None => write!(line, "  bend {}{} {}", i / 2 + 1, SENSOR_NAMES[i % 2], sensor.state),
             };
         }
         line

@@ -1,4 +1,4 @@
-//! A recording that the page has asked for: a thread and a queue of its own, so that no browser slows it.
+//! A recording that was started from the page: a thread with its own queue, so that no browser slows it.
 
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -11,33 +11,33 @@ use proprio_link::{FileRecorder, Link, Subscription};
 use proprio_session::{Error, HostClock, HostNs};
 use serde::Serialize;
 
-/// Longest time from one look at what is asked to the next.
-const LOOK: Duration = Duration::from_millis(50);
+/// Longest time between two checks for marks.
+const CHECK_PERIOD: Duration = Duration::from_millis(50);
 
-/// How far a recording is.
+/// Progress of a recording.
 #[derive(Debug, Clone, Serialize)]
-pub(super) struct Progress {
+pub(super) struct RecordingProgress {
     pub file: String,
     pub samples: u64,
     pub marks: u64,
-    /// What this machine was too slow to write.
+    /// Events that were dropped because this machine was too slow.
     pub dropped_events: u64,
-    /// Why it has ended, where nobody asked it to.
+    /// Reason of its failure; `None` while it has not failed.
     pub failed: Option<String>,
 }
 
-/// A recording under way.
+/// A running recording.
 #[derive(Debug)]
 pub(super) struct Recording {
     path: PathBuf,
-    asks: Sender<Mark>,
-    shared: Arc<Counts>,
+    marks: Sender<MarkRequest>,
+    counts: Arc<Counts>,
     thread: Option<JoinHandle<Result<(), Error>>>,
 }
 
-/// Something happened, says the user.
+/// A mark that a person has set.
 #[derive(Debug)]
-struct Mark {
+struct MarkRequest {
     at: HostNs,
     text: String,
 }
@@ -51,27 +51,27 @@ struct Counts {
 }
 
 impl Recording {
-    /// Begins one, in a new file of `folder` that is named by the time.
+    /// Begins a recording in a new file of `folder` that is named by the time.
     pub fn begin(link: &Link, folder: &Path, table: Option<&[u8]>, clock: HostClock) -> Result<Self, Error> {
         let path = folder.join(format!("{}.mcap", name(clock.now())));
         let recorder = FileRecorder::create(&path, link, clock, table)?;
-        let (asks, asked) = channel();
-        let shared = Arc::new(Counts::default());
-        let work = Work { recorder, events: link.subscribe(), asked, shared: Arc::clone(&shared) };
+        let (marks, received) = channel();
+        let counts = Arc::new(Counts::default());
+        let work = Work { recorder, events: link.subscribe(), marks: received, counts: Arc::clone(&counts) };
         let thread = std::thread::Builder::new().name("recording".to_owned()).spawn(move || work.run());
         let thread = thread.map_err(|source| Error::Output { path: path.clone(), source })?;
-        Ok(Self { asks, shared, thread: Some(thread), path })
+        Ok(Self { marks, counts, thread: Some(thread), path })
     }
 
-    /// Marks this moment.
+    /// Sets a mark.
     pub fn mark(&self, at: HostNs, text: String) {
-        // Where it has failed there is nothing to be marked, and its progress says so.
-        let _ = self.asks.send(Mark { at, text });
+        // A recording that has failed takes no marks; its progress has the failure.
+        let _ = self.marks.send(MarkRequest { at, text });
     }
 
-    pub fn progress(&self) -> Progress {
-        let Counts { samples, marks, dropped, failed } = self.shared.as_ref();
-        Progress {
+    pub fn progress(&self) -> RecordingProgress {
+        let Counts { samples, marks, dropped, failed } = self.counts.as_ref();
+        RecordingProgress {
             file: self.path.display().to_string(),
             samples: samples.load(Ordering::Relaxed),
             marks: marks.load(Ordering::Relaxed),
@@ -81,11 +81,11 @@ impl Recording {
     }
 
     /// Completes the file.
-    pub fn finish(mut self) -> Result<Progress, Error> {
+    pub fn finish(mut self) -> Result<RecordingProgress, Error> {
         let progress = self.progress();
-        let (asks, _) = channel();
-        // With nobody to ask any more the thread comes to its end.
-        drop(std::mem::replace(&mut self.asks, asks));
+        let (marks, _) = channel();
+        // The thread ends when the sender of its marks is dropped.
+        drop(std::mem::replace(&mut self.marks, marks));
         let done = self.thread.take().map(JoinHandle::join);
         match done {
             Some(Ok(Err(error))) => Err(error),
@@ -94,40 +94,40 @@ impl Recording {
     }
 }
 
-/// What the thread owns.
+/// State of the thread.
 struct Work {
     recorder: FileRecorder,
     events: Subscription,
-    asked: Receiver<Mark>,
-    shared: Arc<Counts>,
+    marks: Receiver<MarkRequest>,
+    counts: Arc<Counts>,
 }
 
 impl Work {
     fn run(mut self) -> Result<(), Error> {
         let done = self.work();
         if let Err(error) = &done {
-            // The page shows the file's name beside the reason.
+            // The page shows the file's name with the reason.
             let reason = match error {
                 Error::Output { source, .. } => source.to_string(),
                 other => other.to_string(),
             };
-            *self.shared.failed.lock().unwrap_or_else(PoisonError::into_inner) = Some(reason);
+            *self.counts.failed.lock().unwrap_or_else(PoisonError::into_inner) = Some(reason);
         }
         done.and_then(|()| self.recorder.finish())
     }
 
     fn work(&mut self) -> Result<(), Error> {
         loop {
-            match self.events.next(LOOK) {
+            match self.events.next(CHECK_PERIOD) {
                 Some(event) => self.recorder.event(&event)?,
                 None => self.recorder.flush_if_due()?,
             }
-            self.shared.samples.store(self.recorder.samples(), Ordering::Relaxed);
-            self.shared.dropped.store(self.events.dropped(), Ordering::Relaxed);
-            match self.asked.try_recv() {
-                Ok(Mark { at, text }) => {
+            self.counts.samples.store(self.recorder.samples(), Ordering::Relaxed);
+            self.counts.dropped.store(self.events.dropped(), Ordering::Relaxed);
+            match self.marks.try_recv() {
+                Ok(MarkRequest { at, text }) => {
                     self.recorder.mark(at, &text)?;
-                    self.shared.marks.fetch_add(1, Ordering::Relaxed);
+                    self.counts.marks.fetch_add(1, Ordering::Relaxed);
                 }
                 Err(TryRecvError::Empty) => {}
                 Err(TryRecvError::Disconnected) => return self.recorder.remaining_events(&self.events),

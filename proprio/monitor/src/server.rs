@@ -1,37 +1,20 @@
-//! What the server answers: the page, the feed, sessions, and what the page asks for.
-
-use std::sync::Arc;
+//! Routes of the server: the page, the feed, sessions and requests.
 
 use axum::Router;
 use axum::extract::{Request, State};
+use axum::http::Method;
 use axum::http::header::{
     CACHE_CONTROL, CONTENT_SECURITY_POLICY, CONTENT_TYPE, HeaderName, HeaderValue, X_CONTENT_TYPE_OPTIONS,
 };
-use axum::http::{Method, StatusCode};
 use axum::middleware::{self, Next};
 use axum::response::{IntoResponse, Response};
 use axum::routing::{get, post};
 
 use super::access::{Refused, check_host, check_origin};
-use super::error::Error;
-use super::shared::Shared;
+use super::app_state::AppState;
 use super::{actions, socket};
 
-/// What every handler sees.
-#[derive(Debug, Clone)]
-pub(super) struct Server {
-    pub shared: Arc<Shared>,
-    pub port: u16,
-}
-
-impl Server {
-    /// The answer to a request that failed: the error and its remedy, which the page shows.
-    pub fn failure(&self, error: &Error) -> Response {
-        (StatusCode::CONFLICT, format!("{error}: {}", (self.shared.help)(error))).into_response()
-    }
-}
-
-/// The page: its files as they are in this program.
+/// The files of the page, embedded in this program.
 const FILES: [(&str, &str, &str); 13] = [
     ("/", "text/html; charset=utf-8", include_str!("page/index.html")),
     ("/style.css", "text/css; charset=utf-8", include_str!("page/style.css")),
@@ -42,21 +25,22 @@ const FILES: [(&str, &str, &str); 13] = [
     ("/plot.js", SCRIPT, include_str!("page/plot.js")),
     ("/view.js", SCRIPT, include_str!("page/view.js")),
     ("/export.js", SCRIPT, include_str!("page/export.js")),
-    ("/facts.js", SCRIPT, include_str!("page/facts.js")),
+    ("/board_panel.js", SCRIPT, include_str!("page/board_panel.js")),
     ("/sensors.js", SCRIPT, include_str!("page/sensors.js")),
     ("/sessions.js", SCRIPT, include_str!("page/sessions.js")),
     ("/control.js", SCRIPT, include_str!("page/control.js")),
 ];
 const SCRIPT: &str = "text/javascript; charset=utf-8";
 
-/// Nothing from elsewhere, nothing inline, and no frame of another page around it, by which clicks could be stolen.
+/// Content security policy: no external and no inline content, and no frame of another page, which could steal clicks.
 const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; img-src 'self' data: blob:; \
                       frame-ancestors 'none'; base-uri 'none'; form-action 'none'";
 
 const HEADERS: [(HeaderName, &str); 3] =
     [(CONTENT_SECURITY_POLICY, POLICY), (X_CONTENT_TYPE_OPTIONS, "nosniff"), (CACHE_CONTROL, "no-store")];
 
-pub(super) fn router(server: Server) -> Router {
+/// The router with all paths of the server.
+pub(super) fn router(state: AppState) -> Router {
     let mut router = Router::new();
     for (path, kind, text) in FILES {
         router = router.route(path, get(move || async move { ([(CONTENT_TYPE, kind)], text) }));
@@ -70,16 +54,16 @@ pub(super) fn router(server: Server) -> Router {
         .route("/record", post(actions::record))
         .route("/mark", post(actions::mark))
         .route("/control", post(actions::control))
-        .layer(middleware::from_fn_with_state(server.clone(), guard))
-        .with_state(server)
+        .layer(middleware::from_fn_with_state(state.clone(), guard))
+        .with_state(state)
 }
 
-/// Every request passes here.
-async fn guard(State(server): State<Server>, request: Request, next: Next) -> Response {
+/// Checks the access of every request and adds headers to every response.
+async fn guard(State(state): State<AppState>, request: Request, next: Next) -> Response {
     let headers = request.headers();
-    let mut checked = check_host(headers, server.port).map(drop);
+    let mut checked = check_host(headers, state.port).map(drop);
     if request.method() != Method::GET || request.uri().path() == "/feed" {
-        checked = check_origin(headers, server.port);
+        checked = check_origin(headers, state.port);
     }
     let mut response = match checked {
         Ok(()) => next.run(request).await,

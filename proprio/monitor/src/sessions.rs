@@ -7,62 +7,62 @@ use std::sync::{Mutex, PoisonError};
 
 use calibration_tables::ArmFile;
 use estimator_core::Q;
-use proprio_session::{Mark, NamedTable, SessionReader};
+use proprio_session::{LoadedTable, Mark, SessionReader};
 use serde::Serialize;
 use tempfile::TempPath;
 
-use super::feed::Arm;
+use super::feed::ArmDescription;
 use super::history::History;
-use super::row::{self, Row};
-use super::shadow::Shadow;
+use super::host_replica::HostReplica;
+use super::page_row::{self, PageRow};
 use crate::error::Error;
 
-/// Files that can be opened, and what for.
+/// Sessions that can be opened.
 #[derive(Debug)]
 pub(super) struct Sessions {
-    /// Where recordings are written, and files found.
+    /// Folder of recordings and sessions.
     pub folder: PathBuf,
     table: Option<(PathBuf, ArmFile)>,
-    /// The one that the command was given.
+    /// The session that the command was given.
     given: Option<PathBuf>,
-    /// What browsers have sent, by name.
+    /// Files that browsers have sent, by name.
     sent: Mutex<BTreeMap<String, TempPath>>,
 }
 
 /// A file that can be opened.
 #[derive(Debug, Serialize)]
-pub(super) struct File {
+pub(super) struct SessionEntry {
     name: String,
     bytes: u64,
 }
 
-/// What is said of a session before its rows.
+/// Description of a session before its rows.
 #[derive(Debug, Serialize)]
 struct About {
-    arm: Arm,
-    /// Samples in the part that was asked for.
+    arm: ArmDescription,
+    /// Samples in the requested part.
     samples: u64,
-    /// Every how many-th of them is here.
+    /// Decimation: one of this number of samples is sent.
     every: u64,
-    /// Moments in it that were marked.
-    marks: Vec<Marked>,
+    /// Marks in it.
+    marks: Vec<PageMark>,
 }
 
-/// A moment that was marked.
+/// A mark, in the units of the page.
 #[derive(Debug, Serialize)]
-struct Marked {
+struct PageMark {
     time_s: f64,
     text: String,
 }
 
-impl From<&Mark> for Marked {
+impl From<&Mark> for PageMark {
     fn from(mark: &Mark) -> Self {
         Self { time_s: mark.time_us as f64 / 1e6, text: mark.text.clone() }
     }
 }
 
 impl Sessions {
-    pub fn new(folder: PathBuf, table: Option<&NamedTable>, given: Option<PathBuf>) -> Self {
+    pub fn new(folder: PathBuf, table: Option<&LoadedTable>, given: Option<PathBuf>) -> Self {
         let table = table.map(|table| (table.path.to_owned(), table.file.clone()));
         Self { folder, table, given, sent: Mutex::default() }
     }
@@ -72,24 +72,24 @@ impl Sessions {
         self.given.as_deref().and_then(Path::file_name).map(|name| name.to_string_lossy().into_owned())
     }
 
-    /// The table's file as it stands.
+    /// The text of the table's file.
     pub fn table_toml(&self) -> Result<Option<Vec<u8>>, Error> {
         Ok(self.table().map(|table| table.toml()).transpose()?)
     }
 
-    fn table(&self) -> Option<NamedTable<'_>> {
-        self.table.as_ref().map(|(path, file)| NamedTable { file: file.clone(), path })
+    fn table(&self) -> Option<LoadedTable<'_>> {
+        self.table.as_ref().map(|(path, file)| LoadedTable { file: file.clone(), path })
     }
 
     /// The files of the folder, by name.
-    pub fn list(&self) -> Vec<File> {
+    pub fn list(&self) -> Vec<SessionEntry> {
         let entries = fs::read_dir(&self.folder).into_iter().flatten().flatten();
         let file = |entry: fs::DirEntry| {
             let name = entry.file_name().into_string().ok().filter(|name| is_session(name))?;
             let bytes = entry.metadata().ok().filter(fs::Metadata::is_file)?.len();
-            Some(File { name, bytes })
+            Some(SessionEntry { name, bytes })
         };
-        let mut files: Vec<File> = entries.filter_map(file).collect();
+        let mut files: Vec<SessionEntry> = entries.filter_map(file).collect();
         files.sort_by(|a, b| a.name.cmp(&b.name));
         files
     }
@@ -99,7 +99,7 @@ impl Sessions {
         self.sent.lock().unwrap_or_else(PoisonError::into_inner).insert(name.to_owned(), file);
     }
 
-    /// The path of a file that may be opened: one that was sent, or of the folder and nowhere else.
+    /// The path of a file that may be opened: one that was sent, the given one, or one of the folder.
     pub fn path(&self, name: &str) -> Option<PathBuf> {
         let sent = self.sent.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(path) = sent.get(name) {
@@ -112,23 +112,23 @@ impl Sessions {
         Some(self.folder.join(name)).filter(|path| is_plain && is_session(name) && path.is_file())
     }
 
-    /// Replays a session, and gives its rows from one time to another, as many of them as a page holds.
+    /// Replays a session and returns its rows between two times, decimated to as many as a page holds.
     pub fn rows(&self, path: &Path, from_s: f64, to_s: f64) -> Result<Vec<u8>, Error> {
         let Some(table) = self.table() else { return Ok(Vec::new()) };
         let file = &table.file;
         let segments = file.segments.len();
-        let mut reader = SessionReader::open(path, &table.needs()?)?;
-        let baked = table.bake::<Q>(reader.rate_hz(file.rate_hz))?;
-        let baked = baked.config();
-        let mut shadow = Shadow::new(&baked);
-        let mut history = History::new(row::names(segments).len());
+        let mut reader = SessionReader::open(path, &table.required_columns()?)?;
+        let compiled = table.compile::<Q>(reader.rate_hz(file.rate_hz))?;
+        let compiled = compiled.config();
+        let mut replica = HostReplica::new(&compiled);
+        let mut history = History::new(page_row::names(segments).len());
         let (mut samples, mut every) = (0, 1);
         while let Some(read) = reader.next_row()? {
-            let mut row = Row::new(read.sample.time_us as f64 / 1e6, segments);
+            let mut row = PageRow::new(read.sample.time_us as f64 / 1e6, segments);
             if read.starts {
-                shadow.start();
+                replica.start();
             }
-            shadow.step(&read.sample, &mut row);
+            replica.step(&read.sample, &mut row);
             if let Some(estimate) = read.board.and_then(|board| board.estimate) {
                 row.set_estimate(&estimate.segments);
             }
@@ -148,13 +148,13 @@ impl Sessions {
             }
             samples += 1;
         }
-        let marks = reader.marks().iter().map(Marked::from).filter(|mark| (from_s..=to_s).contains(&mark.time_s));
+        let marks = reader.marks().iter().map(PageMark::from).filter(|mark| (from_s..=to_s).contains(&mark.time_s));
         let marks = marks.collect();
-        Ok(history.to_bytes(&About { arm: Arm::new(segments, Some(file)), samples, every, marks }))
+        Ok(history.to_bytes(&About { arm: ArmDescription::new(segments, Some(file)), samples, every, marks }))
     }
 }
 
-/// By the ending of its name.
+/// True for a name with the ending of a session.
 fn is_session(name: &str) -> bool {
     let extension = Path::new(name).extension();
     ["csv", "mcap", "bin"]

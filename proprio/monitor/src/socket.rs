@@ -6,29 +6,30 @@ use axum::response::Response;
 use serde::Deserialize;
 use tokio::sync::broadcast::error::RecvError;
 
+use super::app_state::AppState;
 use super::feed::Feed;
-use super::server::Server;
 
 /// Longest message of a page, bytes.
 const LONGEST: usize = 4096;
 
-/// What a page says.
+/// Report of a page.
 #[derive(Debug, Deserialize)]
 struct Shown {
-    /// [`newest_us`](super::feed::Batch::newest_us) of the batch that is on its screen.
+    /// [`newest_us`](super::feed::Batch::newest_us) of the batch on its screen.
     shown_us: u64,
 }
 
-pub(super) async fn feed(State(server): State<Server>, upgrade: WebSocketUpgrade) -> Response {
+/// Opens the feed to a page.
+pub(super) async fn feed(State(state): State<AppState>, upgrade: WebSocketUpgrade) -> Response {
     upgrade.max_message_size(LONGEST).on_upgrade(|socket| async move {
         // A page that leaves ends its feed.
-        let _ = serve(server, socket).await;
+        let _ = serve(state, socket).await;
     })
 }
 
-async fn serve(Server { shared, .. }: Server, mut socket: WebSocket) -> Result<(), axum::Error> {
-    let mut feed = shared.feed.subscribe();
-    socket.send(text(&Feed::Arm(&shared.arm))).await?;
+async fn serve(AppState { monitor, .. }: AppState, mut socket: WebSocket) -> Result<(), axum::Error> {
+    let mut feed = monitor.feed.subscribe();
+    socket.send(text(&Feed::Arm(&monitor.arm))).await?;
     loop {
         tokio::select! {
             message = feed.recv() => match message {
@@ -36,13 +37,13 @@ async fn serve(Server { shared, .. }: Server, mut socket: WebSocket) -> Result<(
                 Err(RecvError::Lagged(messages)) => socket.send(text(&Feed::Skipped { messages })).await?,
                 Err(RecvError::Closed) => return Ok(()),
             },
-            said = socket.recv() => {
-                let Some(said) = said.transpose()? else { return Ok(()) };
-                if let Message::Text(said) = said
-                    && let Ok(Shown { shown_us }) = serde_json::from_str(&said)
+            report = socket.recv() => {
+                let Some(report) = report.transpose()? else { return Ok(()) };
+                if let Message::Text(report) = report
+                    && let Ok(Shown { shown_us }) = serde_json::from_str(&report)
                 {
-                    let now_us = shared.clock.now().0 / 1000;
-                    shared.latency().push(now_us.saturating_sub(shown_us));
+                    let now_us = monitor.clock.now().0 / 1000;
+                    monitor.latency().push(now_us.saturating_sub(shown_us));
                 }
             }
         }

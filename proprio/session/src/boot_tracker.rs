@@ -1,36 +1,36 @@
-//! One run of a board after the other.
+//! Detection of a board's restarts in its stream.
 
-/// Ticks that a stream may go back without a restart, 1 s: a piece of it may come twice.
+/// Ticks that a stream may go back without a restart, 1 s: a piece of it may arrive twice.
 const REPEATED: u32 = 100;
 
-/// Tells the runs of a board apart: by the number of the boot in its `Hello`, and by ticks that begin anew, as after a
-/// power cut boots are numbered from 1 again.
+/// Detects restarts of a board: by the boot number in its `Hello`, and by ticks that go back, as boots are numbered from 1
+/// again after a power cut.
 #[derive(Debug, Default)]
 pub struct BootTracker {
     boot: Option<u32>,
     tick: Option<u32>,
-    /// The line was opened since the last sample: what comes now has not come before.
+    /// The line was opened since the last sample: the next one is no repetition.
     is_opened: bool,
 }
 
-/// Where a sample stands in the stream.
+/// Relation of a sample to those before it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Continuity {
-    /// Behind the others.
+    /// After the others.
     Next,
-    /// It has come already.
+    /// Received before.
     Duplicate,
-    /// In another run.
+    /// After a restart of the board.
     Restarted,
 }
 
 impl BootTracker {
-    /// The line is opened (again).
+    /// Notes that the line was opened (again).
     pub fn opened(&mut self) {
         self.is_opened = true;
     }
 
-    /// Takes a `Hello`'s boot; says whether it is of another run.
+    /// Takes the boot number of a `Hello`; returns true where the board has restarted.
     pub fn hello(&mut self, boot: u32) -> bool {
         let restarted = self.boot.is_some_and(|before| before != boot);
         if restarted {
@@ -40,19 +40,19 @@ impl BootTracker {
         restarted
     }
 
-    /// Takes a sample's tick.
+    /// Takes the tick of a sample.
     pub fn sample(&mut self, tick: u32) -> Continuity {
         let may_repeat = !std::mem::take(&mut self.is_opened);
-        let place = match self.tick {
+        let continuity = match self.tick {
             Some(last) if may_repeat && tick <= last && last - tick < REPEATED => return Continuity::Duplicate,
             Some(last) if tick <= last => Continuity::Restarted,
             _ => Continuity::Next,
         };
-        if place == Continuity::Restarted {
-            // The next `Hello`, whatever its boot, is of this run.
+        if continuity == Continuity::Restarted {
+            // The next `Hello` is of this run, with any boot number.
             self.boot = None;
         }
         self.tick = Some(tick);
-        place
+        continuity
     }
 }

@@ -1,4 +1,4 @@
-//! Reads what a camera saw: markers' poses, a row a frame, by the camera's own clock.
+//! Reads a camera's file: poses of markers, one row per frame, by the camera's own clock.
 
 use std::path::Path;
 
@@ -6,12 +6,12 @@ use calibration_tables::MAX_SEGMENTS;
 
 use crate::columns::CameraColumns;
 use crate::csv_file::CsvFile;
-use crate::source::Source;
-use crate::{Pose, Problem, SessionError, cell};
+use crate::source::SessionFile;
+use crate::{Pose, SessionError, SessionProblem, cell};
 
-/// One frame. Poses are in the camera's frame; `None` where a marker was not seen.
+/// One image of the camera. Poses are in the camera's frame; `None` where a marker was not seen.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Frame {
+pub struct CameraFrame {
     /// Time by the camera's clock, s.
     pub time_s: f64,
     /// The base's marker.
@@ -20,7 +20,7 @@ pub struct Frame {
     pub ends: [Option<Pose>; MAX_SEGMENTS],
 }
 
-/// A camera's file that is being read.
+/// Reader of a camera's file.
 pub struct CameraReader {
     file: CsvFile,
     columns: CameraColumns,
@@ -33,24 +33,24 @@ impl CameraReader {
     /// # Errors
     /// Any [`SessionError`] of the header.
     pub fn open(path: &Path, segments: usize) -> Result<Self, SessionError> {
-        let file = CsvFile::new(Source::open(path)?)?;
+        let file = CsvFile::new(SessionFile::open(path)?)?;
         let columns = CameraColumns::find(file.names(), segments).map_err(|problem| file.header_error(problem))?;
         Ok(Self { file, columns, last_time_s: f64::NEG_INFINITY })
     }
 
-    /// Whether there are columns of the base's marker.
+    /// True where there are columns of the base's marker.
     #[must_use]
     pub fn has_base(&self) -> bool {
         self.columns.base.is_some()
     }
 
-    /// Whether the last line is ended; if not, its last number may have been cut.
+    /// True where the last line has a line end; otherwise its last number may be cut.
     #[must_use]
     pub fn ends_with_line(&self) -> bool {
         self.file.ends_with_line()
     }
 
-    /// How far the file was read, and its size, in bytes.
+    /// Position in the file and its size, bytes.
     #[must_use]
     pub fn progress(&self) -> (u64, u64) {
         self.file.progress()
@@ -60,13 +60,13 @@ impl CameraReader {
     ///
     /// # Errors
     /// Any [`SessionError`] of a row.
-    pub fn next_frame(&mut self) -> Result<Option<Frame>, SessionError> {
+    pub fn next_frame(&mut self) -> Result<Option<CameraFrame>, SessionError> {
         if !self.file.advance()? {
             return Ok(None);
         }
         let time_s = self.file.cell(self.columns.time, cell::clock_s)?;
         if time_s < self.last_time_s {
-            let problem = Problem::Backwards { from_s: self.last_time_s, to_s: time_s };
+            let problem = SessionProblem::Backwards { from_s: self.last_time_s, to_s: time_s };
             return Err(self.file.cell_error(self.columns.time, problem));
         }
         self.last_time_s = time_s;
@@ -75,6 +75,6 @@ impl CameraReader {
         for (end, columns) in ends.iter_mut().zip(&self.columns.ends) {
             *end = self.file.pose(*columns)?;
         }
-        Ok(Some(Frame { time_s, base, ends }))
+        Ok(Some(CameraFrame { time_s, base, ends }))
     }
 }

@@ -1,4 +1,4 @@
-//! When bytes came.
+//! The host's clock.
 
 use std::time::{Instant, SystemTime, UNIX_EPOCH};
 
@@ -6,7 +6,7 @@ use std::time::{Instant, SystemTime, UNIX_EPOCH};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct HostNs(pub u64);
 
-/// The host's clock: set once, and then even, so that no time goes backwards when the system's clock is set.
+/// The host's clock: set by the system's clock once and monotonic from then on, also when the system's clock is set.
 #[derive(Debug, Clone, Copy)]
 pub struct HostClock {
     start: Instant,
@@ -14,7 +14,7 @@ pub struct HostClock {
 }
 
 impl HostClock {
-    /// Set by the system's clock.
+    /// A clock that is set by the system's clock.
     #[must_use]
     pub fn new() -> Self {
         let since_1970 = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();

@@ -1,11 +1,11 @@
-//! The header: which column holds what.
+//! The columns of a header.
 
 use std::collections::HashMap;
 
 use estimator_core::SENSORS_PER_SEGMENT;
 use telemetry::REGULATORS;
 
-use crate::{Needs, Problem};
+use crate::{RequiredColumns, SessionProblem};
 
 /// A column and the factor from its unit to m or rad.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -14,7 +14,7 @@ pub(crate) struct Column {
     pub factor: f64,
 }
 
-/// Where one IMU's reading stands.
+/// Columns of one IMU's reading.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum ImuColumn {
     /// One cell.
@@ -23,7 +23,7 @@ pub(crate) enum ImuColumn {
     Quaternion([usize; 4]),
 }
 
-/// Where the readings of one segment stand.
+/// Columns of one segment's readings.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct SegmentColumns {
     pub bend: [Option<usize>; SENSORS_PER_SEGMENT],
@@ -31,12 +31,12 @@ pub(crate) struct SegmentColumns {
     pub truth: Option<TruthColumns>,
 }
 
-/// Where the truth of one segment stands.
+/// Columns of one segment's truth.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct TruthColumns {
     pub x: Column,
     pub y: Column,
-    /// Of all segments or of none.
+    /// Column of the heading, for all segments or for none.
     pub heading: Option<Column>,
 }
 
@@ -46,26 +46,26 @@ impl From<[Column; 3]> for TruthColumns {
     }
 }
 
-/// Where everything stands.
+/// Columns of a session.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Columns {
     pub time: usize,
-    /// Number that changes where the estimator starts anew.
+    /// Number that changes where the estimator is started again.
     pub tare: Option<usize>,
     pub segments: Vec<SegmentColumns>,
 }
 
-/// Where everything stands in a camera's file.
+/// Columns of a camera's file.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct CameraColumns {
     pub time: usize,
     /// x, y and heading of each segment's end.
     pub ends: Vec<[Column; 3]>,
-    /// Those of the base's marker.
+    /// x, y and heading of the base's marker.
     pub base: Option<[Column; 3]>,
 }
 
-/// Where everything stands in a profile of pressures.
+/// Columns of a profile of pressures.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct PressureColumns {
     pub time: usize,
@@ -87,7 +87,7 @@ struct Places<'h> {
 
 impl Columns {
     /// Finds the columns that are needed. Unknown ones are ignored; those of a segment beyond the last are refused.
-    pub fn find(names: &[String], needs: &Needs) -> Result<Self, Problem> {
+    pub fn find(names: &[String], needs: &RequiredColumns) -> Result<Self, SessionProblem> {
         let header = Places::of(names, needs.bend.len())?;
         let time = header.required("time_s")?;
         let has_headings = needs.truth || (1..=needs.bend.len()).any(|i| header.truth_heading(i).is_ok());
@@ -105,7 +105,7 @@ impl Columns {
 
 impl CameraColumns {
     /// Finds the columns of an arm of `segments` segments, all of which are needed, and of the base where it has any.
-    pub fn find(names: &[String], segments: usize) -> Result<Self, Problem> {
+    pub fn find(names: &[String], segments: usize) -> Result<Self, SessionProblem> {
         let header = Places::of(names, segments)?;
         Ok(Self {
             time: header.required("time_s")?,
@@ -117,7 +117,7 @@ impl CameraColumns {
 
 impl PressureColumns {
     /// Finds the columns of all regulators.
-    pub fn find(names: &[String]) -> Result<Self, Problem> {
+    pub fn find(names: &[String]) -> Result<Self, SessionProblem> {
         let header = Places::of(names, 0)?;
         let time = header.required("time_s")?;
         let regulator = |i: usize| header.in_unit(&format!("pressure{}", i + 1), [("kpa", 1e3), ("pa", 1.0)]);
@@ -128,16 +128,16 @@ impl PressureColumns {
 
 impl<'h> Places<'h> {
     /// Refuses columns that are there twice and those of a segment beyond the last.
-    fn of(names: &'h [String], segments: usize) -> Result<Self, Problem> {
+    fn of(names: &'h [String], segments: usize) -> Result<Self, SessionProblem> {
         let mut places = HashMap::new();
         for (index, name) in names.iter().enumerate() {
             let segment = segment_of(name);
             let is_known = segment.is_some() || is_base(name) || is_pressure(name);
             if places.insert(name.as_str(), index).is_some() && is_known {
-                return Err(Problem::DuplicateColumn(name.clone()));
+                return Err(SessionProblem::DuplicateColumn(name.clone()));
             }
             if let Some(segment) = segment.filter(|segment| *segment > segments) {
-                return Err(Problem::OtherArm { column: name.clone(), segment, segments });
+                return Err(SessionProblem::OtherArm { column: name.clone(), segment, segments });
             }
         }
         Ok(Self { places })
@@ -147,28 +147,32 @@ impl<'h> Places<'h> {
         self.places.get(name).copied()
     }
 
-    fn required(&self, name: &str) -> Result<usize, Problem> {
-        self.optional(name).ok_or_else(|| Problem::MissingColumn(name.to_owned()))
+    fn required(&self, name: &str) -> Result<usize, SessionProblem> {
+        self.optional(name).ok_or_else(|| SessionProblem::MissingColumn(name.to_owned()))
     }
 
     /// The column `name` in the first of the units that is there.
-    fn in_unit(&self, name: &str, units: [(&str, f64); 2]) -> Result<Column, Problem> {
+    fn in_unit(&self, name: &str, units: [(&str, f64); 2]) -> Result<Column, SessionProblem> {
         let found = |(unit, factor): &(&str, f64)| {
             self.optional(&format!("{name}_{unit}")).map(|index| Column { index, factor: *factor })
         };
         let [(first, _), _] = units;
-        units.iter().find_map(found).ok_or_else(|| Problem::MissingColumn(format!("{name}_{first}")))
+        units.iter().find_map(found).ok_or_else(|| SessionProblem::MissingColumn(format!("{name}_{first}")))
     }
 
-    fn length(&self, name: &str) -> Result<Column, Problem> {
+    fn length(&self, name: &str) -> Result<Column, SessionProblem> {
         self.in_unit(name, [("mm", 1e-3), ("m", 1.0)])
     }
 
-    fn angle(&self, name: &str) -> Result<Column, Problem> {
+    fn angle(&self, name: &str) -> Result<Column, SessionProblem> {
         self.in_unit(name, [("deg", std::f64::consts::PI / 180.0), ("rad", 1.0)])
     }
 
-    fn bend(&self, segment: usize, sensors: Option<usize>) -> Result<[Option<usize>; SENSORS_PER_SEGMENT], Problem> {
+    fn bend(
+        &self,
+        segment: usize,
+        sensors: Option<usize>,
+    ) -> Result<[Option<usize>; SENSORS_PER_SEGMENT], SessionProblem> {
         let mut columns = [None; SENSORS_PER_SEGMENT];
         for (j, (column, sensor)) in columns.iter_mut().zip(SENSOR_NAMES).enumerate() {
             let name = format!("bend{segment}{sensor}_adc");
@@ -182,7 +186,7 @@ impl<'h> Places<'h> {
     }
 
     /// The quaternion where there is one, as it is the finer reading.
-    fn imu(&self, segment: usize) -> Result<ImuColumn, Problem> {
+    fn imu(&self, segment: usize) -> Result<ImuColumn, SessionProblem> {
         let part = |part: &str| format!("imu{segment}_q{part}");
         if self.optional(&part("w")).is_none() {
             return Ok(ImuColumn::Heading(self.angle(&format!("imu{segment}"))?));
@@ -191,29 +195,29 @@ impl<'h> Places<'h> {
         Ok(ImuColumn::Quaternion([w?, x?, y?, z?]))
     }
 
-    fn truth_heading(&self, segment: usize) -> Result<Column, Problem> {
+    fn truth_heading(&self, segment: usize) -> Result<Column, SessionProblem> {
         self.angle(&format!("truth{segment}_heading"))
     }
 
     /// A true place without a heading, where there is one.
-    fn place(&self, segment: usize) -> Result<Option<TruthColumns>, Problem> {
+    fn place(&self, segment: usize) -> Result<Option<TruthColumns>, SessionProblem> {
         match ["x", "y"].map(|part| self.length(&format!("truth{segment}_{part}"))) {
             [Err(_), Err(_)] => Ok(None),
             [x, y] => Ok(Some(TruthColumns { x: x?, y: y?, heading: None })),
         }
     }
 
-    fn truth(&self, segment: usize) -> Result<[Column; 3], Problem> {
+    fn truth(&self, segment: usize) -> Result<[Column; 3], SessionProblem> {
         self.pose(&format!("truth{segment}"))
     }
 
-    fn pose(&self, of: &str) -> Result<[Column; 3], Problem> {
+    fn pose(&self, of: &str) -> Result<[Column; 3], SessionProblem> {
         let name = |part: &str| format!("{of}_{part}");
         Ok([self.length(&name("x"))?, self.length(&name("y"))?, self.angle(&name("heading"))?])
     }
 }
 
-/// The segment that a known column belongs to; 0 for those of the whole arm, `None` for a column that is none of ours.
+/// The segment of a column; 0 for columns of the whole arm, `None` for an unknown column.
 pub(crate) fn segment_of(name: &str) -> Option<usize> {
     if name == "time_s" || name == TARE {
         return Some(0);
@@ -229,17 +233,17 @@ pub(crate) fn segment_of(name: &str) -> Option<usize> {
     digits.parse().ok().filter(|_| known.contains(&rest))
 }
 
-/// Whether a column is of the truth.
+/// True for a column of the truth.
 pub(crate) fn is_truth(name: &str) -> bool {
     name.starts_with("truth") && segment_of(name).is_some()
 }
 
-/// Whether a column is of the base's marker.
+/// True for a column of the base's marker.
 fn is_base(name: &str) -> bool {
     name.strip_prefix("base_").is_some_and(|part| POSE_PARTS.contains(&part))
 }
 
-/// Whether a column is of a regulator's pressure.
+/// True for a column of a regulator's pressure.
 fn is_pressure(name: &str) -> bool {
     let part = name.strip_prefix("pressure").and_then(|part| part.split_once('_'));
     part.is_some_and(|(digits, unit)| digits.parse::<usize>().is_ok() && ["kpa", "pa"].contains(&unit))

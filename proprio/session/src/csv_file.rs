@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 use csv::StringRecord;
 
 use crate::columns::{Column, TruthColumns};
-use crate::source::Source;
-use crate::{Pose, Problem, SessionError, Truth, cell};
+use crate::source::SessionFile;
+use crate::{Pose, SessionError, SessionProblem, Truth, cell};
 
 /// A CSV file that is being read, at one of its rows.
 pub(crate) struct CsvFile {
@@ -22,14 +22,14 @@ pub(crate) struct CsvFile {
 
 impl CsvFile {
     /// Reads the header.
-    pub fn new(mut source: Source) -> Result<Self, SessionError> {
+    pub fn new(mut source: SessionFile) -> Result<Self, SessionError> {
         let (path, size_bytes, ends_with_line) = (source.path.clone(), source.size_bytes, source.ends_with_line()?);
         let mut csv = csv::ReaderBuilder::new().buffer_capacity(1 << 16).from_reader(source.into_bytes()?);
         let header = csv.headers().map_err(|error| csv_error(&path, error))?;
         let names: Vec<String> = header.iter().map(|name| name.trim().to_owned()).collect();
         let has_header = !header.iter().all(str::is_empty);
         let file = Self { path, size_bytes, names, csv, record: StringRecord::new(), ends_with_line };
-        if has_header { Ok(file) } else { Err(file.error(Problem::NoHeader)) }
+        if has_header { Ok(file) } else { Err(file.error(SessionProblem::NoHeader)) }
     }
 
     /// Names of the columns.
@@ -41,7 +41,7 @@ impl CsvFile {
         self.ends_with_line
     }
 
-    /// How far the file was read, and its size, in bytes.
+    /// Position in the file and its size, bytes.
     pub fn progress(&self) -> (u64, u64) {
         (self.csv.position().byte(), self.size_bytes)
     }
@@ -51,8 +51,8 @@ impl CsvFile {
         self.csv.read_record(&mut self.record).map_err(|error| csv_error(&self.path, error))
     }
 
-    /// What `parse` makes of a cell of this row.
-    pub fn cell<T>(&self, index: usize, parse: impl Fn(&str) -> Result<T, Problem>) -> Result<T, SessionError> {
+    /// A cell of this row, parsed by `parse`.
+    pub fn cell<T>(&self, index: usize, parse: impl Fn(&str) -> Result<T, SessionProblem>) -> Result<T, SessionError> {
         parse(self.record.get(index).unwrap_or_default()).map_err(|problem| self.cell_error(index, problem))
     }
 
@@ -74,24 +74,24 @@ impl CsvFile {
             }
             _ => {
                 let columns = [x, y, heading.unwrap_or(x)];
-                Err(self.cell_error(columns[first_empty(&parts)].index, Problem::PartialTruth))
+                Err(self.cell_error(columns[first_empty(&parts)].index, SessionProblem::PartialTruth))
             }
         }
     }
 
     /// A problem of a cell of this row.
-    pub fn cell_error(&self, index: usize, problem: Problem) -> SessionError {
+    pub fn cell_error(&self, index: usize, problem: SessionProblem) -> SessionError {
         let line = self.record.position().map(|position| line_at(&self.path, position));
         SessionError { path: self.path.clone(), line, column: self.names.get(index).cloned(), problem }
     }
 
     /// A problem of the header.
-    pub fn header_error(&self, problem: Problem) -> SessionError {
+    pub fn header_error(&self, problem: SessionProblem) -> SessionError {
         SessionError { line: Some(1), ..self.error(problem) }
     }
 
     /// A problem of the whole file.
-    pub fn error(&self, problem: Problem) -> SessionError {
+    pub fn error(&self, problem: SessionProblem) -> SessionError {
         SessionError { path: self.path.clone(), line: None, column: None, problem }
     }
 }
@@ -128,12 +128,12 @@ fn csv_error(path: &Path, error: csv::Error) -> SessionError {
     let problem = match error.into_kind() {
         csv::ErrorKind::Io(error) => {
             line = None;
-            Problem::Read(error)
+            SessionProblem::Read(error)
         }
         csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
-            Problem::RowLength { found: len, expected: expected_len }
+            SessionProblem::RowLength { found: len, expected: expected_len }
         }
-        _ => Problem::NotText,
+        _ => SessionProblem::NotText,
     };
     SessionError { path: path.to_owned(), line, column: None, problem }
 }

@@ -5,7 +5,7 @@ use estimator_core::{ImuReading, Sample};
 
 use crate::columns::{Column, Columns, ImuColumn, is_truth};
 use crate::csv_file::{CsvFile, first_empty};
-use crate::{Needs, Problem, Row, SessionError, cell};
+use crate::{RequiredColumns, Row, SessionError, SessionProblem, cell};
 
 /// A CSV file that is read row by row.
 pub(crate) struct CsvRows {
@@ -18,12 +18,12 @@ pub(crate) struct CsvRows {
 
 impl CsvRows {
     /// Finds the columns.
-    pub fn new(file: CsvFile, needs: &Needs) -> Result<Self, SessionError> {
+    pub fn new(file: CsvFile, needs: &RequiredColumns) -> Result<Self, SessionError> {
         let columns = Columns::find(file.names(), needs).map_err(|problem| file.header_error(problem))?;
         Ok(Self { file, columns, last_time_us: 0, has_started: false, last_tare: None })
     }
 
-    /// Which bend sensors of each segment it has.
+    /// Presence of the bend sensors of each segment.
     pub fn bend_sensors(&self) -> Vec<[bool; 2]> {
         self.columns.segments.iter().map(|segment| segment.bend.map(|column| column.is_some())).collect()
     }
@@ -37,7 +37,7 @@ impl CsvRows {
         self.file.ends_with_line()
     }
 
-    /// How far the file was read, in bytes.
+    /// Position in the file, bytes.
     pub fn position(&self) -> u64 {
         self.file.progress().0
     }
@@ -50,7 +50,7 @@ impl CsvRows {
         let time_us = self.file.cell(self.columns.time, cell::time_us)?;
         if time_us < self.last_time_us {
             let (from_s, to_s) = (self.last_time_us as f64 / 1e6, time_us as f64 / 1e6);
-            return Err(self.file.cell_error(self.columns.time, Problem::Backwards { from_s, to_s }));
+            return Err(self.file.cell_error(self.columns.time, SessionProblem::Backwards { from_s, to_s }));
         }
         self.last_time_us = time_us;
         let tare = self.columns.tare.map_or(Ok(None), |column| self.file.cell(column, cell::tare))?;

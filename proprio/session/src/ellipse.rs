@@ -2,20 +2,20 @@
 
 use serde::Serialize;
 
-/// χ² of two degrees of freedom that 95 % are within.
+/// 95 % quantile of the χ² distribution with two degrees of freedom.
 pub const CHI2_2_95: f64 = 5.991;
 
-/// The ellipse about an estimated point that the true one is in, 95 times of a hundred.
+/// The ellipse about an estimated point that contains the true one with a probability of 95 %.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Ellipse {
-    /// Its longer semi-axis.
+    /// Its longer semi-axis, mm.
     pub major_mm: f64,
-    /// Its shorter semi-axis.
+    /// Its shorter semi-axis, mm.
     pub minor_mm: f64,
 }
 
 impl Ellipse {
-    /// Of a point with the covariance xx, xy, yy in m².
+    /// The ellipse of a point with the covariance xx, xy, yy in m².
     ///
     /// ```
     /// use proprio_session::Ellipse;

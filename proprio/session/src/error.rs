@@ -36,7 +36,7 @@ pub enum Error {
     #[error("{}: is there already, and a recording cannot be had again", .0.display())]
     Exists(PathBuf),
     /// A name without the ending of a kind of file.
-    #[error("{}: ends with none of .csv, .mcap and .bin, which tell what to write", .0.display())]
+    #[error("{}: ends with none of .csv, .mcap and .bin, which select the format", .0.display())]
     OutputKind(PathBuf),
     /// A conversion to the kind of the input.
     #[error("{}: is of this kind already", .0.display())]

@@ -1,4 +1,4 @@
-//! What a session is, before anything is known of its arm.
+//! Format and size of a session, before its arm is known.
 
 use std::path::Path;
 
@@ -6,14 +6,14 @@ use telemetry::SEGMENTS;
 
 use crate::columns::segment_of;
 use crate::csv_file::CsvFile;
-use crate::source::{Kind, Source};
-use crate::{Problem, SessionError};
+use crate::source::{FileFormat, SessionFile};
+use crate::{SessionError, SessionProblem};
 
-/// What can be told of a session by its begin.
+/// The begin of a session.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Header {
-    /// What the file is.
-    pub kind: Kind,
+    /// Format of the file.
+    pub kind: FileFormat,
     /// Segments of a CSV, by its columns; those of a board otherwise.
     pub segments: usize,
     /// Columns of a CSV that a session does not have.
@@ -24,14 +24,14 @@ impl Header {
     /// Reads the begin of a file.
     ///
     /// # Errors
-    /// Any [`SessionError`] of the header, and [`Problem::NotAFile`] of a pipe, whose begin would be gone.
+    /// Any [`SessionError`] of the header, and [`SessionProblem::NotAFile`] of a pipe, whose begin would be gone.
     pub fn of(path: &Path) -> Result<Self, SessionError> {
-        let source = Source::open(path)?;
+        let source = SessionFile::open(path)?;
         if !source.is_regular_file {
-            return Err(source.error(Problem::NotAFile));
+            return Err(source.error(SessionProblem::NotAFile));
         }
         let kind = source.kind;
-        if kind != Kind::Csv {
+        if kind != FileFormat::Csv {
             return Ok(Self { kind, segments: SEGMENTS, unknown: Vec::new() });
         }
         let file = CsvFile::new(source)?;

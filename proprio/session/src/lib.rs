@@ -1,22 +1,23 @@
-//! Sessions of an arm: CSV, a row a sample, units in the column names, an empty cell for a missing reading; or a board's
-//! recording.
+//! Sessions of an arm: CSV with one row per sample, units in the column names and an empty cell for a missing reading; or a
+//! board's recording.
 //!
 //! | file or folder | purpose |
 //! |---|---|
-//! | `row.rs`, `needs.rs`, `table.rs` | a row; the columns that a table needs of it; a table with its path |
+//! | `row.rs`, `required_columns.rs`, `table.rs` | a row; the columns that a table needs of it; a table with its path |
 //! | `reader.rs` | [`SessionReader`]: the rows of a session of any kind |
 //! | `csv_file.rs`, `csv_rows.rs`, `columns.rs`, `cell.rs`, `header.rs`, `source.rs` | CSV files |
 //! | `camera.rs`, `pressures.rs` | a camera's poses; pressures over time |
-//! | `recording/` | MCAP: written, read, recovered; rows from a board's bytes |
+//! | `row_assembler.rs` | [`RowAssembler`]: rows from the messages of a board, recorded or live |
+//! | `recording/` | MCAP: written, read, recovered |
 //! | `convert/` | conversion from one kind to another |
-//! | `clock.rs`, `board_clock.rs`, `boot_tracker.rs` | time of arrival; the board's time on the host's clock; restarts of a board |
+//! | `clock.rs`, `clock_sync.rs`, `boot_tracker.rs` | time of arrival; the board's time on the host's clock; restarts of a board |
 //! | `duration.rs`, `output.rs`, `progress.rs`, `ellipse.rs` | range of durations; files that are complete or absent; progress of long work; the 95 % ellipse |
 
-mod board_clock;
 mod boot_tracker;
 mod camera;
 mod cell;
 mod clock;
+mod clock_sync;
 mod columns;
 pub mod convert;
 mod csv_file;
@@ -25,36 +26,38 @@ mod duration;
 mod ellipse;
 mod error;
 mod header;
-mod needs;
 mod output;
 mod pressures;
 mod progress;
 mod reader;
 pub mod recording;
+mod required_columns;
 mod row;
+mod row_assembler;
 mod session_error;
 mod source;
 mod table;
 mod version;
 
-pub use board_clock::{BoardClock, Drift};
 pub use boot_tracker::{BootTracker, Continuity};
-pub use camera::{CameraReader, Frame};
+pub use camera::{CameraFrame, CameraReader};
 pub use clock::{HostClock, HostNs};
+pub use clock_sync::{ClockDrift, ClockSync};
 pub use columns::{SENSOR_NAMES, TARE};
 pub use duration::{DurationError, check_seconds};
 pub use ellipse::{CHI2_2_95, Ellipse};
 pub use error::Error;
 pub use header::Header;
-pub use needs::Needs;
 pub use output::{OutputFile, discard_unfinished};
-pub use pressures::{Moment, read_pressures};
+pub use pressures::{PressurePoint, read_pressures};
 pub use progress::{NoProgress, Progress};
 pub use reader::SessionReader;
-pub use row::{Mark, OnBoard, Pose, Row, Truth};
-pub use session_error::{Problem, SessionError};
-pub use source::Kind;
-pub use table::NamedTable;
+pub use required_columns::RequiredColumns;
+pub use row::{BoardOutput, Mark, Pose, Row, Truth};
+pub use row_assembler::RowAssembler;
+pub use session_error::{SessionError, SessionProblem};
+pub use source::FileFormat;
+pub use table::LoadedTable;
 pub use version::is_version_0_1;
 
 /// Warning about a file whose last line has no line end.

@@ -1,4 +1,4 @@
-//! Files that are there whole or not at all.
+//! Output files that are complete or absent.
 
 use std::fs;
 use std::io::{self, BufWriter, Write};
@@ -9,9 +9,9 @@ use tempfile::NamedTempFile;
 
 use crate::Error;
 
-/// A file that is written aside and takes its name when it is complete.
+/// An output file that is written under a temporary name and renamed when it is complete.
 ///
-/// A pipe or device that has the name already is written to directly: it has no place aside.
+/// A pipe or device of that name is written to directly.
 pub struct OutputFile {
     path: PathBuf,
     sink: Sink,
@@ -23,8 +23,8 @@ enum Sink {
 }
 
 impl OutputFile {
-    /// Begins a file that is to be named `path`; what has that name stays until [`OutputFile::finish`]. It must not be
-    /// one of the `inputs` that it is made of: a recording cannot be had again.
+    /// Begins a file that is to be named `path`; an existing file of that name stays until [`OutputFile::finish`]. It must
+    /// not be one of the `inputs` that it is made from: a recording cannot be made again.
     ///
     /// # Errors
     /// [`Error::Overwrite`], and [`Error::Output`] where the folder does not exist or cannot be written to.
@@ -42,7 +42,7 @@ impl OutputFile {
     /// Completes the file and gives it its name.
     ///
     /// # Errors
-    /// [`Error::Output`] where the disk is full or the name cannot be taken; nothing is left behind.
+    /// [`Error::Output`] where the disk is full or the file cannot be renamed; no temporary file is left.
     pub fn finish(self) -> Result<(), Error> {
         let path = self.path;
         self.sink.finish(&path).map_err(|source| Error::Output { path, source })
@@ -55,17 +55,17 @@ impl OutputFile {
     }
 }
 
-/// Files that wait for their names.
+/// Temporary files of unfinished outputs.
 static UNFINISHED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
 fn unfinished() -> MutexGuard<'static, Vec<PathBuf>> {
     UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Removes what was begun and not finished, for a program that is interrupted.
+/// Removes the temporary files of unfinished outputs, for a program that is interrupted.
 pub fn discard_unfinished() {
     for path in unfinished().drain(..) {
-        // One that has its name by now is no longer there, and that is well.
+        // A file that was renamed meanwhile no longer has this name.
         let _ = fs::remove_file(path);
     }
 }

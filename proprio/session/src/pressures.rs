@@ -1,4 +1,4 @@
-//! Reads a profile: pressures of all regulators over time, a row a moment.
+//! Reads a profile: pressures of all regulators over time, one row per point.
 
 use std::path::Path;
 
@@ -6,37 +6,37 @@ use telemetry::REGULATORS;
 
 use crate::columns::{Column, PressureColumns};
 use crate::csv_file::CsvFile;
-use crate::source::Source;
-use crate::{Problem, SessionError, cell};
+use crate::source::SessionFile;
+use crate::{SessionError, SessionProblem, cell};
 
 /// The pressures at one time.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Moment {
+pub struct PressurePoint {
     /// Time since the begin, s.
     pub time_s: f64,
     /// Pressure of each regulator over the atmosphere's, Pa.
     pub pressures_pa: [f64; REGULATORS],
 }
 
-/// All moments of a profile, in the order of time; at least one.
+/// All points of a profile, in the order of time; at least one.
 ///
 /// # Errors
 /// [`SessionError`], with the line and the column.
-pub fn read_pressures(path: &Path) -> Result<Vec<Moment>, SessionError> {
-    let mut file = CsvFile::new(Source::open(path)?)?;
+pub fn read_pressures(path: &Path) -> Result<Vec<PressurePoint>, SessionError> {
+    let mut file = CsvFile::new(SessionFile::open(path)?)?;
     let columns = PressureColumns::find(file.names()).map_err(|problem| file.header_error(problem))?;
-    let mut moments: Vec<Moment> = Vec::new();
+    let mut points: Vec<PressurePoint> = Vec::new();
     while file.advance()? {
         let time_s = file.cell(columns.time, cell::time_us)? as f64 / 1e6;
-        if let Some(last) = moments.last().filter(|last| time_s < last.time_s) {
-            let problem = Problem::Backwards { from_s: last.time_s, to_s: time_s };
+        if let Some(last) = points.last().filter(|last| time_s < last.time_s) {
+            let problem = SessionProblem::Backwards { from_s: last.time_s, to_s: time_s };
             return Err(file.cell_error(columns.time, problem));
         }
         let mut pressures_pa = [0.0; REGULATORS];
         for (pressure_pa, Column { index, factor }) in pressures_pa.iter_mut().zip(columns.regulators) {
             *pressure_pa = file.cell(index, |text| cell::pressure_pa(text, factor))?;
         }
-        moments.push(Moment { time_s, pressures_pa });
+        points.push(PressurePoint { time_s, pressures_pa });
     }
-    if moments.is_empty() { Err(file.error(Problem::NoMoments)) } else { Ok(moments) }
+    if points.is_empty() { Err(file.error(SessionProblem::NoMoments)) } else { Ok(points) }
 }

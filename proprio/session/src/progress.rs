@@ -1,11 +1,11 @@
-//! Progress of long work, reported to whoever started it.
+//! Progress of long work, reported to its caller.
 
 /// Receives the progress of long work.
 pub trait Progress {
-    /// Of `work`, this number of parts of all is done; called once for every row.
+    /// Reports the parts of `work` that are done, and all; called once for every row.
     fn advance(&mut self, work: &str, done_of_all: (u64, u64));
 
-    /// The same of parts that take long each; `work` may differ from call to call.
+    /// The same for parts that take long each; `work` may differ from call to call.
     fn complete(&mut self, work: &str, done_of_all: (u64, u64));
 }
 

@@ -10,13 +10,13 @@ use telemetry::{Hello, SEGMENTS};
 use crate::csv_file::CsvFile;
 use crate::csv_rows::CsvRows;
 use crate::recording::{Item, RawReader, ReadError, Reader, RecordedRows};
-use crate::source::{Kind, Source};
-use crate::{Mark, Needs, Problem, Row, SessionError};
+use crate::source::{FileFormat, SessionFile};
+use crate::{Mark, RequiredColumns, Row, SessionError, SessionProblem};
 
-/// Rows at the start whose time stamps tell the sample rate.
+/// Rows at the start by whose time stamps the sample rate is measured.
 const RATE_ROWS: usize = 1001;
 
-/// A session that is being read, of any [`Kind`].
+/// Reader of a session in any [`FileFormat`].
 pub struct SessionReader {
     path: PathBuf,
     size_bytes: u64,
@@ -25,7 +25,7 @@ pub struct SessionReader {
     rate_hz: Option<f64>,
     is_regular_file: bool,
     bend_sensors: Vec<[bool; 2]>,
-    kind: Kind,
+    kind: FileFormat,
 }
 
 type Items = Box<dyn Iterator<Item = Result<Item, ReadError>>>;
@@ -36,14 +36,14 @@ enum Rows {
 }
 
 impl Rows {
-    fn new(source: Source, needs: &Needs) -> Result<Self, SessionError> {
+    fn new(source: SessionFile, needs: &RequiredColumns) -> Result<Self, SessionError> {
         let kind = source.kind;
-        if kind == Kind::Csv {
+        if kind == FileFormat::Csv {
             return Ok(Self::Csv(Box::new(CsvRows::new(CsvFile::new(source)?, needs)?)));
         }
         let (bytes, position) = source.into_counted()?;
         let items: Items =
-            if kind == Kind::Raw { Box::new(RawReader::new(bytes)) } else { Box::new(Reader::new(bytes)) };
+            if kind == FileFormat::Raw { Box::new(RawReader::new(bytes)) } else { Box::new(Reader::new(bytes)) };
         Ok(Self::Recorded(Box::new(RecordedRows::new(items)), position))
     }
 }
@@ -53,12 +53,12 @@ impl SessionReader {
     ///
     /// # Errors
     /// Any [`SessionError`] of the header and the first rows.
-    pub fn open(path: &Path, needs: &Needs) -> Result<Self, SessionError> {
-        let source = Source::open(path)?;
+    pub fn open(path: &Path, needs: &RequiredColumns) -> Result<Self, SessionError> {
+        let source = SessionFile::open(path)?;
         let (kind, size_bytes, is_regular_file) = (source.kind, source.size_bytes, source.is_regular_file);
         let segments = needs.bend.len();
-        if kind != Kind::Csv && segments > SEGMENTS {
-            return Err(source.error(Problem::RecordedSegments(segments)));
+        if kind != FileFormat::Csv && segments > SEGMENTS {
+            return Err(source.error(SessionProblem::RecordedSegments(segments)));
         }
         let rows = Rows::new(source, needs)?;
         let bend_sensors = match &rows {
@@ -79,42 +79,42 @@ impl SessionReader {
         Ok(reader)
     }
 
-    fn look_ahead(&mut self, needs: &Needs) -> Result<(), SessionError> {
+    fn look_ahead(&mut self, needs: &RequiredColumns) -> Result<(), SessionError> {
         while self.ahead.len() < RATE_ROWS {
             let Some(row) = self.read_row()? else { break };
             self.ahead.push_back(row);
         }
         if self.ahead.is_empty() {
-            return Err(self.error(Problem::NoSamples));
+            return Err(self.error(SessionProblem::NoSamples));
         }
         let steps = self.ahead.iter().zip(self.ahead.iter().skip(1)).map(|(from, to)| Step::new(from, to));
         self.rate_hz = rate_hz(steps.collect());
         if matches!(self.rows, Rows::Recorded(..)) {
-            // A board has no columns: the sensors are those that it has read at all.
+            // A recording has no columns: the sensors are those with any reading.
             for (i, present) in self.bend_sensors.iter_mut().enumerate() {
                 let reads = |place: usize| self.ahead.iter().any(|row| row.sample.bend[i][place].is_some());
                 *present = [reads(0), reads(1)];
             }
             if needs.truth && !self.has_true_headings() {
-                return Err(self.error(Problem::NoTruth));
+                return Err(self.error(SessionProblem::NoTruth));
             }
         }
         Ok(())
     }
 
-    /// What the file is.
+    /// Format of the file.
     #[must_use]
-    pub fn kind(&self) -> Kind {
+    pub fn kind(&self) -> FileFormat {
         self.kind
     }
 
-    /// Whether there is truth in the first rows.
+    /// True where there is truth in the first rows.
     #[must_use]
     pub fn has_truth(&self) -> bool {
         self.ahead.iter().any(|row| row.truth.iter().any(Option::is_some))
     }
 
-    /// Whether that truth has headings.
+    /// True where that truth has headings.
     #[must_use]
     pub fn has_true_headings(&self) -> bool {
         self.ahead.iter().any(|row| row.truth.iter().flatten().any(|end| end.heading_rad.is_some()))
@@ -140,9 +140,8 @@ impl SessionReader {
         (0..self.bend_sensors.len()).rev().find(is_read).map_or(0, |last| last + 1)
     }
 
-    /// Sample rate: that of the mean step of the first rows without gaps, for jitter and rounded time stamps; where an
-    /// arm's `usual_hz`, or up to ten times more or less, is within 1 % of it, that; and `usual_hz` where a single row
-    /// does not tell.
+    /// Sample rate, Hz: from the mean step of the first rows without gaps, as time stamps have jitter and are rounded. Where an
+    /// arm's `usual_hz`, or up to ten times more or less, is within 1 % of it, that is used; with a single row `usual_hz`.
     #[must_use]
     pub fn rate_hz(&self, usual_hz: f64) -> f64 {
         let Some(rate_hz) = self.rate_hz else { return usual_hz };
@@ -152,18 +151,18 @@ impl SessionReader {
         if (rate_hz / nominal_hz - 1.0).abs() < 0.01 { nominal_hz } else { rate_hz }
     }
 
-    /// Whether the session can be read twice, which a pipe cannot.
+    /// True where the session can be read twice, which a pipe cannot.
     #[must_use]
     pub fn is_regular_file(&self) -> bool {
         self.is_regular_file
     }
 
-    /// Which bend sensors of each segment the session has.
+    /// Presence of the bend sensors of each segment.
     pub fn bend_sensors(&self) -> impl Iterator<Item = [bool; 2]> {
         self.bend_sensors.iter().copied()
     }
 
-    /// Whether the last line is ended; if not, its last number may have been cut.
+    /// True where the last line has a line end; otherwise its last number may be cut.
     #[must_use]
     pub fn ends_with_line(&self) -> bool {
         match &self.rows {
@@ -172,7 +171,7 @@ impl SessionReader {
         }
     }
 
-    /// How far the file was read, and its size, in bytes.
+    /// Position in the file and its size, bytes.
     #[must_use]
     pub fn progress(&self) -> (u64, u64) {
         let position = match &self.rows {
@@ -182,7 +181,7 @@ impl SessionReader {
         (position, self.size_bytes)
     }
 
-    /// Where it is from a board: its last `Hello` so far, if there was one.
+    /// The board's last `Hello` so far; `None` in a CSV.
     #[must_use]
     pub fn hello(&self) -> Option<&Hello> {
         match &self.rows {
@@ -191,7 +190,7 @@ impl SessionReader {
         }
     }
 
-    /// The moments that were marked, as far as it was read.
+    /// The marks that were read so far.
     #[must_use]
     pub fn marks(&self) -> &[Mark] {
         match &self.rows {
@@ -216,18 +215,18 @@ impl SessionReader {
             Rows::Csv(csv) => return csv.next_row(),
             Rows::Recorded(rows, _) => rows.next_row(),
         };
-        row.map_err(|error| self.error(Problem::Recording(error)))
+        row.map_err(|error| self.error(SessionProblem::Recording(error)))
     }
 
-    fn error(&self, problem: Problem) -> SessionError {
+    fn error(&self, problem: SessionProblem) -> SessionError {
         SessionError { path: self.path.clone(), line: None, column: None, problem }
     }
 }
 
-/// From one row to the next.
+/// Step from one row to the next.
 struct Step {
     us: u64,
-    /// Of a board's recording; 1 in a CSV, which numbers nothing.
+    /// Ticks of a recording; 1 in a CSV, which has no ticks.
     ticks: u32,
 }
 
@@ -238,8 +237,8 @@ impl Step {
     }
 }
 
-/// Rate of the mean step of those over no more ticks than usual, and not over twice the median: rows that were lost are no
-/// slower rate.
+/// Rate of the mean step, Hz. Steps over more ticks than usual or over twice the median are left out: lost rows do not lower
+/// the rate.
 fn rate_hz(mut steps: Vec<Step>) -> Option<f64> {
     steps.sort_unstable_by_key(|step| step.ticks);
     let usual = steps.get(steps.len() / 2)?.ticks;

@@ -3,7 +3,9 @@
 use calibration_tables::MAX_SEGMENTS;
 use estimator_core::Sample;
 
-/// What a camera sees of a marker.
+use crate::clock::HostNs;
+
+/// Pose of a marker.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pose {
     /// x, m.
@@ -14,51 +16,55 @@ pub struct Pose {
     pub heading_rad: f64,
 }
 
-/// Where one segment's end truly was, in {W}.
+/// True pose of one segment's end in {W}.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Truth {
     /// x, m.
     pub x_m: f64,
     /// y, m.
     pub y_m: f64,
-    /// Heading of the tangent, rad; `None` in a session that has places alone.
+    /// Heading of the tangent, rad; `None` in a session with positions alone.
     pub heading_rad: Option<f64>,
 }
 
-/// One row: the readings of one tick, and the truth where there is any.
+/// One row: the readings of one tick, and the truth where it is known.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Row {
     /// The readings.
     pub sample: Sample<MAX_SEGMENTS>,
-    /// Where each segment's end was; `None` where the camera did not see it.
+    /// True pose of each segment's end; `None` where the camera did not see it.
     pub truth: [Option<Truth>; MAX_SEGMENTS],
-    /// Whether the estimator starts anew before it.
+    /// The estimator is started (again) before this row.
     pub starts: bool,
-    /// Where it is from a board's recording: what the board said of it.
-    pub board: Option<OnBoard>,
+    /// The board's output for this row; `None` in a CSV.
+    pub board: Option<BoardOutput>,
 }
 
-/// A moment that a person has marked while it was recorded.
+/// A mark that a person has set during a recording.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Mark {
-    /// When, by the clock of the rows, µs.
+    /// Its time on the clock of the rows, µs.
     pub time_us: u64,
-    /// What for.
+    /// Its text.
     pub text: String,
 }
 
-/// What a board said of one sample.
+/// Output of a board for one sample.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct OnBoard {
+pub struct BoardOutput {
     /// Number of the tick.
     pub tick: u32,
-    /// Whether every sample since the estimator's start is in the recording, so that a replay must give the same.
+    /// The board's time of the tick since its boot, µs.
+    pub time_us: u64,
+    /// Time of the sample's arrival; 0 in a raw file.
+    pub at: HostNs,
+    /// Every sample since the estimator's start was received, so that a replica of the estimator gives the same result.
     pub complete: bool,
     /// The board's estimate, where it was received.
     pub estimate: Option<telemetry::Estimate>,
-    /// How far it may be off, where the board has said so.
+    /// Uncertainty of the estimate, where the board has sent one.
     pub uncertainty: Option<telemetry::Uncertainty>,
-    /// What touches the segments, where the board has said that it has changed.
+    /// Contact of the segments, where the board has sent a change of it.
     pub contact: Option<[bool; telemetry::SEGMENTS]>,
 }
 

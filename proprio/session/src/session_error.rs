@@ -1,4 +1,4 @@
-//! What can be wrong with a session: the place, the problem and the remedy.
+//! Errors of a session: the problem and its place in the file.
 
 use std::fmt;
 use std::path::PathBuf;
@@ -8,7 +8,7 @@ use telemetry::SEGMENTS;
 
 use crate::recording::ReadError;
 
-/// A problem and where it is.
+/// A problem of a session, with its place in the file.
 #[derive(Debug)]
 pub struct SessionError {
     /// The file.
@@ -18,12 +18,12 @@ pub struct SessionError {
     /// Name of the column.
     pub column: Option<String>,
     /// The problem.
-    pub problem: Problem,
+    pub problem: SessionProblem,
 }
 
-/// What is wrong with a session.
+/// A problem of a session.
 #[derive(Debug, thiserror::Error)]
-pub enum Problem {
+pub enum SessionProblem {
     /// It cannot be opened or read.
     #[error("cannot be read: {0}")]
     Read(std::io::Error),
@@ -34,7 +34,7 @@ pub enum Problem {
     #[error("is empty, expected a header line")]
     NoHeader,
     /// It has a header and no more.
-    #[error("has no samples, expected a row a sample below the header")]
+    #[error("has no samples, expected a row for each sample below the header")]
     NoSamples,
     /// It is not UTF-8 text.
     #[error("is not UTF-8 text")]
@@ -81,7 +81,7 @@ pub enum Problem {
     /// ADC counts that a 12-bit converter cannot give.
     #[error("{0} counts, expected a whole number from 0 to 4095")]
     Counts(String),
-    /// A tare's number that is none.
+    /// A tare's number that is not a whole number.
     #[error("tare {0}, expected a whole number that changes where the arm was tared")]
     Tare(String),
     /// A heading out of range.
@@ -106,7 +106,7 @@ pub enum Problem {
     #[error("pressure {0}, expected 0 to {most} kPa", most = FULL_SCALE_PA / 1000)]
     Pressure(String),
     /// A profile has a header and no more.
-    #[error("has no pressures, expected a row a moment below the header")]
+    #[error("has no pressures, expected a row for each point below the header")]
     NoMoments,
     /// Time goes backwards.
     #[error("time goes backwards, from {from_s} s to {to_s} s")]
@@ -119,10 +119,10 @@ pub enum Problem {
     /// A recording that cannot be read.
     #[error(transparent)]
     Recording(ReadError),
-    /// A recording of which nothing can be saved.
+    /// A recording of which nothing can be recovered.
     #[error("nothing in it is whole: it was cut within its first second")]
     NothingWhole,
-    /// A recording is of another arm.
+    /// A recording of a board with fewer segments than the arm.
     #[error("is a recording of a board with {SEGMENTS} segments at most, the arm has {0}")]
     RecordedSegments(usize),
     /// More segments than a board has.

@@ -1,4 +1,4 @@
-//! A session's file: what kind it is, and its bytes from the first on.
+//! A session's file: its format, and its bytes from the first on.
 
 use std::fs::File;
 use std::io::{self, BufReader, Cursor, Read, Seek, SeekFrom};
@@ -7,24 +7,24 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use crate::recording::is_recording;
-use crate::{Problem, SessionError};
+use crate::{SessionError, SessionProblem};
 
-/// Bytes at the start that tell what a file is.
+/// Bytes at the start by which the format is detected.
 const BEGIN: u64 = 8;
 
-/// What a file is.
+/// Format of a session's file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
-    /// Text, a row a sample.
+pub enum FileFormat {
+    /// Text, one row per sample.
     Csv,
     /// A board's recording.
     Recording,
-    /// The bytes of a board as they came.
+    /// The received bytes of a board.
     Raw,
 }
 
-impl Kind {
-    /// By its first bytes; raw bytes have no mark and are known by their name, `.bin`.
+impl FileFormat {
+    /// Detects the format by the first bytes; raw bytes have no signature and are recognised by the name, `.bin`.
     fn of(path: &Path, begin: &[u8]) -> Self {
         if is_recording(begin) {
             Self::Recording
@@ -36,30 +36,30 @@ impl Kind {
     }
 }
 
-/// A file that was opened, of which the first bytes were looked at.
-pub(crate) struct Source {
+/// A session's file that was opened, with its format.
+pub(crate) struct SessionFile {
     pub path: PathBuf,
-    pub kind: Kind,
+    pub kind: FileFormat,
     pub size_bytes: u64,
-    /// It is no pipe and no device.
+    /// Neither a pipe nor a device.
     pub is_regular_file: bool,
     begin: Vec<u8>,
     file: File,
 }
 
-impl Source {
+impl SessionFile {
     pub fn open(path: &Path) -> Result<Self, SessionError> {
         let fail = |problem| SessionError { path: path.to_owned(), line: None, column: None, problem };
-        let mut file = File::open(path).map_err(|error| fail(Problem::Read(error)))?;
-        let metadata = file.metadata().map_err(|error| fail(Problem::Read(error)))?;
+        let mut file = File::open(path).map_err(|error| fail(SessionProblem::Read(error)))?;
+        let metadata = file.metadata().map_err(|error| fail(SessionProblem::Read(error)))?;
         if metadata.is_dir() {
-            return Err(fail(Problem::Directory));
+            return Err(fail(SessionProblem::Directory));
         }
         let mut begin = Vec::new();
-        file.by_ref().take(BEGIN).read_to_end(&mut begin).map_err(|error| fail(Problem::Read(error)))?;
+        file.by_ref().take(BEGIN).read_to_end(&mut begin).map_err(|error| fail(SessionProblem::Read(error)))?;
         Ok(Self {
             path: path.to_owned(),
-            kind: Kind::of(path, &begin),
+            kind: FileFormat::of(path, &begin),
             size_bytes: metadata.len(),
             is_regular_file: metadata.is_file(),
             begin,
@@ -67,11 +67,11 @@ impl Source {
         })
     }
 
-    /// Whether the last byte is a line end, as far as that can be seen before all is read.
+    /// True where the last byte is a line end; also for a pipe, whose last byte is not known before it is read.
     pub fn ends_with_line(&mut self) -> Result<bool, SessionError> {
         let mut last = [b'\n'];
         if self.is_regular_file && self.file.seek(SeekFrom::End(-1)).is_ok() {
-            self.file.read_exact(&mut last).map_err(|error| self.error(Problem::Read(error)))?;
+            self.file.read_exact(&mut last).map_err(|error| self.error(SessionProblem::Read(error)))?;
         }
         Ok(last == [b'\n'])
     }
@@ -82,11 +82,11 @@ impl Source {
             // A pipe cannot go back.
             return Ok(Box::new(Cursor::new(self.begin).chain(self.file)));
         }
-        self.file.rewind().map_err(|error| self.error(Problem::Read(error)))?;
+        self.file.rewind().map_err(|error| self.error(SessionProblem::Read(error)))?;
         Ok(Box::new(self.file))
     }
 
-    /// The bytes from the first on, and how many were read.
+    /// The bytes from the first on, and the counter of those that were read.
     pub fn into_counted(self) -> Result<(BufReader<Counted>, Arc<AtomicU64>), SessionError> {
         let position = Arc::new(AtomicU64::new(0));
         let counted = Counted { bytes: self.into_bytes()?, position: Arc::clone(&position) };
@@ -94,12 +94,12 @@ impl Source {
     }
 
     /// A problem of the whole file.
-    pub fn error(&self, problem: Problem) -> SessionError {
+    pub fn error(&self, problem: SessionProblem) -> SessionError {
         SessionError { path: self.path.clone(), line: None, column: None, problem }
     }
 }
 
-/// Counts what is read.
+/// Counts the bytes that are read.
 pub(crate) struct Counted {
     bytes: Box<dyn Read>,
     position: Arc<AtomicU64>,

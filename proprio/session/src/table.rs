@@ -2,22 +2,22 @@
 
 use std::path::Path;
 
-use calibration_tables::{ArmFile, Baked, FileError};
+use calibration_tables::{ArmFile, CompiledTable, FileError};
 use estimator_core::FusedOps;
 
 use crate::Error;
-use crate::needs::Needs;
+use crate::required_columns::RequiredColumns;
 
-/// A table and the file that it came from.
+/// A table and the path of its file.
 #[derive(Debug, Clone)]
-pub struct NamedTable<'p> {
+pub struct LoadedTable<'p> {
     /// The table.
     pub file: ArmFile,
-    /// Where it was read.
+    /// Path of its file.
     pub path: &'p Path,
 }
 
-impl<'p> NamedTable<'p> {
+impl<'p> LoadedTable<'p> {
     /// Reads and checks an arm description or table.
     ///
     /// # Errors
@@ -27,7 +27,7 @@ impl<'p> NamedTable<'p> {
         Ok(Self { file, path })
     }
 
-    /// The file's text as it stands.
+    /// The text of the file.
     ///
     /// # Errors
     /// [`Error::Table`].
@@ -35,23 +35,23 @@ impl<'p> NamedTable<'p> {
         std::fs::read(self.path).map_err(|source| self.error(source.into()))
     }
 
-    /// The columns that it needs of a session.
+    /// The columns that it requires of a session.
     ///
     /// # Errors
     /// [`Error::Table`] on an arm description.
-    pub fn needs(&self) -> Result<Needs, Error> {
-        Needs::of_table(&self.file).map_err(|source| self.error(source))
+    pub fn required_columns(&self) -> Result<RequiredColumns, Error> {
+        RequiredColumns::of_table(&self.file).map_err(|source| self.error(source))
     }
 
     /// The estimator's parameters for one sample rate.
     ///
     /// # Errors
     /// [`Error::Table`] on an arm description.
-    pub fn bake<S: FusedOps>(&self, rate_hz: f64) -> Result<Baked<S>, Error> {
-        self.file.bake(rate_hz).map_err(|source| self.error(source))
+    pub fn compile<S: FusedOps>(&self, rate_hz: f64) -> Result<CompiledTable<S>, Error> {
+        self.file.compile(rate_hz).map_err(|source| self.error(source))
     }
 
-    /// Whether the bias filter corrects the drift.
+    /// True where the bias filter corrects the drift.
     #[must_use]
     pub fn has_bias_filter(&self) -> bool {
         self.file.bias_filter().is_some()

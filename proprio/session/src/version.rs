@@ -1,9 +1,9 @@
-//! Versions of the firmware that a recording was made by.
+//! Versions of the firmware that has made a recording.
 
-/// First numbers of the firmware's version whose estimates and uncertainties are others in part.
+/// Prefix of the firmware versions whose estimates and uncertainties differ in part.
 const VERSION_0_1: &str = "0.1.";
 
-/// Whether firmware of this version is of version 0.1. The same table has another checksum there.
+/// True for firmware of version 0.1, in which the same table has another checksum.
 #[must_use]
 pub fn is_version_0_1(firmware: &str) -> bool {
     firmware.starts_with(VERSION_0_1)

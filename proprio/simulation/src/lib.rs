@@ -1,4 +1,4 @@
-//! Sessions of the simulated arm, as they are recorded: samples with truth, and what a camera sees.
+//! Recorded sessions of the simulated arm: samples with truth, and the frames of a camera.
 
 mod error;
 mod simulation;

@@ -2,7 +2,7 @@
 
 use proprio_session::check_seconds;
 use rig_twin::{
-    BEND_SENSORS, Camera, EndPose, Frame, HeadingDrift, Program, REGULATORS, Rig, SEGMENTS, Scenario, Setup,
+    BEND_SENSORS, Camera, EndPose, Frame, HeadingDrift, MotionProgram, REGULATORS, Rig, SEGMENTS, Scenario, Setup,
 };
 
 use crate::error::SimulationError;
@@ -10,7 +10,7 @@ use crate::error::SimulationError;
 /// The regulators get a new duty at least this often, s: the firmware's tick.
 const TICK_S: f64 = 0.01;
 
-/// What is recorded in one sample.
+/// One recorded sample.
 #[derive(Debug, Clone, Copy)]
 pub struct Recorded {
     /// Time since the start, µs.
@@ -38,7 +38,7 @@ impl Recorded {
 /// A run of the twin, one [`Recorded`] after the other.
 pub struct Simulation {
     rig: Rig,
-    program: Program,
+    program: MotionProgram,
     rate_hz: f64,
     samples: u64,
     next: u64,
@@ -49,8 +49,7 @@ pub struct Simulation {
 }
 
 impl Simulation {
-    /// `seconds` of a scenario on the reference arm, sampled at `rate_hz`. The seed decides all that differs from run to
-    /// run.
+    /// `seconds` of a scenario on the reference arm, sampled at `rate_hz`. The seed determines the motion and all noise.
     ///
     /// # Errors
     /// [`SimulationError`].
@@ -68,11 +67,11 @@ impl Simulation {
         }
         check_seconds(seconds)?;
         let samples = (seconds * rate_hz).round().max(1.0) as u64;
-        let (rig, program) = (Rig::of(setup), Program::of(setup));
+        let (rig, program) = (Rig::of(setup), MotionProgram::of(setup));
         Ok(Self { rig, program, rate_hz, samples, next: 0, pause: None, camera: None, frames: Vec::new() })
     }
 
-    /// The same run under a camera; what the arm and its sensors do stays the same to the bit.
+    /// The same run under a camera; the arm and its sensors stay the same to the bit.
     #[must_use]
     pub fn under(self, camera: Camera) -> Self {
         Self { camera: Some(camera), ..self }
@@ -90,7 +89,7 @@ impl Simulation {
         &self.rig
     }
 
-    /// What the camera saw up to the last sample, since this was last asked.
+    /// Takes the camera's frames up to the last sample since the last call.
     pub fn take_frames(&mut self) -> Vec<Frame> {
         std::mem::take(&mut self.frames)
     }

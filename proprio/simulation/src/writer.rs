@@ -1,4 +1,4 @@
-//! Writes samples and their truth as a session, and what a camera saw as a file of its own.
+//! Writes samples and their truth as a session, and the frames of a camera as a file of its own.
 
 use std::io::{self, Write};
 
@@ -8,7 +8,7 @@ use rig_twin::{EndPose, Frame, SEGMENTS};
 
 use crate::simulation::Recorded;
 
-/// In which columns a session holds its IMU readings.
+/// Columns of the IMU readings.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ImuColumns {
     /// The heading, imuK_deg.
@@ -17,7 +17,7 @@ pub enum ImuColumns {
     Quaternion,
 }
 
-/// A session that is being written.
+/// Writer of a session.
 pub struct SessionWriter<W> {
     sink: W,
     imu: ImuColumns,
@@ -28,7 +28,7 @@ impl<W: Write> SessionWriter<W> {
     /// Begins a session with its header.
     ///
     /// # Errors
-    /// Those of `sink`.
+    /// Errors of `sink`.
     pub fn new(sink: W, imu: ImuColumns) -> io::Result<Self> {
         Self::begin(sink, imu, true)
     }
@@ -36,7 +36,7 @@ impl<W: Write> SessionWriter<W> {
     /// Begins a session without truth.
     ///
     /// # Errors
-    /// Those of `sink`.
+    /// Errors of `sink`.
     pub fn without_truth(sink: W, imu: ImuColumns) -> io::Result<Self> {
         Self::begin(sink, imu, false)
     }
@@ -64,7 +64,7 @@ impl<W: Write> SessionWriter<W> {
     /// Writes one sample.
     ///
     /// # Errors
-    /// Those of the sink.
+    /// Errors of the sink.
     pub fn write(&mut self, sample: &Recorded) -> io::Result<()> {
         write!(self.sink, "{}", sample.time_us as f64 / 1e6)?;
         for counts in sample.counts {
@@ -100,7 +100,7 @@ impl<W: Write> SessionWriter<W> {
     }
 }
 
-/// A camera's file that is being written.
+/// Writer of a camera's file.
 pub struct CameraWriter<W> {
     sink: W,
 }
@@ -109,7 +109,7 @@ impl<W: Write> CameraWriter<W> {
     /// Begins the file with its header.
     ///
     /// # Errors
-    /// Those of `sink`.
+    /// Errors of `sink`.
     pub fn new(mut sink: W) -> io::Result<Self> {
         write!(sink, "time_s,base_x_mm,base_y_mm,base_heading_deg")?;
         for i in 1..=SEGMENTS {
@@ -122,7 +122,7 @@ impl<W: Write> CameraWriter<W> {
     /// Writes one frame; the cells of a marker that was not found stay empty.
     ///
     /// # Errors
-    /// Those of the sink.
+    /// Errors of the sink.
     pub fn write(&mut self, frame: &Frame) -> io::Result<()> {
         write!(self.sink, "{:.6}", frame.time_s)?;
         for pose in std::iter::once(&frame.base).chain(&frame.ends) {

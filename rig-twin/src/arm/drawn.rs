@@ -1,6 +1,6 @@
-//! Any other arm: every flaw drawn from the sizes in `flaws`.
+//! All arms but the reference arm: every flaw is drawn from the sizes in `flaws`.
 
-use super::{
+use super::parameters::{
     ActuatorParameters, ArmParameters, CurveParameters, ImuParameters, PairParameters, RegulatorParameters,
     StripParameters,
 };
@@ -26,7 +26,7 @@ use crate::noise::{Noise, Source};
 use core::array::from_fn;
 use core::f64::consts::{PI, TAU};
 
-/// Device number of the stream from which a batch is drawn, beyond that of any device.
+/// Device number of the stream of a batch, larger than that of any device.
 const BATCH: usize = 1000;
 
 /// The arm of a seed.
@@ -67,7 +67,7 @@ fn actuator(mut noise: Noise) -> ActuatorParameters {
     }
 }
 
-/// What the curves of an arm have in common.
+/// Common properties of an arm's curves.
 struct CurveBatch {
     slope: f64,
     bulge: f64,
@@ -95,7 +95,7 @@ impl CurveBatch {
     }
 }
 
-/// What the strips of an arm have in common.
+/// Common properties of an arm's strips.
 struct StripBatch {
     length: f64,
     pre_bend_rad: f64,
@@ -127,7 +127,7 @@ impl StripBatch {
             start: noise.tolerance(((1.0 - self.length) / 2.0, STRIP_PLACE_SIGMA)),
             length: self.length,
             balance: noise.tolerance((0.5, STRIP_BALANCE_SIGMA)),
-            play_rad: MEMORY_PLAY_RAD.map(|half_width| self.play_scale * half_width),
+            play_rad: MEMORY_PLAY_RAD.map(|radius| self.play_scale * radius),
             memory_share: MEMORY_SHARE.map(|share| memory_scale * share),
             relaxation_s: noise.between(RELAXATION_RANGE_S),
             relaxation_share: noise.between(RELAXATION_SHARE_RANGE),
@@ -147,7 +147,7 @@ impl StripBatch {
     }
 }
 
-/// What the pairs of strips of an arm have in common.
+/// Common properties of an arm's pairs of strips.
 struct PairBatch {
     rms_rad: f64,
     shared: f64,
@@ -179,7 +179,7 @@ impl PairBatch {
     }
 }
 
-/// What the IMUs of an arm have in common.
+/// Common properties of an arm's IMUs.
 struct ImuBatch {
     turn_on_rad_per_s: f64,
     instability_rad_per_s: f64,

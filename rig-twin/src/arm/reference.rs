@@ -1,7 +1,7 @@
-//! The reference arm, on which today's recorded sessions were made. The order of the draws is part of
-//! it: another order gives other sessions.
+//! The reference arm, by which the recorded sessions of the tests were made. The order of the draws must not change:
+//! another order results in other sessions.
 
-use super::{
+use super::parameters::{
     ActuatorParameters, ArmParameters, CurveParameters, ImuParameters, PairParameters, RegulatorParameters,
     StripParameters,
 };

@@ -1,4 +1,4 @@
-//! V–Orient maps fitted on a sweep: how well a quadratic can know each sensor.
+//! V–Orient maps fitted on a sweep: residuals of a quadratic for each sensor.
 
 use crate::recording::{Sample, bends_rad, record, rms};
 use rig_twin::{BEND_SENSORS, Scenario};
@@ -56,7 +56,7 @@ fn quadratic_misses_the_sweep_by_the_papers_degrees() {
 fn calibration_holds_in_sessions_of_other_seeds() {
     let sweep = record(Scenario::Sweep, 1, 600);
     let at_home = mean_rmse_deg(&sweep, &sweep);
-    for (scenario, seed) in [(Scenario::One, 2), (Scenario::Two, 3), (Scenario::Three, 4)] {
+    for (scenario, seed) in [(Scenario::FreeSwing, 2), (Scenario::Push, 3), (Scenario::Obstacle, 4)] {
         let rmse = mean_rmse_deg(&sweep, &record(scenario, seed, 300));
         // Another arm's maps, with other resistances, are off by tens of degrees.
         assert!(rmse < 1.5 * at_home, "{scenario:?}: {rmse}° after {at_home}°");
@@ -72,7 +72,7 @@ fn segment_errors_deg(sweep: &[Sample], session: &[Sample], segment: usize) -> V
 #[test]
 fn ten_second_mean_of_a_segments_error_is_smaller_than_the_error() {
     let sweep = record(Scenario::Sweep, 1, 600);
-    let swings = record(Scenario::One, 2, 300);
+    let swings = record(Scenario::FreeSwing, 2, 300);
     for segment in 0..BEND_SENSORS / 2 {
         let errors = segment_errors_deg(&sweep, &swings, segment);
         let means = errors.windows(100).map(|window| window.iter().sum::<f64>() / 100.0);

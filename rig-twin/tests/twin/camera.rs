@@ -1,4 +1,4 @@
-//! The camera: what it sees, and by which clock.
+//! The camera: its frames and its clock.
 
 use rig_twin::{Camera, EndPose, Frame, SEGMENTS};
 

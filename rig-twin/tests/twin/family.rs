@@ -1,7 +1,7 @@
 //! Arms drawn from a seed: reproducible, unlike each other, and with every flaw.
 
 use crate::recording::{Sample, bends_rad, record_of, tared_headings_rad};
-use rig_twin::{Motion, Program, Rig, SEGMENTS, Scenario, Setup};
+use rig_twin::{Motion, MotionProgram, Rig, SEGMENTS, Scenario, Setup};
 
 fn setup(arm_seed: u64, scenario: Scenario, seed: u64) -> Setup {
     Setup { arm_seed, ..Setup::new(scenario, seed) }
@@ -25,8 +25,8 @@ fn gain(x: &[f64], y: &[f64]) -> f64 {
 
 #[test]
 fn seed_zero_is_the_reference_arm() {
-    let of_family = session(0, Scenario::Two, 5, 30);
-    let (program, mut rig) = (Program::new(Scenario::Two, 5), Rig::new(Scenario::Two, 5));
+    let of_family = session(0, Scenario::Push, 5, 30);
+    let (program, mut rig) = (MotionProgram::new(Scenario::Push, 5), Rig::new(Scenario::Push, 5));
     for sample in of_family {
         (0..10).for_each(|_| rig.step(0.01, program.duties(rig.time_s())));
         assert_eq!((sample.counts, sample.quaternions), (rig.adc_counts(), rig.imu_quaternions()));
@@ -35,20 +35,20 @@ fn seed_zero_is_the_reference_arm() {
 
 #[test]
 fn same_arm_seed_gives_the_same_bits() {
-    let [first, second] = [(); 2].map(|()| readings(&session(9, Scenario::Two, 5, 20)));
+    let [first, second] = [(); 2].map(|()| readings(&session(9, Scenario::Push, 5, 20)));
     assert_eq!(first, second);
 }
 
 #[test]
 fn two_arm_seeds_differ() {
-    let [first, second] = [1, 2].map(|arm_seed| session(arm_seed, Scenario::One, 5, 20));
+    let [first, second] = [1, 2].map(|arm_seed| session(arm_seed, Scenario::FreeSwing, 5, 20));
     assert_ne!(readings(&first), readings(&second));
     assert_ne!(first[199].truth, second[199].truth);
 }
 
 #[test]
 fn straight_arms_have_lengths_within_two_percent_of_the_nominal_one() {
-    let lengths: Vec<f64> = (1..=12).map(|arm| Rig::of(&setup(arm, Scenario::One, 1)).truth()[5].y_m).collect();
+    let lengths: Vec<f64> = (1..=12).map(|arm| Rig::of(&setup(arm, Scenario::FreeSwing, 1)).truth()[5].y_m).collect();
     assert!(lengths.iter().all(|length| (length / 0.582 - 1.0).abs() < 0.02), "{lengths:?}");
     assert!(lengths.iter().any(|length| (length / 0.582 - 1.0).abs() > 0.001), "{lengths:?}");
 }
@@ -70,7 +70,7 @@ fn scale_error_changes_the_gain_of_the_heading() {
 #[test]
 fn turn_on_bias_differs_from_session_to_session() {
     let drift_deg = |seed| {
-        let samples = session(3, Scenario::One, seed, 600);
+        let samples = session(3, Scenario::FreeSwing, seed, 600);
         let last = samples.len() - 1;
         (tared_headings_rad(&samples)[last][0] - samples[last].truth[0].heading_rad).to_degrees()
     };
@@ -95,7 +95,7 @@ fn two_segments_of_a_module_bend_by_more_than_a_degree_apart() {
 
 /// Readings of a vented arm, 1000 conversions of a strip, counts: of a session, after `after_s`.
 fn counts_at_rest(arm_seed: u64, seed: u64, after_s: f64) -> [f64; 2 * SEGMENTS] {
-    let mut rig = Rig::of(&setup(arm_seed, Scenario::One, seed));
+    let mut rig = Rig::of(&setup(arm_seed, Scenario::FreeSwing, seed));
     rig.step(after_s, [0.0; 6]);
     let mut sums = [0.0; 2 * SEGMENTS];
     for _ in 0..1000 {
@@ -111,7 +111,7 @@ fn strips_creep_and_warm_up_for_minutes_at_rest() {
     assert!(moved > 5.0, "{moved} counts");
 }
 
-/// Spread over sessions of what both strips of a segment take for the same bend, counts: mean over the segments.
+/// Spread over sessions of the common-mode error of both strips of a segment, counts: mean over the segments.
 fn shared_spread(arm_seed: u64) -> f64 {
     let sessions: Vec<_> = (1..=12).map(|seed| counts_at_rest(arm_seed, seed, 5.0)).collect();
     let deviation = |segment: usize| {
@@ -134,7 +134,7 @@ fn some_arms_have_pairs_of_strips_that_err_alike_far_more_than_others() {
 fn regulators_differ_so_that_the_same_duty_bends_by_other_angles() {
     let bends: Vec<f64> = (1..=6)
         .map(|arm| {
-            let mut rig = Rig::of(&Setup { motion: Motion::Swings, ..setup(arm, Scenario::One, 1) });
+            let mut rig = Rig::of(&Setup { motion: Motion::Swings, ..setup(arm, Scenario::FreeSwing, 1) });
             rig.step(60.0, [0.6, 0.0, 0.0, 0.0, 0.0, 0.0]);
             bends_rad(&rig.truth())[0].to_degrees()
         })

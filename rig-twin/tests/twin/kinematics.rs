@@ -1,4 +1,4 @@
-//! How far the ways to know the shape miss the true tip.
+//! Tip errors of constant-curvature kinematics.
 
 use crate::recording::{Sample, bends_rad, differences, record, rms, tared_headings_rad};
 use rig_twin::{SEGMENTS, Scenario};
@@ -30,7 +30,9 @@ fn tip_rmse_mm(samples: &[Sample], bends: impl Iterator<Item = [f64; SEGMENTS]>)
 
 #[test]
 fn exact_angles_miss_the_tip_by_millimetres() {
-    for (scenario, range) in [(Scenario::One, 1.5..4.0), (Scenario::Two, 1.8..6.0), (Scenario::Three, 3.0..6.5)] {
+    for (scenario, range) in
+        [(Scenario::FreeSwing, 1.5..4.0), (Scenario::Push, 1.8..6.0), (Scenario::Obstacle, 3.0..6.5)]
+    {
         let samples = record(scenario, 2, 300);
         let floor = tip_rmse_mm(&samples, samples.iter().map(|sample| bends_rad(&sample.truth)));
         assert!(range.contains(&floor), "{scenario:?}: {floor} mm");
@@ -39,7 +41,7 @@ fn exact_angles_miss_the_tip_by_millimetres() {
 
 #[test]
 fn raw_headings_miss_the_tip_by_the_papers_centimetres() {
-    let samples = record(Scenario::One, 2, 900);
+    let samples = record(Scenario::FreeSwing, 2, 900);
     let miss = tip_rmse_mm(&samples, tared_headings_rad(&samples).into_iter().map(differences));
     assert!((22.0..40.0).contains(&miss), "{miss} mm; the paper has 33 mm");
 }

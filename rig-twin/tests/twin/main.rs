@@ -1,4 +1,4 @@
-//! What the twin promises to those who build on it: the same bits, a believable arm, sensors with the paper's flaws.
+//! Properties of the twin that other crates rely on: the same bits, a plausible arm, sensors with the paper's flaws.
 
 mod calibration;
 mod camera;

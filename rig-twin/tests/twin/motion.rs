@@ -1,9 +1,9 @@
-//! Scenarios: how the arm moves, and what touches it.
+//! Scenarios: motion and contacts of the arm.
 
 use crate::recording::{Sample, bends_rad, record};
-use rig_twin::{Program, Rig, SEGMENTS, Scenario};
+use rig_twin::{MotionProgram, Rig, SEGMENTS, Scenario};
 
-const ALL: [Scenario; 4] = [Scenario::Sweep, Scenario::One, Scenario::Two, Scenario::Three];
+const ALL: [Scenario; 4] = [Scenario::Sweep, Scenario::FreeSwing, Scenario::Push, Scenario::Obstacle];
 
 fn extremes_deg(samples: &[Sample], segment: usize) -> (f64, f64) {
     let bends = samples.iter().map(|sample| bends_rad(&sample.truth)[segment].to_degrees());
@@ -50,7 +50,7 @@ fn segments_of_a_module_do_not_bend_alike() {
 
 #[test]
 fn swings_keep_the_heading_within_200_degrees() {
-    for scenario in [Scenario::One, Scenario::Two, Scenario::Three] {
+    for scenario in [Scenario::FreeSwing, Scenario::Push, Scenario::Obstacle] {
         for sample in record(scenario, 4, 300) {
             let heading = sample.truth[SEGMENTS - 1].heading_rad.to_degrees();
             assert!(heading.abs() < 200.0, "{scenario:?}: {heading}°");
@@ -61,7 +61,7 @@ fn swings_keep_the_heading_within_200_degrees() {
 #[test]
 fn duties_change_smoothly() {
     for scenario in ALL {
-        let program = Program::new(scenario, 9);
+        let program = MotionProgram::new(scenario, 9);
         for tick in 0..60_000 {
             let [now, next] = [tick, tick + 1].map(|tick| program.duties(f64::from(tick) * 0.01));
             let step = now.iter().zip(next).map(|(now, next)| (next - now).abs()).fold(0.0, f64::max);
@@ -72,7 +72,7 @@ fn duties_change_smoothly() {
 
 #[test]
 fn nothing_touches_the_arm_in_the_sweep_and_in_scenario_one() {
-    for scenario in [Scenario::Sweep, Scenario::One] {
+    for scenario in [Scenario::Sweep, Scenario::FreeSwing] {
         for sample in record(scenario, 2, 60) {
             assert!(sample.contact_bends_rad.iter().all(|bend| bend.abs() < f64::EPSILON), "{scenario:?}");
         }
@@ -81,9 +81,9 @@ fn nothing_touches_the_arm_in_the_sweep_and_in_scenario_one() {
 
 #[test]
 fn pushes_bend_the_pushed_segment_by_more_than_ten_degrees() {
-    let program = Program::new(Scenario::Two, 2);
-    let mut pushed = Rig::new(Scenario::Two, 2);
-    let mut free = Rig::new(Scenario::One, 2);
+    let program = MotionProgram::new(Scenario::Push, 2);
+    let mut pushed = Rig::new(Scenario::Push, 2);
+    let mut free = Rig::new(Scenario::FreeSwing, 2);
     let mut largest_deg = [0.0_f64; SEGMENTS];
     for _ in 0..60_000 {
         let duties = program.duties(pushed.time_s());
@@ -100,7 +100,7 @@ fn pushes_bend_the_pushed_segment_by_more_than_ten_degrees() {
 
 #[test]
 fn obstacle_deflects_the_arm_part_of_the_time() {
-    let samples = record(Scenario::Three, 2, 300);
+    let samples = record(Scenario::Obstacle, 2, 300);
     let wrapped = samples.iter().filter(|sample| sample.contact_bends_rad[3].abs() > 0.1).count();
     let share = wrapped as f64 / samples.len() as f64;
     assert!(share > 0.15 && share < 0.8, "wraps for {share} of the time");

@@ -1,9 +1,9 @@
 //! Sessions recorded at 10 Hz, and the angles in them.
 
-use rig_twin::{BEND_SENSORS, EndPose, Program, Rig, SEGMENTS, Scenario, Setup};
+use rig_twin::{BEND_SENSORS, EndPose, MotionProgram, Rig, SEGMENTS, Scenario, Setup};
 use std::f64::consts::TAU;
 
-/// What one tick of a session holds.
+/// Values of one tick of a session.
 pub struct Sample {
     pub counts: [u16; BEND_SENSORS],
     pub quaternions: [[i16; 4]; SEGMENTS],
@@ -17,7 +17,7 @@ pub fn record(scenario: Scenario, seed: u64, seconds: u32) -> Vec<Sample> {
 
 /// A session of any setup.
 pub fn record_of(setup: &Setup, seconds: u32) -> Vec<Sample> {
-    let (program, mut rig) = (Program::of(setup), Rig::of(setup));
+    let (program, mut rig) = (MotionProgram::of(setup), Rig::of(setup));
     let sample = |_| {
         for _ in 0..10 {
             rig.step(0.01, program.duties(rig.time_s()));

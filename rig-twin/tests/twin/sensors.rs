@@ -5,7 +5,7 @@ use rig_twin::{Rig, SEGMENTS, Scenario};
 
 #[test]
 fn bend_sensors_do_not_saturate() {
-    for scenario in [Scenario::Sweep, Scenario::One, Scenario::Two, Scenario::Three] {
+    for scenario in [Scenario::Sweep, Scenario::FreeSwing, Scenario::Push, Scenario::Obstacle] {
         for sample in record(scenario, 2, 300) {
             assert!(sample.counts.iter().all(|count| (400..3700).contains(count)), "{:?}", sample.counts);
         }
@@ -14,7 +14,7 @@ fn bend_sensors_do_not_saturate() {
 
 #[test]
 fn converter_noise_is_two_counts() {
-    let mut rig = Rig::new(Scenario::One, 1);
+    let mut rig = Rig::new(Scenario::FreeSwing, 1);
     rig.step(1.0, [0.0; 6]);
     let counts: Vec<f64> = (0..5000).map(|_| f64::from(rig.adc_counts()[0])).collect();
     let mean = counts.iter().sum::<f64>() / 5000.0;
@@ -25,7 +25,7 @@ fn converter_noise_is_two_counts() {
 #[test]
 fn worst_imu_drifts_45_degrees_in_900_seconds() {
     for seed in 1..=3 {
-        let mut rig = Rig::new(Scenario::One, seed);
+        let mut rig = Rig::new(Scenario::FreeSwing, seed);
         let mut turned = [0.0; SEGMENTS];
         let mut last = rig.imu_quaternions().map(heading_rad);
         for _ in 0..900 {
@@ -44,7 +44,7 @@ fn worst_imu_drifts_45_degrees_in_900_seconds() {
 
 #[test]
 fn others_drift_less_and_both_ways() {
-    let samples = record(Scenario::One, 2, 900);
+    let samples = record(Scenario::FreeSwing, 2, 900);
     let headings = tared_headings_rad(&samples);
     let (measured, truth) = (headings[headings.len() - 1], samples[samples.len() - 1].truth);
     let drifts: Vec<f64> = (0..SEGMENTS - 1).map(|i| (measured[i] - truth[i].heading_rad).to_degrees()).collect();
@@ -54,7 +54,7 @@ fn others_drift_less_and_both_ways() {
 
 #[test]
 fn swings_disturb_the_heading_by_a_degree_or_two() {
-    let samples = record(Scenario::One, 2, 300);
+    let samples = record(Scenario::FreeSwing, 2, 300);
     let headings = tared_headings_rad(&samples);
     let truths = samples.iter().map(|sample| sample.truth[SEGMENTS - 1].heading_rad);
     let errors: Vec<f64> =
@@ -67,7 +67,7 @@ fn swings_disturb_the_heading_by_a_degree_or_two() {
 
 #[test]
 fn quaternions_are_unit_and_not_a_pure_yaw() {
-    for sample in record(Scenario::One, 2, 60) {
+    for sample in record(Scenario::FreeSwing, 2, 60) {
         for quaternion in sample.quaternions {
             let [w, x, y, z] = quaternion.map(|step| f64::from(step) / 16384.0);
             assert!((w * w + x * x + y * y + z * z - 1.0).abs() < 3e-4, "{quaternion:?}");
@@ -78,7 +78,7 @@ fn quaternions_are_unit_and_not_a_pure_yaw() {
 
 #[test]
 fn fusion_output_holds_for_ten_milliseconds() {
-    let mut rig = Rig::new(Scenario::One, 1);
+    let mut rig = Rig::new(Scenario::FreeSwing, 1);
     rig.step(0.01, [1.0; 6]);
     let fused = rig.imu_quaternions();
     rig.step(0.008, [1.0; 6]);

@@ -12,7 +12,7 @@ fn hello(boot: u32) -> Message {
 
 const TICK: Message = Message::Event(Event::BusRecovery);
 
-/// Encodes `count` messages that nobody receives.
+/// Encodes `count` messages that are lost.
 fn lose(encoder: &mut Encoder, count: u32) {
     for _ in 0..count {
         encode(encoder, &TICK);

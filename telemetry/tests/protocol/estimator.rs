@@ -26,7 +26,7 @@ fn an_estimate_has_the_bits_of_the_shape_and_ends_where_it_is_unknown() {
     // 90° about z, -90°, none; the fifth is not read.
     let (left, right, straight) = ([11585, 0, 0, 11585], [11585, 0, 0, -11585], [16384, 0, 0, 0]);
     let imu = [Some(left), Some(straight), Some(right), Some(straight), None, Some(straight)];
-    let sample = Sample { tick: 7, time_us: 70_000, tare: 0, bend: [None; 12], imu };
+    let sample = Sample { tick: 7, time_us: 70_000, tare_epoch: 0, bend: [None; 12], imu };
     let raw = estimator.update_full(&(&sample).into());
     let shape = estimator.shape(&raw, Method::ImuO);
 
@@ -34,7 +34,7 @@ fn an_estimate_has_the_bits_of_the_shape_and_ends_where_it_is_unknown() {
     assert_eq!(estimate.tick, 7);
     for (segment, shape) in estimate.segments.iter().zip(&shape).take(4) {
         let (segment, end) = (segment.expect("it was read"), shape.end.expect("it was read"));
-        assert_eq!(Some(Q::from_bits(segment.theta)), shape.theta.map(|theta| theta.rest));
+        assert_eq!(Some(Q::from_bits(segment.theta)), shape.theta.map(|theta| theta.remainder));
         assert_eq!(segment.end.map(Q::from_bits), [end.x, end.y]);
     }
     assert_eq!(estimate.segments[4..], [None, None]);
@@ -52,11 +52,11 @@ fn an_uncertainty_has_the_bits_of_the_covariances_and_the_segments_that_are_touc
     let found = Uncertainty::of(7, &errors, &contacts);
     assert_eq!(found.tick, 7);
     // 0.5 in units of 2⁻²⁶, and so on; 300 is more than a byte holds.
-    let of = |theta, end, contact_percent, is_touched| SegmentUncertainty { theta, end, contact_percent, is_touched };
+    let of = |theta, end, contact_percent, in_contact| SegmentUncertainty { theta, end, contact_percent, in_contact };
     assert_eq!(found.segments[0], of(Some(1 << 25), Some([3 << 25, -(1 << 24), 1 << 27]), 255, true));
     assert_eq!((found.segments[0].theta_rad2(), found.segments[1].end_m2()), (Some(0.5 / 64.0), None));
     assert_eq!(found.segments[0].end_m2(), Some([1.5 / 64.0, -0.25 / 64.0, 2.0 / 64.0]));
     assert_eq!(found.segments[1], of(Some(1 << 25), None, 99, false));
     assert_eq!(found.segments[2..], [SegmentUncertainty::default(); 4]);
-    assert_eq!(telemetry::touched(&contacts), [true, false, false, false, false, false]);
+    assert_eq!(telemetry::contact_flags(&contacts), [true, false, false, false, false, false]);
 }

@@ -1,4 +1,4 @@
-//! Frames are what the protocol page says, and only those are accepted.
+//! Frames have the bytes of the protocol page, and no others are accepted.
 
 use proptest::prelude::*;
 use telemetry::{
@@ -28,9 +28,9 @@ fn topics_are_those_of_the_protocol_page() {
 #[test]
 fn the_schema_is_that_of_this_version_and_of_the_protocol_page() {
     // If this fails, the layout of a message has changed: raise PROTOCOL_VERSION, empty EARLIER_SCHEMAS, put the new hash
-    // here, and bring docs/PROTOCOL.md up to date.
+    // here, and bring docs/reference/protocol.md up to date.
     assert_eq!((PROTOCOL_VERSION, SCHEMA), (2, 0x666C_7703));
-    let page = include_str!("../../../docs/PROTOCOL.md");
+    let page = include_str!("../../../docs/reference/protocol.md");
     assert!(page.contains(&format!("`0x{SCHEMA:08x}`")));
     assert!(EARLIER_SCHEMAS.iter().all(|schema| page.contains(&format!("`0x{schema:08x}`"))));
 }
@@ -49,10 +49,10 @@ fn every_byte_of_an_uncertainty_has_its_place() {
         theta: Some(0x0403_0201),
         end: Some([0x0807_0605, -2, 0x100F_0E0D]),
         contact_percent: 250,
-        is_touched: true,
+        in_contact: true,
     };
-    segments[4] = SegmentUncertainty { theta: Some(1), end: None, contact_percent: 7, is_touched: false };
-    segments[5].is_touched = true;
+    segments[4] = SegmentUncertainty { theta: Some(1), end: None, contact_percent: 7, in_contact: false };
+    segments[5].in_contact = true;
     let found = body(&Message::Uncertainty(Uncertainty { tick: 0xA3A2_A1A0, segments }));
 
     let mut expected = [0; 109];
@@ -74,7 +74,7 @@ fn a_frame_of_another_version_is_told_apart_from_a_damaged_one() {
     let mut decoder = Decoder::<Message>::new();
     let found = decode(&mut decoder, &frame_by_hand(PROTOCOL_VERSION + 1, topic::EVENT, 0, &[3]));
     assert_eq!(found, [Err(DecodeError::Version(PROTOCOL_VERSION + 1))]);
-    assert_eq!((decoder.counts().foreign, decoder.counts().damaged), (1, 0));
+    assert_eq!((decoder.counts().wrong_version, decoder.counts().damaged), (1, 0));
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! What board and host rely on.
+//! Properties of the protocol that board and host rely on.
 
 mod budget;
 mod counts;
@@ -15,12 +15,12 @@ fn encode(encoder: &mut Encoder, payload: &impl Payload) -> Vec<u8> {
     encoder.encode(payload, &mut [0; MAX_FRAME]).expect("MAX_FRAME bytes hold any message").to_vec()
 }
 
-/// What a decoder makes of these bytes.
+/// Results of decoding these bytes.
 fn decode<P: Payload>(decoder: &mut Decoder<P>, bytes: &[u8]) -> Vec<Result<P, DecodeError>> {
     bytes.iter().filter_map(|&byte| decoder.push(byte)).collect()
 }
 
-/// A frame put together by others' crates, from the layout in `docs/PROTOCOL.md`.
+/// A frame put together by others' crates, from the layout in `docs/reference/protocol.md`.
 fn frame_by_hand(version: u8, topic: u8, sequence: u16, body: &[u8]) -> Vec<u8> {
     let mut content = vec![version, topic];
     content.extend(sequence.to_le_bytes());

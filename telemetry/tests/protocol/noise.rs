@@ -1,4 +1,4 @@
-//! Whatever the line does to the bytes: no damaged frame is accepted, every whole one is.
+//! No damaged frame is accepted and every undamaged one is, under any noise on the line.
 
 use proptest::prelude::*;
 use proptest::sample::Index;

@@ -70,10 +70,10 @@ fn hello() -> impl Strategy<Value = Hello> {
 pub fn sample() -> impl Strategy<Value = Sample> {
     let bend = prop::array::uniform(prop::option::of(number!(u16)));
     let imu = prop::array::uniform(prop::option::of(prop::array::uniform4(number!(i16))));
-    (number!(u32), number!(u64), number!(u8), bend, imu).prop_map(|(tick, time_us, tare, bend, imu)| Sample {
+    (number!(u32), number!(u64), number!(u8), bend, imu).prop_map(|(tick, time_us, tare_epoch, bend, imu)| Sample {
         tick,
         time_us,
-        tare,
+        tare_epoch,
         bend,
         imu,
     })
@@ -89,7 +89,7 @@ fn estimate() -> impl Strategy<Value = Estimate> {
 fn uncertainty() -> impl Strategy<Value = Uncertainty> {
     let end = prop::option::of(prop::array::uniform3(number!(i32)));
     let segment = (prop::option::of(number!(i32)), end, number!(u8), any::<bool>()).prop_map(
-        |(theta, end, contact_percent, is_touched)| SegmentUncertainty { theta, end, contact_percent, is_touched },
+        |(theta, end, contact_percent, in_contact)| SegmentUncertainty { theta, end, contact_percent, in_contact },
     );
     (number!(u32), prop::array::uniform(segment)).prop_map(|(tick, segments)| Uncertainty { tick, segments })
 }
@@ -97,11 +97,11 @@ fn uncertainty() -> impl Strategy<Value = Uncertainty> {
 fn sensor_state() -> impl Strategy<Value = SensorState> {
     select(vec![
         SensorState::Ok,
-        SensorState::Off,
+        SensorState::NoResponse,
         SensorState::Stuck,
-        SensorState::Garbage,
-        SensorState::Wrong,
-        SensorState::Slow,
+        SensorState::Invalid,
+        SensorState::Inconsistent,
+        SensorState::Timeout,
         SensorState::Intermittent,
     ])
 }
@@ -117,13 +117,13 @@ fn health() -> impl Strategy<Value = Health> {
     let pressures = prop::array::uniform(number!(u32));
     (sensors, numbers, number!(u16), actuation(), pressures).prop_map(
         |((bend, imu), numbers, load_permille, actuation, pressures_pa)| {
-            let [tick, longest_tick_us, longest_imu_read_us, overruns, stale_scans, counts @ ..] = numbers;
+            let [tick, max_estimate_latency_us, longest_imu_read_us, overruns, stale_scans, counts @ ..] = numbers;
             let [dropped_frames, damaged_frames, bus_recoveries, saturations] = counts;
             Health {
                 tick,
                 bend,
                 imu,
-                longest_tick_us,
+                max_estimate_latency_us,
                 longest_imu_read_us,
                 load_permille,
                 overruns,
@@ -175,7 +175,7 @@ pub fn longest_messages() -> [Message; 7] {
         Message::Sample(Sample {
             tick: u32::MAX,
             time_us: u64::MAX,
-            tare: u8::MAX,
+            tare_epoch: u8::MAX,
             bend: [Some(u16::MAX); BEND_SENSORS],
             imu: [Some([i16::MIN; 4]); SEGMENTS],
         }),
@@ -192,7 +192,7 @@ pub fn longest_messages() -> [Message; 7] {
                 theta: Some(i32::MIN),
                 end: Some([i32::MIN; 3]),
                 contact_percent: u8::MAX,
-                is_touched: true,
+                in_contact: true,
             }; SEGMENTS],
         }),
     ]
@@ -223,7 +223,7 @@ fn longest_health() -> Health {
         tick: u32::MAX,
         bend: [sensor; BEND_SENSORS],
         imu: [sensor; SEGMENTS],
-        longest_tick_us: u32::MAX,
+        max_estimate_latency_us: u32::MAX,
         longest_imu_read_us: u32::MAX,
         load_permille: u16::MAX,
         overruns: u32::MAX,

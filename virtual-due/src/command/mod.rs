@@ -131,9 +131,9 @@ fn machine(path: &Path, rig: WiredRig) -> Result<Machine<WiredRig>, Error> {
 
 fn scenario(text: &str) -> Result<Scenario, String> {
     match text {
-        "1" => Ok(Scenario::One),
-        "2" => Ok(Scenario::Two),
-        "3" => Ok(Scenario::Three),
+        "1" => Ok(Scenario::FreeSwing),
+        "2" => Ok(Scenario::Push),
+        "3" => Ok(Scenario::Obstacle),
         _ => Err("expected 1, 2 or 3".to_owned()),
     }
 }

@@ -1,6 +1,6 @@
 //! The simulated arm in virtual time, and the pins that command its pressure regulators.
 
-use rig_twin::{Program, REGULATORS, Rig as Twin, Scenario};
+use rig_twin::{MotionProgram, REGULATORS, Rig as Twin, Scenario};
 use sam3x_models::model::Cycles;
 
 /// The twin's own grid, s and cycles.
@@ -34,7 +34,7 @@ impl SetPoint {
 #[derive(Debug, Clone)]
 pub struct DrivenArm {
     twin: Twin,
-    program: Program,
+    program: MotionProgram,
     grid_points: u64,
     set_points: [SetPoint; REGULATORS],
     /// No regulator pin was ever driven: the scenario's program moves the arm, as a bench supply would.
@@ -46,7 +46,7 @@ impl DrivenArm {
     pub fn new(scenario: Scenario, seed: u64) -> Self {
         Self {
             twin: Twin::new(scenario, seed),
-            program: Program::new(scenario, seed),
+            program: MotionProgram::new(scenario, seed),
             grid_points: 0,
             set_points: [SetPoint::default(); REGULATORS],
             on_bench_supply: true,

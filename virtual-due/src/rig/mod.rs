@@ -40,7 +40,7 @@ const PORTS: usize = 5;
 /// use virtual_due::model::{CYCLES_PER_SECOND, World};
 /// use virtual_due::rig::{Rail, WiredRig};
 ///
-/// let mut rig = WiredRig::new(Scenario::One, 7);
+/// let mut rig = WiredRig::new(Scenario::FreeSwing, 7);
 /// rig.faults.bend[0] = Some(Rail::High);
 /// assert_eq!(rig.adc_counts(7, CYCLES_PER_SECOND), 4095);
 /// ```

@@ -9,7 +9,7 @@ const SECOND: Cycles = CYCLES_PER_SECOND;
 const D6: Pin = Pin { port: PIOC, line: 24 };
 
 fn rig() -> WiredRig {
-    WiredRig::new(Scenario::One, 7)
+    WiredRig::new(Scenario::FreeSwing, 7)
 }
 
 /// Connects these channels.
@@ -47,7 +47,7 @@ fn quaternion(rig: &mut WiredRig, imu: usize, now: Cycles) -> Option<[i16; 4]> {
 #[test]
 fn each_bend_sensor_is_on_its_channel() {
     let mut rig = rig();
-    let counts = rig_twin::Rig::new(Scenario::One, 7).adc_counts();
+    let counts = rig_twin::Rig::new(Scenario::FreeSwing, 7).adc_counts();
     for (channel, expected) in [7, 6, 5, 4, 3, 2, 1, 0, 10, 11, 12, 13].into_iter().zip(counts) {
         assert_eq!(rig.adc_counts(channel, 0), expected, "channel {channel}");
     }

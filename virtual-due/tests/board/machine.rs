@@ -95,6 +95,6 @@ fn a_run_in_pieces_is_the_same_run() {
 
 #[test]
 fn firmware_for_another_address_is_refused() {
-    let refused = Machine::new(&elf(0x0800_0000, &[0; 64]), WiredRig::new(Scenario::One, 1)).err();
+    let refused = Machine::new(&elf(0x0800_0000, &[0; 64]), WiredRig::new(Scenario::FreeSwing, 1)).err();
     assert_eq!(refused, Some(ElfError::Outside { address: 0x0800_0000, length: 64 }));
 }

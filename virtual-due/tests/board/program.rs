@@ -37,7 +37,7 @@ pub fn firmware(program: &[u16], fault: usize) -> Vec<u8> {
 
 /// A board with this [`firmware`].
 pub fn board(program: &[u16], fault: usize) -> Machine<WiredRig> {
-    Machine::new(&firmware(program, fault), WiredRig::new(Scenario::One, 1)).expect("a firmware for the Due")
+    Machine::new(&firmware(program, fault), WiredRig::new(Scenario::FreeSwing, 1)).expect("a firmware for the Due")
 }
 
 /// ldr r0, =address (kept at the end of the program, `at` words behind the entry).

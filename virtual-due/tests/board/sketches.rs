@@ -23,7 +23,7 @@ fn analog_read_gives_the_counts_of_the_arms_sensor() {
     );
     board.run_until(MILLISECOND);
     assert!(board.sleeps());
-    let counts = WiredRig::new(Scenario::One, 1).adc_counts(7, MILLISECOND);
+    let counts = WiredRig::new(Scenario::FreeSwing, 1).adc_counts(7, MILLISECOND);
     assert_eq!(result(&board), u32::from(counts));
 }
 

@@ -1,34 +1,36 @@
-//! Headings of one sample: those that are read and plausible, and absent ones from the bend sensors.
+//! Headings of one sample: plausible readings, and absent headings from the bend sensors.
 
 use crate::config::{ArmConfig, BendErrorConfig};
-use crate::drift::SensedArm;
-use crate::drift::bias_filter::{BiasFilter, SegmentTrack};
+use crate::drift::bias_filter::filter::BiasFilter;
+use crate::drift::bias_filter::track::SegmentTrack;
 use crate::drift::bias_state::{BIAS, BiasState, RATE};
 use crate::drift::bias_trace::BiasTrace;
-use crate::drift::heading_gate::{Expected, Verdict};
+use crate::drift::correction::SensedArm;
+use crate::drift::heading_gate::{HeadingPrediction, Verdict};
 use crate::numeric::phase::Turns;
 use crate::numeric::scalar::{Constant, Scalar, TIME_UNIT_S};
 use crate::numeric::variance::{degrees, smaller, variance_deg};
 use crate::sensing::heading::SegmentHeading;
 
-/// Doubt about a new zero: 2°, a quarter of the bend sensors' variance, and 0.02° a second of absence up to 400 s.
+/// Variance of a new zero: 2°, a quarter of the bend sensors' variance, and 0.02° a second of absence up to 400 s.
 const NEW_ZERO: Constant = variance_deg(2.0);
 const NEW_ZERO_CREEP: Constant = variance_deg(0.02 * 8.0);
 const NEW_ZERO_RATE: Constant = variance_deg(0.025 * TIME_UNIT_S);
-/// Doubt about a new zero that no bend sensor supports.
+/// Variance of a new zero without bend sensors.
 const UNSEEN_ZERO: Constant = variance_deg(15.0);
-/// Doubt about an IMU that returned near its old zero.
+/// Variance added for an IMU that returned near its old zero.
 const RETURNED: Constant = variance_deg(1.0);
-/// An absent heading is drawn to its bend sensors with this time constant, s.
+/// Time constant with which an absent heading follows its bend sensors, s.
 pub const ABSENT_TIME_S: f64 = 20.0;
-/// The same in time units.
+/// [`ABSENT_TIME_S`] in time units.
 const ABSENT_TIME: Constant = Constant::new(ABSENT_TIME_S / TIME_UNIT_S);
-/// An IMU whose bend sensors move by this much, and by four of their standard deviations, must change.
+/// An IMU is frozen if it does not change while the bend sensors move by this much, and by four of their standard
+/// deviations.
 const FROZEN_MOTION: Constant = degrees(8.0);
 const FROZEN_VARIANCE: Constant = variance_deg(8.0 / 4.0);
 
 impl<F: Scalar, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
-    /// Headings that are read and plausible, from the base to the tip.
+    /// Updates the headings with this sample's plausible readings, from the base to the tip.
     pub(super) fn track_headings<S: Scalar>(&mut self, config: &ArmConfig<S>, sensed: &SensedArm<S, N>) {
         let (mut below, mut excess) = (Turns::ZERO, F::zero());
         let mut readings = config.segments.iter().zip(&sensed.headings).enumerate();
@@ -38,21 +40,22 @@ impl<F: Scalar, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
             let bias = self.state.bias_at(i, sensed.time_us);
             let expected = track.expected(below, bias, &segment.bend_error);
             let reading = heading.is_read().then(|| heading.unwrapped());
-            // Only asked for where a reading deviates.
+            // Evaluated only where a reading deviates.
             let above = || {
                 let (next, (segment, heading)) = (next.first()?, readings.clone().next()?.1);
                 let bias = self.state.bias_at(i + 1, sensed.time_us);
                 next.deviation_from(expected.heading, bias, heading, segment.imu_scale_error)
             };
-            let verdict = track.gate.take(reading, segment.imu_scale_error, &expected, above, sensed.time_us);
-            doubt(&mut self.state, i, verdict, &expected, &segment.bend_error);
+            let verdict = track.gate.check(reading, segment.imu_scale_error, &expected, above, sensed.time_us);
+            inflate_bias_variance(&mut self.state, i, verdict, &expected, &segment.bend_error);
             excess = track.apply(verdict, &expected, sensed.time_us);
             below = track.heading;
             tracks = next;
         }
     }
 
-    /// Headings that were not read: from below by the segment's own bend sensors, and from above by those of the next.
+    /// Estimates the headings that were not read: from below by the segment's own bend sensors, and from above by those
+    /// of the next segment.
     pub(super) fn fill_absent_headings(&mut self, count: usize, dt: F) {
         let share = smaller(dt / F::constant(ABSENT_TIME), F::one());
         let mut below = Turns::ZERO;
@@ -78,7 +81,7 @@ impl<F: Scalar, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
 }
 
 impl<F: Scalar> SegmentTrack<F> {
-    /// Deviation of the reading from the prediction that the heading below is at `below`; `None` where it was not read.
+    /// Deviation of the reading from the heading predicted from the one `below`; `None` where it was not read.
     fn deviation_from(&self, below: Turns, bias: Turns, heading: &SegmentHeading, scale_error: i32) -> Option<Turns> {
         let predicted = below + (self.theta + self.motion).to_turns() + bias;
         (heading.is_read() && self.gate.is_known())
@@ -86,10 +89,10 @@ impl<F: Scalar> SegmentTrack<F> {
     }
 
     /// Prediction of the heading by the bend sensors and the heading `below`.
-    fn expected(&self, below: Turns, bias: Turns, error: &BendErrorConfig) -> Expected<F> {
+    fn expected(&self, below: Turns, bias: Turns, error: &BendErrorConfig) -> HeadingPrediction<F> {
         let motion = F::constant(FROZEN_MOTION);
         let is_beyond_errors = F::from_q(error.mean) < F::constant(FROZEN_VARIANCE);
-        Expected {
+        HeadingPrediction {
             heading: below + (self.theta + self.motion).to_turns(),
             motion: self.motion,
             bias,
@@ -99,8 +102,9 @@ impl<F: Scalar> SegmentTrack<F> {
         }
     }
 
-    /// Uses a heading; gives what θ of the next segment is too large by where the heading is corrected.
-    fn apply(&mut self, verdict: Verdict<F>, expected: &Expected<F>, time_us: u64) -> F {
+    /// Applies the verdict on a heading; returns by how much a correction of it makes θ of the next segment too large,
+    /// rad.
+    fn apply(&mut self, verdict: Verdict<F>, expected: &HeadingPrediction<F>, time_us: u64) -> F {
         let mut excess = F::zero();
         self.bias = expected.bias;
         (self.heading, self.is_heading_read) = match verdict {
@@ -128,24 +132,24 @@ impl<F: Scalar> SegmentTrack<F> {
     }
 }
 
-/// Doubts the bias of a heading that may have a new zero.
-fn doubt<F: Scalar, const N: usize, T: BiasTrace<F>>(
+/// Inflates the variance of the bias of a heading that may have a new zero.
+fn inflate_bias_variance<F: Scalar, const N: usize, T: BiasTrace<F>>(
     state: &mut BiasState<F, N, T>,
     i: usize,
     verdict: Verdict<F>,
-    expected: &Expected<F>,
+    expected: &HeadingPrediction<F>,
     error: &BendErrorConfig,
 ) {
     match verdict {
-        Verdict::Returned(_) => state.doubt(i, BIAS, F::constant(RETURNED)),
+        Verdict::Returned(_) => state.inflate_variance(i, BIAS, F::constant(RETURNED)),
         Verdict::Restarted(deviation, absence_us) => {
             state.add_to_bias(i, deviation);
             let absence = F::from_micros(absence_us.min(400_000_000) as u32);
             let quarter = F::from_q(error.mean).half().half();
             let seen = F::constant(NEW_ZERO) + quarter + absence * F::constant(NEW_ZERO_CREEP);
             let variance = if expected.bend.is_some() { seen } else { F::constant(UNSEEN_ZERO) };
-            state.doubt(i, BIAS, variance);
-            state.doubt(i, RATE, F::constant(NEW_ZERO_RATE));
+            state.inflate_variance(i, BIAS, variance);
+            state.inflate_variance(i, RATE, F::constant(NEW_ZERO_RATE));
         }
         Verdict::Accepted(_) | Verdict::Absent | Verdict::Frozen(_) => {}
     }

@@ -1,125 +1,23 @@
-//! Start of the bias filter: prior, bend sensors and plausibility of the tare.
+//! Start of the bias filter: prior, use of the bend sensors and plausibility of the tare.
 
 use crate::config::{ArmConfig, BiasFilterConfig, SegmentConfig};
-use crate::drift::SensedArm;
-use crate::drift::bias_filter::{BiasFilter, SegmentTrack};
+use crate::drift::bias_filter::filter::BiasFilter;
 use crate::drift::bias_trace::BiasTrace;
+use crate::drift::correction::SensedArm;
 use crate::numeric::phase::Turns;
 use crate::numeric::scalar::{Constant, Scalar};
-use crate::numeric::variance::{degrees, magnitude, scaled_square, smaller, variance_deg};
+use crate::numeric::variance::variance_deg;
 
-/// A tare is bad where headings spread by more than this, or the bend sensors' root mean square is this far off the reference
-/// pose; its straightness is the last one.
-const STILL: Constant = degrees(1.5);
+/// Largest mean square of the bend sensors' deviation from the reference pose in a good tare.
 const BENT: Constant = variance_deg(6.0);
+/// Prior of the straightness for a bad tare.
 const BAD_TARE: Constant = variance_deg(12.0);
 
-/// A heading that changes by more than this from one reading to the next, and by twice what the bend sensors below have
-/// moved, has a new zero.
-const STEP: Constant = degrees(6.0);
-
-/// Weight of the offsets' prior variance, in segments that show their offset.
+/// Weight of the offsets' prior variance, as a number of segments with a measured offset.
 const PRIOR_SEGMENTS: i32 = 2;
 
-/// Sums of the tare.
-#[derive(Debug, Clone, Copy)]
-pub struct TareStatistics<F, const N: usize> {
-    samples: u32,
-    segments: [SegmentTare<F>; N],
-}
-
-/// Sums of one segment.
-#[derive(Debug, Clone, Copy)]
-struct SegmentTare<F> {
-    /// First heading since the last step, and the range of all relative to it.
-    first: Option<Turns>,
-    range: [F; 2],
-    newest: Option<Turns>,
-    /// Whether the IMU has restarted with another zero.
-    has_stepped: bool,
-    newest_bend: Option<F>,
-    bend_sum: Turns,
-    bend_count: u16,
-}
-
-impl<F: Scalar> SegmentTare<F> {
-    /// Takes a heading; the bend sensors up to this segment have moved by `moved` since the last sample.
-    fn add_heading(&mut self, heading: Turns, moved: F) {
-        let change = self.newest.replace(heading).map_or(F::zero(), |last| F::from_phase((heading - last).phase()));
-        if magnitude(change) > F::constant(STEP) + moved + moved {
-            (self.first, self.range, self.has_stepped) = (None, [F::zero(); 2], true);
-        }
-        let first = *self.first.get_or_insert(heading);
-        let deviation: F = F::from_phase((heading - first).phase());
-        let [lowest, highest] = self.range;
-        self.range = [smaller(lowest, deviation), -smaller(-highest, -deviation)];
-    }
-
-    /// Takes a bend angle; gives its change since the last one.
-    fn add_bend(&mut self, theta: F) -> F {
-        if self.bend_count < u16::MAX {
-            self.bend_sum = self.bend_sum + theta.to_turns();
-            self.bend_count += 1;
-        }
-        self.newest_bend.replace(theta).map_or(F::zero(), |last| magnitude(theta - last))
-    }
-
-    fn has_moved(&self) -> bool {
-        let [lowest, highest] = self.range;
-        highest - lowest > F::constant(STILL)
-    }
-
-    fn bend_mean(&self) -> Option<F> {
-        (self.bend_count > 0).then(|| F::from_phase(self.bend_sum.mean_of(self.bend_count).phase()))
-    }
-}
-
-impl<F: Scalar, const N: usize> TareStatistics<F, N> {
-    pub const fn new(zero: F) -> Self {
-        let segment = SegmentTare {
-            first: None,
-            range: [zero; 2],
-            newest: None,
-            has_stepped: false,
-            newest_bend: None,
-            bend_sum: Turns::ZERO,
-            bend_count: 0,
-        };
-        Self { samples: 0, segments: [segment; N] }
-    }
-
-    fn add<S>(&mut self, sensed: &SensedArm<S, N>, tracks: &[SegmentTrack<F>; N]) {
-        self.samples = self.samples.saturating_add(1);
-        let mut moved = F::zero();
-        for ((segment, heading), track) in self.segments.iter_mut().zip(&sensed.headings).zip(tracks) {
-            moved += track.bend.map_or(F::zero(), |bend| segment.add_bend(bend.theta));
-            if heading.is_read() {
-                segment.add_heading(heading.unwrapped(), moved);
-            }
-        }
-    }
-
-    fn has_moved(&self) -> bool {
-        self.segments.iter().any(SegmentTare::has_moved)
-    }
-
-    /// Mean square of the bend angles' distance from the reference pose, as variances are held.
-    fn bend_variance<S: Scalar>(&self, segments: &[SegmentConfig<S>]) -> F {
-        let (mut sum, mut count, mut below) = (F::zero(), 0, Turns::ZERO);
-        for (segment, tare) in segments.iter().zip(&self.segments) {
-            let reference: F = F::from_phase((segment.reference - below).phase());
-            below = segment.reference;
-            let Some(bend) = tare.bend_mean() else { continue };
-            // In sixteenths, so that the sum fits.
-            sum += scaled_square(bend - reference) / F::from_int(16);
-            count += 1;
-        }
-        smaller(sum / F::from_int(count.max(1)), F::one()) * F::from_int(16)
-    }
-}
-
 impl<F: Scalar, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
-    /// Gathers the tare, and starts at its end; `false` until then.
+    /// Adds a sample to the tare, and starts the filter at its end; returns `false` until then.
     pub(super) fn tare<S: Scalar>(
         &mut self,
         config: &ArmConfig<S>,
@@ -133,7 +31,7 @@ impl<F: Scalar, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
         let is_tared = config.tare_samples > 0;
         self.start_tracks(config, filter, sensed);
         if is_tared {
-            self.judge(config.segments);
+            self.validate(config.segments);
         }
         let straightness = if self.is_tare_bad { F::constant(BAD_TARE) } else { F::from_q(filter.straightness) };
         let straightness = if is_tared { straightness } else { F::zero() };
@@ -147,9 +45,9 @@ impl<F: Scalar, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
         true
     }
 
-    /// Whether the tare is bad; if not, what the bend sensors read of a straight arm, beyond their scatter, is the size of
-    /// their offsets in this session.
-    fn judge<S: Scalar>(&mut self, segments: &[SegmentConfig<S>]) {
+    /// Checks the plausibility of the tare. If it is good, the variance of the offsets in this session is estimated
+    /// from the bend sensors' readings of the straight arm.
+    fn validate<S: Scalar>(&mut self, segments: &[SegmentConfig<S>]) {
         let spread = self.tare.bend_variance(segments);
         self.is_tare_bad = self.tare.has_moved() || spread > F::constant(BENT);
         if !self.is_tare_bad {
@@ -163,7 +61,7 @@ impl<F: Scalar, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
         }
     }
 
-    /// Headings at the end of the tare, and the offsets' priors.
+    /// Initialises the headings at the end of the tare, and the offsets' priors.
     fn start_tracks<S: Scalar>(&mut self, config: &ArmConfig<S>, filter: &BiasFilterConfig, sensed: &SensedArm<S, N>) {
         let mut below = Turns::ZERO;
         let headings = sensed.headings.iter().zip(config.segments);
@@ -176,7 +74,7 @@ impl<F: Scalar, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
             track.motion = F::zero();
             let is_tared = config.tare_samples > 0;
             let in_world = heading.in_world().filter(|_| is_tared || heading.is_read());
-            // The mean over the tare is no zero of an IMU that restarted in it: the newest reading is.
+            // An IMU that restarted during the tare: the newest reading is its zero, not the mean.
             let in_world = if tare.has_stepped { Some(segment.reference) } else { in_world };
             if tare.has_stepped {
                 track.restarted_at_us = Some(sensed.time_us);
@@ -194,7 +92,7 @@ impl<F: Scalar, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
         }
     }
 
-    /// What the bend sensors read in the tare, which the filter uses in the first turn of each segment.
+    /// Stores the bend sensors' mean over the tare, by which the first update of each segment is made.
     fn keep_bend_of_tare<S: Scalar>(&mut self, segments: &[SegmentConfig<S>]) {
         let mut below = Turns::ZERO;
         for ((track, segment), tare) in self.segments.iter_mut().zip(segments).zip(&self.tare.segments) {
@@ -204,14 +102,14 @@ impl<F: Scalar, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
         }
     }
 
-    /// θ of all segments with the biases that the tare gives.
+    /// Corrects θ of all segments by the biases of the tare.
     fn correct_tracks(&mut self, time_us: u64) {
         let mut below = Turns::ZERO;
         for (track, bias) in self.segments.iter_mut().zip(self.state.bias) {
             track.heading = track.heading - bias;
             track.theta = F::from_phase((track.heading - below).phase());
             below = track.heading;
-            (track.counted_theta, track.turn_theta) = (track.theta, track.theta);
+            (track.counted_theta, track.processed_theta) = (track.theta, track.theta);
             track.counted_bend = track.last_bend.unwrap_or_else(F::zero);
             track.updated_at_us = time_us;
         }

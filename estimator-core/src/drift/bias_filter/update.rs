@@ -1,69 +1,71 @@
-//! Updates of the bias filter: by bend sensors that have moved, one segment in its turn, and by an arm at rest.
+//! Updates of the bias filter: by bend sensors that have moved, one segment after the other, and by the drift of an arm
+//! at rest.
 
-use crate::config::{BendErrorConfig, BiasFilterConfig, SENSORS_PER_SEGMENT, SegmentConfig};
-use crate::drift::SensedArm;
+use crate::config::{BendErrorConfig, BiasFilterConfig, SegmentConfig};
 use crate::drift::bend_monitor::TrustedBend;
-use crate::drift::bias_filter::{BiasFilter, MAX_RATIO, RestChange, SegmentTrack, bounded_ratio, since};
+use crate::drift::bias_filter::filter::BiasFilter;
+use crate::drift::bias_filter::track::{MAX_RATIO, RestChange, SegmentTrack, bounded_ratio, since};
 use crate::drift::bias_state::{BIAS, OFFSET};
 use crate::drift::bias_trace::BiasTrace;
+use crate::drift::correction::SensedArm;
 use crate::drift::rest::RestWindow;
 use crate::drift::share::Share;
 use crate::numeric::fused::FusedOps;
 use crate::numeric::phase::Turns;
 use crate::numeric::scalar::{Constant, Scalar};
 use crate::numeric::variance::{degrees, is_beyond, larger, magnitude, scaled_square, smaller, variance_deg};
+use crate::sensing::bend_sensors::BendAngles;
 
 /// Travel of the IMUs and of the bend sensors since the last update, below which there is no new information.
 const IMU_TRAVEL: Constant = degrees(1.0);
 const BEND_TRAVEL: Constant = degrees(0.5);
-/// Travel is counted up to this, rad.
+/// Limit of the counted travel, rad.
 const LONGEST_TRAVEL: Constant = Constant::new(16.0);
-/// A segment that has not moved teaches once in this time, with the largest noise.
+/// A segment that has not moved is updated once in this time, with the largest noise.
 const STILL_US: u64 = 20_000_000;
-/// Factor on the measurement noise: errors that last longer than ℓ and τ.
+/// Factor on the measurement noise, for errors that are correlated over more than ℓ and τ.
 const LONG_ERRORS: i32 = 2;
-/// Factor on the measurement noise of one sensor whose twin is missing, and the largest noise that it multiplies.
+/// Factor on the measurement noise of one sensor whose twin is missing, and the largest noise to which it applies.
 const SINGLE: i32 = 5;
 const LARGEST_SINGLE: Constant = Constant::new(6.0);
 /// Innovation gate: one over six predicted standard deviations.
 const GATE: Constant = Constant::new(1.0 / 6.0);
-/// A turn is repeated where a heading is missing that was read within this time.
+/// A segment's update is repeated in the next sample if a heading is missing that was read within this time.
 const RETRY_US: u64 = 500_000;
-/// After so long beyond the gate the bias and the offset become doubtful, by 3°.
+/// Timeout of the innovation gate: the variances of the bias and the offset then grow by (3°)².
 const GATE_TIMEOUT_US: u64 = 30_000_000;
-const GATED: Constant = variance_deg(3.0);
-/// Doubt about the offset of a segment whose sensor has stepped.
-const STEPPED: Constant = variance_deg(1.0);
-/// Factor on the bend sensors' variance in the tare: one pose, with hysteresis in it.
+const GATE_TIMEOUT_VARIANCE: Constant = variance_deg(3.0);
+/// Variance added to the offset of a segment whose sensor has stepped.
+const STEP_VARIANCE: Constant = variance_deg(1.0);
+/// Factor on the bend sensors' variance in the tare: a single pose does not average the hysteresis.
 const TARE_NOISE: Constant = Constant::new(4.0);
-/// Error of bend sensors that stay bent, by their creep: a share of the mean bend angle over this time, time units.
-const LEAN_ERROR: Constant = Constant::new(0.1);
-const LEAN_TIME: Constant = Constant::new(0.5);
+/// Creep of bend sensors that stay bent: error as a share of the mean bend angle over this time, time units.
+const CREEP_ERROR: Constant = Constant::new(0.1);
+const CREEP_TIME: Constant = Constant::new(0.5);
 /// Growth of the offset's variance where one sensor of two is lost, in slow variances of their difference.
 const LOST_SENSOR: Constant = Constant::new(1.5);
-/// Doubt about the heading of a resting arm, 0.02 °/√s, and about the rate learned at rest.
+/// Process noise of the heading of a resting arm, 0.02 °/√s, and measurement noise of its change.
 const REST_CREEP: Constant = variance_deg(0.02 * 8.0);
 const REST_READING: Constant = variance_deg(0.064);
 /// Gate of a heading change at rest: one over three predicted standard deviations.
 const REST_GATE: Constant = Constant::new(1.0 / 3.0);
 
 impl<F: FusedOps, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
-    /// The turn of one segment: its bend sensors are held against the IMUs, and where a sample does all work, its states are
-    /// predicted and updated. `false` where the turn must be repeated in the next sample.
-    pub(super) fn take_turn<S: Scalar>(
+    /// Processes the next segment: checks its bend sensors against the IMUs and, where a sample does all work, predicts
+    /// and updates its states. Returns `false` if it must be repeated in the next sample.
+    pub(super) fn process_segment<S: Scalar>(
         &mut self,
         segments: &[SegmentConfig<S>],
         filter: &BiasFilterConfig,
         sensed: &SensedArm<S, N>,
-        angles: &[[Option<F>; SENSORS_PER_SEGMENT]; N],
     ) -> bool {
-        let (i, time_us) = (self.turn, sensed.time_us);
-        let (Some(segment), Some(angles)) = (segments.get(i), angles.get(i)) else { return false };
+        let (i, time_us) = (self.next_segment, sensed.time_us);
+        let (Some(segment), Some(bend)) = (segments.get(i), sensed.bend.get(i)) else { return false };
         let Some(are_headings_read) = self.are_headings_read(i, time_us) else { return false };
-        self.turn = following(i, segments);
-        self.check_bend(i, &segment.bend_error, *angles, are_headings_read, time_us);
+        self.next_segment = following(i, segments);
+        self.check_bend(i, &segment.bend_error, bend, are_headings_read, time_us);
         if sensed.share == Share::Whole {
-            self.grow_offset(i, &segment.bend_error);
+            self.inflate_offset_variance(i, &segment.bend_error);
             self.predict(i, filter, time_us);
             self.update_segment(i, &segment.bend_error, sensed, are_headings_read);
             self.state.finish_update();
@@ -71,8 +73,8 @@ impl<F: FusedOps, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
         true
     }
 
-    /// The prediction of the states of the segment whose update is next.
-    pub(super) fn take_prediction<S: Scalar>(
+    /// Predicts the states of the segment that is updated next.
+    pub(super) fn predict_next<S: Scalar>(
         &mut self,
         segments: &[SegmentConfig<S>],
         filter: &BiasFilterConfig,
@@ -80,26 +82,26 @@ impl<F: FusedOps, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
     ) {
         let i = self.next_update;
         let Some(segment) = segments.get(i) else { return };
-        self.grow_offset(i, &segment.bend_error);
+        self.inflate_offset_variance(i, &segment.bend_error);
         self.predict(i, filter, time_us);
     }
 
-    /// The update by the next segment; what it takes off the covariance follows in the next samples. Where it must wait, so
-    /// does the next share of the work. A sample that has nothing to update looks after rest.
-    pub(super) fn take_update<S: Scalar>(&mut self, segments: &[SegmentConfig<S>], sensed: &SensedArm<S, N>) {
+    /// Updates the states by the next segment; the covariance follows in the next samples. If the update must wait, so
+    /// does the next share of the work. A sample without an update evaluates the window of rest.
+    pub(super) fn update_next<S: Scalar>(&mut self, segments: &[SegmentConfig<S>], sensed: &SensedArm<S, N>) {
         let i = self.next_update;
         let Some(segment) = segments.get(i) else { return };
         let Some(are_headings_read) = self.are_headings_read(i, sensed.time_us) else { return };
         self.next_update = following(i, segments);
         self.update_segment(i, &segment.bend_error, sensed, are_headings_read);
         if !self.state.is_updating() {
-            self.state.begin_no_update();
-            self.follow_rest(sensed.time_us);
+            self.state.begin_empty_update();
+            self.evaluate_rest(sensed.time_us);
         }
     }
 
-    /// Whether the headings of segment `i` and of the one below are read. `None`: they are missing only now and then, which
-    /// must not be at each of the segment's turns.
+    /// Returns `true` if the headings of segment `i` and of the one below are read, and `None` if one is missing in
+    /// this sample but was read recently: the segment is then repeated, lest a periodic gap hits each of its updates.
     fn are_headings_read(&self, i: usize, time_us: u64) -> Option<bool> {
         let track = self.segments.get(i)?;
         let below = i.checked_sub(1).and_then(|below| self.segments.get(below));
@@ -110,7 +112,7 @@ impl<F: FusedOps, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
         (are_read || !are_recent()).then_some(are_read)
     }
 
-    /// Updates all states by what is known of segment `i`.
+    /// Updates all states by the measurements of segment `i`.
     fn update_segment<S: Scalar>(
         &mut self,
         i: usize,
@@ -120,19 +122,20 @@ impl<F: FusedOps, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
     ) {
         let biases = self.state.bias;
         self.use_tare(i, error);
-        self.learn_rate(i);
+        self.update_rate(i);
         let is_extrapolated = sensed.bend.get(i).is_none_or(|bend| bend.is_extrapolated);
         let bend = self.segments.get(i).and_then(|track| track.bend).filter(|_| !is_extrapolated);
-        // One update at a time: that by the bend sensors loses nothing by waiting.
+        // One update at a time: that by the bend sensors can wait without loss.
         let is_free = sensed.share == Share::Whole || !self.state.is_updating();
         if let Some(bend) = bend.filter(|_| are_headings_read && is_free) {
             self.update(i, error, bend, sensed.time_us);
         }
-        self.follow_biases(&biases);
+        self.shift_headings(&biases);
     }
 
-    /// Moves the headings with the biases that an update has changed, so that the next readings are held against the new ones.
-    fn follow_biases(&mut self, before: &[Turns; N]) {
+    /// Shifts the headings by the change of the biases in an update, so that the next readings are compared with
+    /// corrected headings.
+    fn shift_headings(&mut self, before: &[Turns; N]) {
         if self.state.bias == *before {
             return;
         }
@@ -144,39 +147,40 @@ impl<F: FusedOps, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
             track.theta = F::from_phase((track.heading - below).phase());
             let turned: F = F::from_phase((moved - below_moved).phase());
             track.counted_theta += turned;
-            track.turn_theta += turned;
+            track.processed_theta += turned;
             (below, below_moved) = (track.heading, moved);
         }
     }
 
-    /// Holds the bend sensors of segment `i` against the IMUs: steps, departures, sensors that are stuck. Its signals go to the
+    /// Compares the bend sensors of segment `i` with the IMUs (steps, deviations, stuck sensors), and updates the
     /// detector of rest.
-    fn check_bend(
+    fn check_bend<S: Scalar>(
         &mut self,
         i: usize,
         error: &BendErrorConfig,
-        angles: [Option<F>; SENSORS_PER_SEGMENT],
+        bend: &BendAngles<S>,
         are_headings_read: bool,
         time_us: u64,
     ) {
         let Some(track) = self.segments.get_mut(i) else { return };
-        let dt = since(track.turned_at_us.replace(time_us).unwrap_or(time_us), time_us);
-        track.lean += smaller(dt / F::constant(LEAN_TIME), F::one()) * (track.theta - track.lean);
+        let angles = track.sensor_angles(bend);
+        let dt = since(track.processed_at_us.replace(time_us).unwrap_or(time_us), time_us);
+        track.mean_theta += smaller(dt / F::constant(CREEP_TIME), F::one()) * (track.theta - track.mean_theta);
         track.monitor.compare(angles, dt, time_us);
-        let motion = are_headings_read.then(|| track.theta - track.turn_theta);
+        let motion = are_headings_read.then(|| track.theta - track.processed_theta);
         if track.monitor.find_steps(error, angles, motion, dt, time_us) {
-            self.state.doubt(i, OFFSET, F::constant(STEPPED));
+            self.state.inflate_variance(i, OFFSET, F::constant(STEP_VARIANCE));
             track.stepped_at_us = Some(time_us);
         }
         if are_headings_read {
             let expected = track.theta + self.state.angle_offset(i);
             track.monitor.check(error, angles, expected, time_us);
         }
-        track.turn_theta = track.theta;
+        track.processed_theta = track.theta;
         // Without a sensor that has just stepped.
         track.bend = track.monitor.mean(angles, track.has_twins(), time_us);
         let heading = track.is_heading_read.then(|| track.heading + track.bias);
-        self.rest.take(i, heading, track.bend.map(|bend| bend.theta.to_turns()), dt);
+        self.rest.update(i, heading, track.bend.map(|bend| bend.theta.to_turns()), dt);
     }
 
     fn predict(&mut self, i: usize, filter: &BiasFilterConfig, time_us: u64) {
@@ -188,7 +192,8 @@ impl<F: FusedOps, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
         }
     }
 
-    /// The update by the bend sensors' mean over the tare: the reference pose is known to its straightness alone.
+    /// Updates the states by the bend sensors' mean over the tare, as the reference pose is uncertain by its
+    /// straightness.
     fn use_tare(&mut self, i: usize, error: &BendErrorConfig) {
         let Some(bend) = self.segments.get_mut(i).and_then(|track| track.tare_bend.take()) else { return };
         let nu = self.state.angle_offset(i) - bend - self.state.angle_bias(i);
@@ -196,21 +201,21 @@ impl<F: FusedOps, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
         self.state.begin_update(innovation, nu, F::constant(TARE_NOISE) * F::from_q(error.mean));
     }
 
-    /// Widens the prior of the offset where the two sensors disagree more than before, or one is lost.
-    fn grow_offset(&mut self, i: usize, error: &BendErrorConfig) {
+    /// Inflates the variance of the offset if the two sensors disagree more than before, or one is lost.
+    fn inflate_offset_variance(&mut self, i: usize, error: &BendErrorConfig) {
         let Some(track) = self.segments.get_mut(i) else { return };
         let is_single = track.bend.is_some_and(|bend| bend.is_single);
         if is_single && !track.is_single {
-            track.lost += F::constant(LOST_SENSOR) * scaled_square(F::from_q(error.slow_difference));
+            track.lost_sensor_variance += F::constant(LOST_SENSOR) * scaled_square(F::from_q(error.slow_difference));
         }
         track.is_single = is_single;
         track.is_bend_missing = is_single || (track.bend.is_none() && track.sensors > 0);
         let prior = track.session_offset
-            + track.lost
+            + track.lost_sensor_variance
             + track.monitor.offset_excess(error, false)
-            + scaled_square(F::constant(LEAN_ERROR) * track.lean);
+            + scaled_square(F::constant(CREEP_ERROR) * track.mean_theta);
         if prior > track.offset_prior {
-            self.state.doubt(i, OFFSET, prior - track.offset_prior);
+            self.state.inflate_variance(i, OFFSET, prior - track.offset_prior);
             track.offset_prior = prior;
         }
     }
@@ -224,8 +229,8 @@ impl<F: FusedOps, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
         let innovation = self.state.innovation(i);
         if is_beyond(nu, GATE, innovation.variance + sigma) {
             if track.is_gate_timed_out(time_us) {
-                self.state.doubt(i, BIAS, F::constant(GATED));
-                self.state.doubt(i, OFFSET, F::constant(GATED));
+                self.state.inflate_variance(i, BIAS, F::constant(GATE_TIMEOUT_VARIANCE));
+                self.state.inflate_variance(i, OFFSET, F::constant(GATE_TIMEOUT_VARIANCE));
             }
             return;
         }
@@ -241,17 +246,17 @@ impl<F: FusedOps, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
         }
     }
 
-    /// Keeps what a window of rest shows for the turns of the segments.
-    pub(super) fn follow_rest(&mut self, time_us: u64) {
+    /// Stores the changes over a window of rest for the updates of the segments.
+    pub(super) fn evaluate_rest(&mut self, time_us: u64) {
         let Some(RestWindow { headings, bend, length_us }) = self.rest.window(time_us) else { return };
         for (track, (heading, bend)) in self.segments.iter_mut().zip(headings.into_iter().zip(bend)) {
             track.rest = heading.map(|heading| RestChange { heading, bend, length_us });
         }
     }
 
-    /// The change of heading `j` over a window of rest, per time: H = (v_j: 1). The shape stays: what the heading has changed
-    /// by was its bias.
-    fn learn_rate(&mut self, j: usize) {
+    /// Updates the rate by the change of heading `j` over a window of rest, per time: H = (v_j: 1). The change itself
+    /// is added to the bias, so that the shape is held.
+    fn update_rate(&mut self, j: usize) {
         if self.state.is_updating() {
             return;
         }
@@ -274,7 +279,7 @@ fn following<S>(i: usize, segments: &[SegmentConfig<S>]) -> usize {
 }
 
 impl<F: Scalar> SegmentTrack<F> {
-    /// Counts an innovation beyond the gate; `true` when none has passed for long.
+    /// Registers an innovation beyond the gate; returns `true` if none has passed for [`GATE_TIMEOUT_US`].
     fn is_gate_timed_out(&mut self, time_us: u64) -> bool {
         let since_us = *self.gated_since_us.get_or_insert(time_us);
         let is_timed_out = time_us.saturating_sub(since_us) >= GATE_TIMEOUT_US;
@@ -284,8 +289,8 @@ impl<F: Scalar> SegmentTrack<F> {
         is_timed_out
     }
 
-    /// Factor on the measurement noise of an update after a short travel or time; `None` where so little has moved that an
-    /// update is worth nothing. It then waits: to cut the factor off instead would count the same error several times.
+    /// Factor on the measurement noise of an update after a short travel or time; `None` if the motion is too small for
+    /// an informative update, which then waits. Clipping the factor instead would count the same error several times.
     fn noise_ratio(&mut self, error: &BendErrorConfig, bend: F, time_us: u64) -> Option<F> {
         let travel = magnitude(self.theta - self.counted_theta);
         let bend_travel = magnitude(bend - self.counted_bend);

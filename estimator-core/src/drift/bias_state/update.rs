@@ -1,9 +1,10 @@
 //! Updates of the model by scalar measurements.
 //!
-//! The states take K ν at once. P loses K (P⁻Hᵀ)ᵀ, which is quadratic in N, a block row at a time, so that a sample can take
-//! one of them.
+//! The states are updated at once, x = x⁻ + K ν. P = P⁻ − K (P⁻Hᵀ)ᵀ is quadratic in N; it is updated by block rows, of
+//! which a sample can process one.
 
-use crate::drift::bias_state::{BiasState, Row};
+use crate::drift::bias_state::pending::CovarianceUpdate;
+use crate::drift::bias_state::state::BiasState;
 use crate::drift::bias_trace::{BiasMeasurement, BiasOperation, BiasTrace};
 use crate::numeric::fused::FusedOps;
 use crate::numeric::scalar::{Constant, Scalar};
@@ -16,28 +17,11 @@ const SMALLEST: Constant = Constant::new(3e-7);
 /// Variance S = H P⁻ Hᵀ of a scalar measurement's innovation, without the measurement noise.
 #[derive(Debug, Clone, Copy)]
 pub struct Innovation<S> {
-    /// H P⁻ Hᵀ; in fixed point no more than it holds.
+    /// H P⁻ Hᵀ; saturated in fixed point.
     pub variance: S,
-    /// An eighth of it, which fits in any case.
+    /// An eighth of H P⁻ Hᵀ, which never saturates.
     eighth: S,
     measurement: BiasMeasurement,
-}
-
-/// An update of P under way.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Reduction<S, const N: usize> {
-    /// K, and P⁻Hᵀ of the newest innovation.
-    gain: Row<S, N>,
-    cross: Row<S, N>,
-    /// Block rows that are reduced.
-    reduced: usize,
-}
-
-impl<S: Copy, const N: usize> Reduction<S, N> {
-    /// Nothing is left to be done.
-    pub const fn complete(zero: S) -> Self {
-        Self { gain: [[zero; 3]; N], cross: [[zero; 3]; N], reduced: N }
-    }
 }
 
 fn eighth<S: Scalar>(value: S) -> S {
@@ -45,10 +29,11 @@ fn eighth<S: Scalar>(value: S) -> S {
 }
 
 impl<S: FusedOps, const N: usize, T: BiasTrace<S>> BiasState<S, N, T> {
-    /// Innovation of segment `i`'s bend sensors against its IMUs, H = (β_i: 1, β_{i−1}: −1, o_i: −1), for [`Self::update`].
+    /// Innovation of segment `i`'s bend sensors against its IMUs, H = (β_i: 1, β_{i−1}: −1, o_i: −1), for
+    /// [`Self::update`].
     pub fn innovation(&mut self, i: usize) -> Innovation<S> {
         self.finish_update();
-        let cross = &mut self.reduction.cross;
+        let cross = &mut self.pending.cross;
         let below = i.checked_sub(1);
         if let Some([bias, _, offset]) = self.covariance.get(i) {
             let rows = bias.as_flattened().iter().zip(offset.as_flattened());
@@ -72,9 +57,9 @@ impl<S: FusedOps, const N: usize, T: BiasTrace<S>> BiasState<S, N, T> {
     pub fn innovation_at_rest(&mut self, j: usize) -> Innovation<S> {
         self.finish_update();
         if let Some([_, rate, _]) = self.covariance.get(j) {
-            self.reduction.cross = *rate;
+            self.pending.cross = *rate;
         }
-        let variance = self.reduction.cross.get(j).map_or(S::zero(), |[_, rate, _]| *rate);
+        let variance = self.pending.cross.get(j).map_or(S::zero(), |[_, rate, _]| *rate);
         Innovation { variance, eighth: eighth(variance), measurement: BiasMeasurement::Rate { segment: j } }
     }
 
@@ -84,12 +69,12 @@ impl<S: FusedOps, const N: usize, T: BiasTrace<S>> BiasState<S, N, T> {
         self.finish_update();
     }
 
-    /// [`Self::update`] but for P, which [`Self::reduce_row`] brings up to date.
+    /// Updates the states as [`Self::update`] does; P is updated by [`Self::update_row`].
     pub fn begin_update(&mut self, innovation: Innovation<S>, nu: S, r: S) {
         self.trace.record(BiasOperation::Update { measurement: innovation.measurement, nu, r });
-        let Reduction { gain, cross, reduced } = &mut self.reduction;
+        let CovarianceUpdate { gain, cross, rows_done } = &mut self.pending;
         *gain = *cross;
-        *reduced = 0;
+        *rows_done = 0;
         let half = S::constant(HALF_OF_RANGE);
         let s = if innovation.variance < half && r < half {
             innovation.variance + r
@@ -106,27 +91,27 @@ impl<S: FusedOps, const N: usize, T: BiasTrace<S>> BiasState<S, N, T> {
         }
     }
 
-    /// An update that changes nothing, and takes as many block rows of P.
-    pub fn begin_no_update(&mut self) {
+    /// Begins an update without effect: its block rows take as many samples as those of any other.
+    pub fn begin_empty_update(&mut self) {
         self.finish_update();
-        self.reduction.gain.as_flattened_mut().fill(S::zero());
-        self.reduction.reduced = 0;
+        self.pending.gain.as_flattened_mut().fill(S::zero());
+        self.pending.rows_done = 0;
     }
 
-    /// Whether P is not up to date.
+    /// Returns `true` while block rows of P remain to be updated.
     pub fn is_updating(&self) -> bool {
-        self.reduction.reduced < N
+        self.pending.rows_done < N
     }
 
-    /// Brings the next block row of P up to date.
-    pub fn reduce_row(&mut self) {
-        let Reduction { gain, cross, reduced } = &mut self.reduction;
-        let Some(rows) = self.covariance.get_mut(*reduced) else { return };
-        let first = 3 * *reduced;
-        *reduced += 1;
+    /// Updates the next block row of P.
+    pub fn update_row(&mut self) {
+        let CovarianceUpdate { gain, cross, rows_done } = &mut self.pending;
+        let Some(rows) = self.covariance.get_mut(*rows_done) else { return };
+        let first = 3 * *rows_done;
+        *rows_done += 1;
         let (gain, cross) = (gain.as_flattened(), cross.as_flattened());
         for (k, row) in (first..).zip(rows) {
-            // Of two factors K that of the earlier state, here and in its own row: so P stays symmetric to the bit.
+            // Each pair of states uses K of the earlier one in both rows, which keeps P symmetric to the bit.
             let halves = row.as_flattened_mut().split_at_mut_checked(k);
             let (Some((before, after)), Some(gain_k), Some(cross_k)) = (halves, gain.get(k), cross.get(k)) else {
                 return;
@@ -141,10 +126,10 @@ impl<S: FusedOps, const N: usize, T: BiasTrace<S>> BiasState<S, N, T> {
         }
     }
 
-    /// Brings all of P up to date.
+    /// Updates all remaining block rows of P.
     pub fn finish_update(&mut self) {
         while self.is_updating() {
-            self.reduce_row();
+            self.update_row();
         }
     }
 }

@@ -1,4 +1,4 @@
-use super::{Expected, HeadingGate, Verdict};
+use super::{HeadingGate, HeadingPrediction, Verdict};
 use crate::numeric::phase::Turns;
 
 const SECOND: u64 = 1_000_000;
@@ -9,8 +9,8 @@ fn degrees(degrees: f64) -> Turns {
 }
 
 /// A straight segment whose bend sensors do not move.
-fn still() -> Expected<f64> {
-    Expected {
+fn still() -> HeadingPrediction<f64> {
+    HeadingPrediction {
         heading: Turns::ZERO,
         motion: 0.0,
         bias: Turns::ZERO,
@@ -31,7 +31,7 @@ fn tared() -> HeadingGate<f64> {
 fn take_for(gate: &mut HeadingGate<f64>, from_us: u64, length_us: u64, heading: f64) -> std::vec::Vec<Verdict<f64>> {
     let at = |k: u64| {
         let noise = if k.is_multiple_of(2) { 0.06 } else { 0.0 };
-        gate.take(Some(degrees(heading + noise)), 0, &still(), || None, from_us + k * TICK)
+        gate.check(Some(degrees(heading + noise)), 0, &still(), || None, from_us + k * TICK)
     };
     (0..length_us / TICK).map(at).collect()
 }
@@ -74,7 +74,7 @@ fn a_jump_that_stays_becomes_a_new_zero_after_0_4_s() {
 fn two_wild_readings_with_a_good_one_between_them_are_not_a_new_zero() {
     let mut gate = tared();
     for (time_us, heading) in [(0, 30.0), (SECOND / 5, 0.0), (SECOND, 30.0)] {
-        let verdict = gate.take(Some(degrees(heading)), 0, &still(), || None, SECOND + time_us);
+        let verdict = gate.check(Some(degrees(heading)), 0, &still(), || None, SECOND + time_us);
         assert!(matches!(verdict, Verdict::Absent | Verdict::Accepted(_)), "{verdict:?}");
     }
 }
@@ -83,15 +83,16 @@ fn two_wild_readings_with_a_good_one_between_them_are_not_a_new_zero() {
 fn two_wild_readings_seconds_apart_are_not_a_new_zero() {
     let mut gate = tared();
     for time_us in [2 * SECOND, 7 * SECOND] {
-        assert_eq!(gate.take(Some(degrees(30.0)), 0, &still(), || None, time_us), Verdict::Absent);
-        assert_eq!(gate.take(None, 0, &still(), || None, time_us + TICK), Verdict::Absent);
+        assert_eq!(gate.check(Some(degrees(30.0)), 0, &still(), || None, time_us), Verdict::Absent);
+        assert_eq!(gate.check(None, 0, &still(), || None, time_us + TICK), Verdict::Absent);
     }
 }
 
 #[test]
 fn a_jump_is_confirmed_although_every_third_reading_is_missing() {
     let mut gate = tared();
-    let at = |k: u64| gate.take((!k.is_multiple_of(3)).then(|| degrees(30.0)), 0, &still(), || None, SECOND + k * TICK);
+    let at =
+        |k: u64| gate.check((!k.is_multiple_of(3)).then(|| degrees(30.0)), 0, &still(), || None, SECOND + k * TICK);
     assert!((0..50).map(at).any(|verdict| matches!(verdict, Verdict::Restarted(..))));
 }
 
@@ -99,14 +100,14 @@ fn a_jump_is_confirmed_although_every_third_reading_is_missing() {
 fn an_absolute_heading_that_is_read_late_keeps_its_zero() {
     let mut gate = HeadingGate::new(0.0);
     gate.expect_absolute();
-    let verdict = gate.take(Some(degrees(77.0)), 0, &still(), || None, 5 * SECOND);
+    let verdict = gate.check(Some(degrees(77.0)), 0, &still(), || None, 5 * SECOND);
     assert!((heading_deg(verdict) - 77.0).abs() < 1e-6);
 }
 
 #[test]
 fn an_imu_that_returns_after_a_gap_near_its_old_zero_is_used_at_once() {
     let mut gate = tared();
-    let verdict = gate.take(Some(degrees(3.0)), 0, &still(), || None, 11 * SECOND);
+    let verdict = gate.check(Some(degrees(3.0)), 0, &still(), || None, 11 * SECOND);
     assert!(matches!(verdict, Verdict::Returned(_)), "{verdict:?}");
     assert!((heading_deg(verdict) - 3.0).abs() < 1e-6);
 }
@@ -123,10 +124,10 @@ fn an_imu_that_returns_after_a_gap_with_another_zero_restarts() {
 #[test]
 fn an_imu_that_was_not_read_in_the_tare_starts_where_the_bend_sensors_are() {
     let mut gate = HeadingGate::new(0.0);
-    let expected = Expected { heading: degrees(20.0), ..still() };
-    let first = gate.take(Some(degrees(77.0)), 0, &expected, || None, SECOND);
+    let expected = HeadingPrediction { heading: degrees(20.0), ..still() };
+    let first = gate.check(Some(degrees(77.0)), 0, &expected, || None, SECOND);
     assert!(matches!(first, Verdict::Restarted(deviation, _) if deviation == Turns::ZERO), "{first:?}");
-    let next = gate.take(Some(degrees(78.0)), 0, &expected, || None, SECOND + TICK);
+    let next = gate.check(Some(degrees(78.0)), 0, &expected, || None, SECOND + TICK);
     assert!((heading_deg(next) - 21.0).abs() < 1e-6);
 }
 
@@ -137,8 +138,8 @@ fn a_heading_that_passes_360_degrees_does_not_step() {
     // 100 °/s for 8 s, which the bend sensors follow: the prediction is the last heading.
     for k in 1..800_u32 {
         let turned = f64::from(k);
-        let expected = Expected { heading: degrees(before), motion: 1.0_f64.to_radians(), ..still() };
-        before = heading_deg(gate.take(Some(degrees(turned)), 0, &expected, || None, SECOND + u64::from(k) * TICK));
+        let expected = HeadingPrediction { heading: degrees(before), motion: 1.0_f64.to_radians(), ..still() };
+        before = heading_deg(gate.check(Some(degrees(turned)), 0, &expected, || None, SECOND + u64::from(k) * TICK));
         assert!((before - turned).abs() < 1e-5, "{before} instead of {turned}");
     }
 }
@@ -146,15 +147,15 @@ fn a_heading_that_passes_360_degrees_does_not_step() {
 #[test]
 fn fast_motion_that_the_bend_sensors_see_is_no_jump() {
     let mut gate = tared();
-    let moved = Expected { heading: degrees(20.0), motion: 20.0_f64.to_radians(), ..still() };
-    assert!((heading_deg(gate.take(Some(degrees(45.0)), 0, &moved, || None, SECOND + TICK)) - 45.0).abs() < 1e-6);
+    let moved = HeadingPrediction { heading: degrees(20.0), motion: 20.0_f64.to_radians(), ..still() };
+    assert!((heading_deg(gate.check(Some(degrees(45.0)), 0, &moved, || None, SECOND + TICK)) - 45.0).abs() < 1e-6);
 }
 
 #[test]
 fn a_step_of_the_bend_sensors_is_no_jump_of_the_imu() {
     let mut gate = tared();
-    let stepped = Expected { heading: degrees(30.0), motion: 30.0_f64.to_radians(), ..still() };
-    assert!(heading_deg(gate.take(Some(degrees(0.5)), 0, &stepped, || None, SECOND + TICK)).abs() < 1.0);
+    let stepped = HeadingPrediction { heading: degrees(30.0), motion: 30.0_f64.to_radians(), ..still() };
+    assert!(heading_deg(gate.check(Some(degrees(0.5)), 0, &stepped, || None, SECOND + TICK)).abs() < 1.0);
 }
 
 #[test]
@@ -163,9 +164,9 @@ fn the_gyroscope_s_sensitivity_is_corrected() {
     let scale_error = (0.02 * 4_294_967_296.0) as i32;
     let mut heading = 0.0;
     for k in 1..=90_u32 {
-        let expected = Expected { heading: degrees(heading), ..still() };
+        let expected = HeadingPrediction { heading: degrees(heading), ..still() };
         let reading = Some(degrees(f64::from(k) * 1.02));
-        heading = heading_deg(gate.take(reading, scale_error, &expected, || None, SECOND + u64::from(k) * TICK));
+        heading = heading_deg(gate.check(reading, scale_error, &expected, || None, SECOND + u64::from(k) * TICK));
     }
     // 1.02 · (1 − 0.02) is 1 − 0.0004.
     assert!((heading - 90.0 * 0.9996).abs() < 1e-4, "{heading}");
@@ -175,8 +176,8 @@ fn the_gyroscope_s_sensitivity_is_corrected() {
 fn frozen(gate: &mut HeadingGate<f64>, from: u64, to: u64) -> std::vec::Vec<Verdict<f64>> {
     let at = |k: u64| {
         let bend = (k as f64 * 0.2).to_radians();
-        let expected = Expected { heading: Turns::from_rad(bend), theta: bend, bend: Some(bend), ..still() };
-        gate.take(Some(Turns::ZERO), 0, &expected, || None, SECOND + k * TICK)
+        let expected = HeadingPrediction { heading: Turns::from_rad(bend), theta: bend, bend: Some(bend), ..still() };
+        gate.check(Some(Turns::ZERO), 0, &expected, || None, SECOND + k * TICK)
     };
     (from..to).map(at).collect()
 }
@@ -193,18 +194,18 @@ fn output_that_is_frozen_while_the_bend_sensors_move_is_not_used() {
 fn an_imu_stays_frozen_while_its_bend_sensors_are_missing() {
     let mut gate = tared();
     frozen(&mut gate, 0, 200);
-    let expected = Expected { heading: degrees(40.0), theta: 0.7, bend: None, ..still() };
-    assert_eq!(gate.take(Some(Turns::ZERO), 0, &expected, || None, 3 * SECOND), Verdict::Frozen(0.7));
+    let expected = HeadingPrediction { heading: degrees(40.0), theta: 0.7, bend: None, ..still() };
+    assert_eq!(gate.check(Some(Turns::ZERO), 0, &expected, || None, 3 * SECOND), Verdict::Frozen(0.7));
 }
 
 #[test]
 fn bend_sensors_that_return_elsewhere_do_not_freeze_an_imu_at_rest() {
     let mut gate = tared();
-    let without = Expected { bend: None, ..still() };
-    gate.take(Some(degrees(1.0)), 0, &without, || None, SECOND);
-    let elsewhere = Expected { bend: Some(0.5), ..still() };
+    let without = HeadingPrediction { bend: None, ..still() };
+    gate.check(Some(degrees(1.0)), 0, &without, || None, SECOND);
+    let elsewhere = HeadingPrediction { bend: Some(0.5), ..still() };
     for k in 0..300 {
-        let verdict = gate.take(Some(degrees(1.0)), 0, &elsewhere, || None, SECOND + k * TICK);
+        let verdict = gate.check(Some(degrees(1.0)), 0, &elsewhere, || None, SECOND + k * TICK);
         assert!(matches!(verdict, Verdict::Accepted(_)), "{verdict:?} at sample {k}");
     }
 }
@@ -213,7 +214,7 @@ fn bend_sensors_that_return_elsewhere_do_not_freeze_an_imu_at_rest() {
 fn an_arm_at_rest_does_not_freeze_its_imu() {
     let mut gate = tared();
     for k in 0..500 {
-        let verdict = gate.take(Some(Turns::ZERO), 0, &still(), || None, SECOND + k * TICK);
+        let verdict = gate.check(Some(Turns::ZERO), 0, &still(), || None, SECOND + k * TICK);
         assert!(matches!(verdict, Verdict::Accepted(_)), "{verdict:?} at sample {k}");
     }
 }

@@ -10,7 +10,8 @@ fn degrees(degrees: f64) -> Turns {
     Turns::from_rad(degrees.to_radians())
 }
 
-/// Headings and bend angles at 10 Hz as functions of the time in s, degrees; gives the windows of rest and when they end.
+/// Headings and bend angles at 10 Hz as functions of the time in s, degrees; returns the windows of rest and their end
+/// times.
 fn run(
     detector: &mut RestDetector<f64, 1>,
     seconds: core::ops::Range<u64>,
@@ -20,7 +21,7 @@ fn run(
     let mut windows = std::vec::Vec::new();
     for k in seconds.start * 10..seconds.end * 10 {
         let at = k as f64 / 10.0;
-        detector.take(0, heading(at).map(degrees), bend(at).map(degrees), 0.1 / TIME_UNIT_S);
+        detector.update(0, heading(at).map(degrees), bend(at).map(degrees), 0.1 / TIME_UNIT_S);
         if let Some(window) = detector.window(k * SECOND / 10) {
             windows.push((at, window));
         }

@@ -79,7 +79,7 @@ fn angles(random: &mut Random, hash: &mut Hash) {
     for turns in [a + b, a - b, -a, a.magnitude(), a.mean_of(random.bits() as u16)] {
         hash.long(turns.bits());
     }
-    hash.int(a.whole());
+    hash.int(a.whole_turns());
     hash.int((a.phase() - b.phase()).bits());
     hash.q(Angle::<Q>::from(a).value());
 }
@@ -87,7 +87,7 @@ fn angles(random: &mut Random, hash: &mut Hash) {
 fn arcs(random: &mut Random, hash: &mut Hash) {
     // Whole turns are rare.
     let turns = if random.below(8) == 0 { random.number() } else { 0 };
-    let arc = UnitArc::new(Angle { rest: q(random), turns });
+    let arc = UnitArc::new(Angle { remainder: q(random), whole_turns: turns });
     for value in [arc.lateral, arc.axial, arc.cos, arc.sin] {
         hash.q(value);
     }
@@ -95,8 +95,8 @@ fn arcs(random: &mut Random, hash: &mut Hash) {
 
 fn headings(random: &mut Random, hash: &mut Hash) {
     let [yaw, roll, tilt] = core::array::from_fn(|_| {
-        let rest = Q::from_phase(Phase::from_bits(random.bits() as i32));
-        UnitArc::new(Angle { rest, turns: 0 })
+        let remainder = Q::from_phase(Phase::from_bits(random.bits() as i32));
+        UnitArc::new(Angle { remainder, whole_turns: 0 })
     });
     let quaternion = [tilt.cos * yaw.cos, tilt.sin * roll.cos, tilt.sin * roll.sin, tilt.cos * yaw.sin];
     // Of 26 fractional bits a BNO055 gives 14.

@@ -7,7 +7,7 @@ use std::io::BufWriter;
 
 use board_tests::{Board, View, replay};
 use proprio_simulation::{ImuColumns, Recorded, SessionWriter};
-use rig_twin::{Program, Scenario};
+use rig_twin::{MotionProgram, Scenario};
 use telemetry::{Command, Outcome};
 use virtual_due::WiredRig;
 
@@ -23,10 +23,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let seconds: u64 = seconds.parse()?;
 
-    let mut board = Board::new(WiredRig::new(Scenario::One, SEED));
+    let mut board = Board::new(WiredRig::new(Scenario::FreeSwing, SEED));
     // Power-on, IMUs, and a tare of one second while the arm rests.
     board.run_ms(2500);
-    let program = Program::new(Scenario::One, SEED);
+    let program = MotionProgram::new(Scenario::FreeSwing, SEED);
     let mut view = View::new(seconds);
     if board.request(Command::Arm) != Outcome::Ack {
         return Err("the board does not arm".into());
@@ -52,7 +52,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 /// Writes the stream since the first tare as a session, with the truth in further columns.
 fn record(board: &Board, path: &str) -> Result<(), Box<dyn Error>> {
     let mut session = SessionWriter::new(BufWriter::new(File::create(path)?), ImuColumns::Quaternion)?;
-    for sample in board.samples().filter(|sample| sample.tare > 0) {
+    for sample in board.samples().filter(|sample| sample.tare_epoch > 0) {
         let Some(truth) = board.truths().get(sample.tick as usize) else { continue };
         session.write(&Recorded {
             time_us: sample.time_us,

@@ -13,7 +13,7 @@ mod figures {
     use board_tests::{UART, firmware};
     use proprio_link::{Link, LinkError, Source, Transport};
     use proprio_monitor::{Monitor, Options};
-    use proprio_session::NamedTable;
+    use proprio_session::LoadedTable;
     use rig_twin::Scenario;
     use virtual_due::{CYCLES_PER_SECOND, Machine, WiredRig};
 
@@ -27,7 +27,7 @@ mod figures {
         let folder = tempfile::tempdir().expect("there is room for a temporary folder");
         let options = Options {
             port: 0,
-            table: Some(NamedTable::load(&table).expect("the reference table")),
+            table: Some(LoadedTable::load(&table).expect("the reference table")),
             folder: folder.path().to_owned(),
             token: None,
             session: None,
@@ -125,14 +125,14 @@ mod figures {
             Ok(("virtual Due, ten minutes old".to_owned(), Box::new(Line { output, input, rest: VecDeque::new() })))
         }
 
-        fn comes_back(&self) -> bool {
+        fn can_reconnect(&self) -> bool {
             false
         }
     }
 
     fn run(output: &SyncSender<Vec<u8>>, input: &Receiver<Vec<u8>>) {
         let mut machine =
-            Machine::new(firmware(), WiredRig::new(Scenario::One, 1)).expect("cargo built an ELF for the board");
+            Machine::new(firmware(), WiredRig::new(Scenario::FreeSwing, 1)).expect("cargo built an ELF for the board");
         let history = HISTORY_S * CYCLES_PER_SECOND;
         let mut began = None;
         loop {

@@ -160,7 +160,23 @@ impl Browser {
     /// # Panics
     /// If it cannot be written.
     pub fn picture(&mut self, name: &str) {
-        let picture = self.call("Page.captureScreenshot", &json!({"format": "png", "captureBeyondViewport": true}));
+        self.capture(name, &json!({"format": "png", "captureBeyondViewport": true}));
+    }
+
+    /// Leaves a picture of one element, which an expression of JavaScript selects, in `target/browser`.
+    ///
+    /// # Panics
+    /// If there is no such element, or the picture cannot be written.
+    pub fn picture_of(&mut self, name: &str, element: &str) {
+        let rectangle = self.value(&format!(
+            "(({{x, y, width, height}}) => ({{x: x + scrollX, y: y + scrollY, width, height, scale: 1}}))\
+             ({element}.getBoundingClientRect())"
+        ));
+        self.capture(name, &json!({"format": "png", "captureBeyondViewport": true, "clip": rectangle}));
+    }
+
+    fn capture(&mut self, name: &str, parameters: &Value) {
+        let picture = self.call("Page.captureScreenshot", parameters);
         // target/debug/deps/browser-…
         let own = env::current_exe().expect("the program's own path");
         let target = own.ancestors().nth(3).expect("cargo's folder").join("browser");

@@ -7,7 +7,7 @@ use virtual_due::WiredRig;
 
 #[test]
 fn the_board_boots_to_its_first_frames() {
-    let mut board = Board::new(WiredRig::new(Scenario::One, 1));
+    let mut board = Board::new(WiredRig::new(Scenario::FreeSwing, 1));
     board.run_ms(100);
     let first = board.received().first().expect("the board sends within 100 ms");
     assert!(matches!(first.message, Message::Hello(_)), "{first:?}");
@@ -17,10 +17,10 @@ fn the_board_boots_to_its_first_frames() {
 
 #[test]
 fn the_board_identifies_itself() {
-    let mut board = Board::new(WiredRig::new(Scenario::One, 1));
+    let mut board = Board::new(WiredRig::new(Scenario::FreeSwing, 1));
     board.run_ms(100);
     let hello = board.hellos().next().expect("a board sends `Hello`").clone();
-    let table = board_tests::table().bake::<estimator_core::Q>(100.0).expect("the reference table bakes");
+    let table = board_tests::table().compile::<estimator_core::Q>(100.0).expect("the reference file is a valid table");
     assert_eq!((hello.protocol, hello.schema), (PROTOCOL_VERSION, SCHEMA));
     assert_eq!((hello.arm.as_str(), hello.table), ("planar-6", table.checksum()));
     assert_eq!((hello.reset, hello.boot, hello.last_panic), (ResetCause::PowerOn, 1, None));
@@ -29,7 +29,7 @@ fn the_board_identifies_itself() {
 #[test]
 fn the_same_run_gives_the_same_bytes_however_it_is_cut() {
     let run = |pieces_ms: &[u64]| {
-        let mut board = Board::new(WiredRig::new(Scenario::Two, 3));
+        let mut board = Board::new(WiredRig::new(Scenario::Push, 3));
         for ms in pieces_ms {
             board.run_ms(*ms);
         }
@@ -42,14 +42,14 @@ fn the_same_run_gives_the_same_bytes_however_it_is_cut() {
 
 #[test]
 fn nothing_that_the_firmware_touches_is_unmodelled() {
-    let mut board = Board::new(WiredRig::new(Scenario::One, 1));
+    let mut board = Board::new(WiredRig::new(Scenario::FreeSwing, 1));
     board.run_ms(2000);
     assert_eq!(board.machine.reports(), Vec::<String>::new());
 }
 
 #[test]
 fn the_board_sleeps_most_of_the_time() {
-    let mut board = Board::new(WiredRig::new(Scenario::One, 1));
+    let mut board = Board::new(WiredRig::new(Scenario::FreeSwing, 1));
     board.run_ms(2000);
     let load = board.healths().next_back().expect("health comes five times a second").load_permille;
     assert!(load > 0 && load < 500, "{load} permille");

@@ -7,8 +7,8 @@ use virtual_due::{CYCLES_PER_SECOND, Machine, WiredRig};
 
 /// Runs an on-target test to its end; returns its output.
 fn output_of(test: &str) -> String {
-    let mut machine =
-        Machine::new(&elf("on-target-tests", test), WiredRig::new(Scenario::One, 1)).expect("a firmware for the Due");
+    let mut machine = Machine::new(&elf("on-target-tests", test), WiredRig::new(Scenario::FreeSwing, 1))
+        .expect("a firmware for the Due");
     let mut text = String::new();
     for _ in 0..1_000 {
         machine.run_for(CYCLES_PER_SECOND / 10);

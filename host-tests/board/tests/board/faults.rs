@@ -13,7 +13,7 @@ const NVIC_ICER0: u32 = 0xE000_E180;
 const TC0: u32 = 27;
 
 fn ready() -> Board {
-    let mut board = Board::new(WiredRig::new(Scenario::One, 1));
+    let mut board = Board::new(WiredRig::new(Scenario::FreeSwing, 1));
     board.run_ms(1500);
     board
 }

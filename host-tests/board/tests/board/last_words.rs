@@ -28,7 +28,7 @@ const RECURSION: [u8; 4] = [0xFF, 0xB4, 0xFD, 0xE7];
 
 /// A board whose arm is under pressure.
 fn under_pressure() -> Board {
-    let mut board = Board::new(WiredRig::new(Scenario::One, 1));
+    let mut board = Board::new(WiredRig::new(Scenario::FreeSwing, 1));
     board.run_ms(1500);
     assert_eq!(board.request(Command::Arm), Outcome::Ack);
     assert_eq!(board.request(PRESSURES), Outcome::Ack);
@@ -63,7 +63,7 @@ fn break_the_tick(board: &mut Board, code: &[u8]) -> u32 {
 /// Makes a task's state that of a future that has returned, which no task does: all its bytes are 1.
 fn break_a_task(board: &mut Board) {
     let file = object::File::parse(firmware()).expect("cargo built an ELF");
-    let named = |symbol: &Symbol| symbol.name().is_ok_and(|name| name.contains("__rtic_internal_requests_EXEC"));
+    let named = |symbol: &Symbol| symbol.name().is_ok_and(|name| name.contains("__rtic_internal_commands_EXEC"));
     let state = file.symbols().find(named).expect("RTIC keeps each task's state");
     assert!(board.machine.poke(state.address() as u32, &vec![1; state.size() as usize]));
 }

@@ -4,7 +4,7 @@ use std::os::unix::fs::symlink;
 use std::path::Path;
 use std::time::Duration;
 
-use proprio_link::{Baud, Link, PortSource, Subscription, What};
+use proprio_link::{Baud, EventKind, Link, PortSource, Subscription};
 
 use crate::terminal::Terminal;
 use crate::tools::folder;
@@ -29,9 +29,9 @@ fn a_reset_of_the_board_is_distinguished_from_lost_frames() {
     let state = link.state();
     assert_eq!((state.restarts, state.counts.lost, state.reopened), (1, 0, 0));
     assert_eq!(state.hello.map(|hello| hello.boot), Some(2));
-    let restarts =
-        std::iter::from_fn(|| events.next(Duration::ZERO)).filter(|event| matches!(event.what, What::Restarted));
-    assert_eq!(restarts.count(), 1);
+    let told =
+        std::iter::from_fn(|| events.next(Duration::ZERO)).filter(|event| matches!(event.kind, EventKind::Restarted));
+    assert_eq!(told.count(), 1);
 }
 
 /// A port that vanishes and returns under the same name, as udev's links do, with a board that has lost its power meanwhile:
@@ -47,9 +47,9 @@ fn a_cable_that_comes_back_is_opened_again_and_nothing_counts_as_lost() {
 
     std::fs::remove_file(&name).expect("it is there");
     drop(terminal);
-    let lost =
-        std::iter::from_fn(|| events.next(Duration::from_secs(20))).find(|event| matches!(event.what, What::Lost(_)));
-    assert!(lost.is_some(), "the loss of the line is an event");
+    let lost = std::iter::from_fn(|| events.next(Duration::from_secs(20)))
+        .find(|event| matches!(event.kind, EventKind::Lost(_)));
+    assert!(lost.is_some(), "it is told that the line is gone");
     assert_eq!(link.state().port, None);
 
     let mut terminal = Terminal::new();
@@ -57,5 +57,5 @@ fn a_cable_that_comes_back_is_opened_again_and_nothing_counts_as_lost() {
     run_until_received(&mut terminal, &link, 400);
     let state = link.state();
     assert_eq!((state.reopened, state.restarts, state.counts.lost), (1, 1, 0));
-    assert!(state.greeted && state.port.is_some());
+    assert!(state.is_connected && state.port.is_some());
 }

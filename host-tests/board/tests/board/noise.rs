@@ -6,7 +6,7 @@ use std::process::Command;
 use std::rc::Rc;
 use std::time::Duration;
 
-use proprio_link::{Baud, Link, LinkState, PortSource, Subscription, What};
+use proprio_link::{Baud, EventKind, Link, LinkState, PortSource, Subscription};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 use telemetry::{Decoder, Message};
@@ -111,9 +111,9 @@ fn listen(noise: &Rc<RefCell<Noise>>) -> (Vec<Message>, LinkState) {
 
 fn take(events: &Subscription, messages: &mut Vec<Message>) {
     while let Some(event) = events.next(Duration::ZERO) {
-        match event.what {
-            What::Message(message) => messages.push(message),
-            What::Opened(_) | What::Bytes(_) | What::Undecoded(_) => {}
+        match event.kind {
+            EventKind::Message(message) => messages.push(message),
+            EventKind::Opened(_) | EventKind::Bytes(_) | EventKind::Undecoded(_) => {}
             other => panic!("one run of one board: {other:?}"),
         }
     }

@@ -10,7 +10,7 @@ use virtual_due::WiredRig;
 const RIGHT: SetPressures = SetPressures { pressures_pa: [100_000, 0, 100_000, 0, 100_000, 0], valid_ms: 200 };
 
 fn ready() -> Board {
-    let mut board = Board::new(WiredRig::new(Scenario::One, 1));
+    let mut board = Board::new(WiredRig::new(Scenario::FreeSwing, 1));
     board.run_ms(2500);
     board
 }

@@ -1,7 +1,7 @@
 //! The board's stream is enough to compute the same estimates, bit for bit, on a host.
 
 use board_tests::{Board, replay};
-use rig_twin::{Program, Scenario};
+use rig_twin::{MotionProgram, Scenario};
 use telemetry::{Command, Event, Outcome};
 use virtual_due::WiredRig;
 
@@ -32,30 +32,30 @@ pub fn assert_replays(board: &Board) {
 
 #[test]
 fn every_estimate_is_the_hosts_of_the_same_sample() {
-    let mut board = Board::new(WiredRig::new(Scenario::One, 5));
+    let mut board = Board::new(WiredRig::new(Scenario::FreeSwing, 5));
     board.run_ms(2000);
-    board.swing(&Program::new(Scenario::One, 5), 20);
+    board.swing(&MotionProgram::new(Scenario::FreeSwing, 5), 20);
     assert_replays(&board);
 }
 
 #[test]
 fn every_estimate_is_the_hosts_after_a_tare() {
-    let mut board = Board::new(WiredRig::new(Scenario::One, 6));
+    let mut board = Board::new(WiredRig::new(Scenario::FreeSwing, 6));
     board.run_ms(2000);
-    board.swing(&Program::new(Scenario::One, 6), 3);
+    board.swing(&MotionProgram::new(Scenario::FreeSwing, 6), 3);
     board.run_ms(2500);
     assert_eq!(board.request(Command::Tare), Outcome::Ack);
-    board.swing(&Program::new(Scenario::One, 6), 3);
-    assert_eq!(board.samples().next_back().expect("samples come").tare, 2);
+    board.swing(&MotionProgram::new(Scenario::FreeSwing, 6), 3);
+    assert_eq!(board.samples().next_back().expect("samples come").tare_epoch, 2);
     assert_replays(&board);
 }
 
 #[test]
 fn the_stream_decodes_without_a_loss() {
-    let mut board = Board::new(WiredRig::new(Scenario::One, 7));
+    let mut board = Board::new(WiredRig::new(Scenario::FreeSwing, 7));
     board.run_ms(10_000);
     let counts = board.counts();
-    assert_eq!((counts.lost, counts.damaged, counts.foreign, counts.unknown), (0, 0, 0, 0));
+    assert_eq!((counts.lost, counts.damaged, counts.wrong_version, counts.unknown), (0, 0, 0, 0));
     let ticks: Vec<_> = board.samples().map(|sample| sample.tick).collect();
     assert!(ticks.windows(2).all(|pair| pair[1] == pair[0] + 1), "a tick is missing");
     assert!(ticks.len() >= 990);
@@ -65,7 +65,7 @@ fn the_stream_decodes_without_a_loss() {
 
 #[test]
 fn the_stream_leaves_a_fifth_of_the_line_to_spare() {
-    let mut board = Board::new(WiredRig::new(Scenario::One, 8));
+    let mut board = Board::new(WiredRig::new(Scenario::FreeSwing, 8));
     board.run_ms(2000);
     let before = board.bytes();
     board.run_ms(10_000);
@@ -75,7 +75,7 @@ fn the_stream_leaves_a_fifth_of_the_line_to_spare() {
 
 #[test]
 fn ticks_are_ten_milliseconds_apart_to_the_microsecond() {
-    let mut board = Board::new(WiredRig::new(Scenario::One, 9));
+    let mut board = Board::new(WiredRig::new(Scenario::FreeSwing, 9));
     board.run_ms(3000);
     let times: Vec<_> = board.samples().map(|sample| sample.time_us).collect();
     assert!(times.windows(2).all(|pair| pair[1] - pair[0] == 10_000));
@@ -83,8 +83,8 @@ fn ticks_are_ten_milliseconds_apart_to_the_microsecond() {
 
 #[test]
 fn an_estimate_is_made_within_six_milliseconds_of_its_tick() {
-    let mut board = Board::new(WiredRig::new(Scenario::One, 10));
+    let mut board = Board::new(WiredRig::new(Scenario::FreeSwing, 10));
     board.run_ms(3000);
-    let longest = board.healths().map(|health| health.longest_tick_us).max().expect("health comes");
+    let longest = board.healths().map(|health| health.max_estimate_latency_us).max().expect("health comes");
     assert!((1000..6000).contains(&longest), "{longest} µs");
 }

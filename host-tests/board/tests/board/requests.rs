@@ -6,7 +6,7 @@ use telemetry::{Command, Message, Outcome, Rates, Refusal, Request, ResetCause, 
 use virtual_due::WiredRig;
 
 fn ready() -> Board {
-    let mut board = Board::new(WiredRig::new(Scenario::One, 1));
+    let mut board = Board::new(WiredRig::new(Scenario::FreeSwing, 1));
     board.run_ms(1500);
     board
 }
@@ -36,13 +36,13 @@ fn rates_slow_the_stream_down() {
 #[test]
 fn a_repeated_request_acts_once_and_is_answered_again() {
     let mut board = ready();
-    let tares = board.samples().next_back().expect("samples come").tare;
+    let tares = board.samples().next_back().expect("samples come").tare_epoch;
     let request = Request { id: 77, command: Command::Tare };
     for _ in 0..3 {
         board.send_again(request);
         board.run_ms(50);
     }
-    assert_eq!(board.samples().next_back().expect("samples come").tare, tares + 1);
+    assert_eq!(board.samples().next_back().expect("samples come").tare_epoch, tares + 1);
     let replies = board.received().iter().filter(|received| matches!(received.message, Message::Reply(_)));
     assert_eq!(replies.count(), 3);
 }

@@ -10,7 +10,7 @@ use virtual_due::rig::{ImuFault, Rail};
 
 /// A board whose sensors have all come up.
 fn ready() -> Board {
-    let mut board = Board::new(WiredRig::new(Scenario::One, 1));
+    let mut board = Board::new(WiredRig::new(Scenario::FreeSwing, 1));
     board.run_ms(1500);
     board
 }
@@ -81,7 +81,7 @@ fn an_unplugged_imu_is_lost_alone() {
 
 #[test]
 fn an_imu_that_is_absent_at_boot_leaves_the_others_running() {
-    let mut rig = WiredRig::new(Scenario::One, 1);
+    let mut rig = WiredRig::new(Scenario::FreeSwing, 1);
     rig.faults.imus[2] = ImuFault::Unplugged;
     let mut board = Board::new(rig);
     board.run_ms(4000);
@@ -89,7 +89,7 @@ fn an_imu_that_is_absent_at_boot_leaves_the_others_running() {
     let read: Vec<_> = sample.imu.iter().map(Option::is_some).collect();
     assert_eq!(read, [true, true, false, true, true, true]);
     let health = board.healths().next_back().expect("health comes");
-    assert_eq!(health.imu[2].state, SensorState::Off);
+    assert_eq!(health.imu[2].state, SensorState::NoResponse);
     assert_eq!(health.overruns, 0);
     let estimate = board.estimates().next_back().expect("estimates come");
     assert!(estimate.segments.iter().all(Option::is_some), "{estimate:?}");
@@ -97,7 +97,7 @@ fn an_imu_that_is_absent_at_boot_leaves_the_others_running() {
 
 #[test]
 fn an_imu_that_is_plugged_in_later_is_taken_in() {
-    let mut rig = WiredRig::new(Scenario::One, 1);
+    let mut rig = WiredRig::new(Scenario::FreeSwing, 1);
     rig.faults.imus[4] = ImuFault::Unplugged;
     let mut board = Board::new(rig);
     board.run_ms(1500);

@@ -33,7 +33,7 @@ impl Terminal {
         let port = theirs.name().expect("it has a name");
         line.set_timeout(Duration::from_millis(1)).expect("it is set");
         let machine =
-            Machine::new(firmware(), WiredRig::new(Scenario::One, 1)).expect("cargo built an ELF for the board");
+            Machine::new(firmware(), WiredRig::new(Scenario::FreeSwing, 1)).expect("cargo built an ELF for the board");
         Self { machine, line, port, disturb: Box::new(|bytes| bytes), to_host: VecDeque::new() }
     }
 

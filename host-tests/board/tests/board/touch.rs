@@ -1,7 +1,7 @@
 //! Contact events and uncertainties of the board.
 
 use board_tests::Board;
-use rig_twin::{Program, Push, Scenario};
+use rig_twin::{MotionProgram, Push, Scenario};
 use telemetry::{Command, Event, Message, Outcome, SEGMENTS, SegmentUncertainty};
 use virtual_due::{CYCLES_PER_SECOND, WiredRig};
 
@@ -14,8 +14,8 @@ const LINE_S: f64 = 0.05;
 
 /// Runs a board whose arm swings and is pushed by a stick.
 fn pushed(seed: u64, seconds: u64) -> Board {
-    let program = Program::new(Scenario::Two, seed);
-    let mut board = Board::new(WiredRig::new(Scenario::Two, seed));
+    let program = MotionProgram::new(Scenario::Push, seed);
+    let mut board = Board::new(WiredRig::new(Scenario::Push, seed));
     board.run_ms(2000);
     assert_eq!(board.request(Command::Arm), Outcome::Ack);
     while board.machine.seconds() < seconds as f64 {
@@ -58,7 +58,7 @@ fn a_push_is_reported_within_half_a_second_and_the_time_of_the_line() {
 
 #[test]
 fn the_tips_ellipse_is_known_four_times_a_second_and_wider_than_the_bases() {
-    let mut board = Board::new(WiredRig::new(Scenario::One, 11));
+    let mut board = Board::new(WiredRig::new(Scenario::FreeSwing, 11));
     board.run_ms(5000);
     let known: Vec<_> = board.uncertainties().filter(|uncertainty| uncertainty.tick >= 300).collect();
     assert!((7..=8).contains(&known.len()), "{}", known.len());

@@ -7,4 +7,5 @@
 mod live;
 mod modules;
 mod page;
+mod pictures;
 mod sessions;

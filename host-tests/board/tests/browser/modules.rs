@@ -47,13 +47,14 @@ fn a_single_sample_s_spike_is_in_the_picture_however_long_the_span_is() {
 
 #[test]
 #[ignore = "needs Chromium: .ci/browser runs it"]
-fn an_ellipse_is_two_sigma_of_its_covariance() {
+fn an_ellipse_is_that_of_95_percent_of_its_covariance() {
     let (_run, mut browser) = opened();
-    // 3 mm along x and 1 mm along y, and the same turned by 30°.
-    let work = "const straight = arm.ellipse([9e-6, 0, 1e-6]); \
-                const turned = arm.ellipse([7e-6, 3.4641016e-6, 3e-6]); \
+    // 3 mm along x and 1 mm along y, and the same turned by 30°; the server sends 2.4477 standard deviations.
+    let work = "const {arm: about} = await (await import('/sessions.js')).load('scenario-2.csv', {}); \
+                const straight = arm.ellipse([9e-6, 0, 1e-6], about.ellipse_sigmas); \
+                const turned = arm.ellipse([7e-6, 3.4641016e-6, 3e-6], about.ellipse_sigmas); \
                 return [straight, turned].flatMap(({major, minor, turn}) => [major, minor, turn * 180 / Math.PI].map((v) => Math.round(v * 1000) / 1000));";
-    assert_eq!(with_modules(&mut browser, work), serde_json::json!([6, 2, 0, 6, 2, 30]));
+    assert_eq!(with_modules(&mut browser, work), serde_json::json!([7.343, 2.448, 0, 7.343, 2.448, 30]));
 }
 
 #[test]
@@ -63,7 +64,7 @@ fn uncertainty_and_contact_are_drawn_where_the_feed_has_them() {
     let work = "const {SvgContext} = await import('/export.js'); const {store: rows, arm: about} = await (await import('/sessions.js')).load('scenario-2.csv', {}); \
                 const colours = {series: ['#00f'], ink: '#000', faint: '#888', grid: '#eee', paper: '#fff', bad: '#f00', trail: '#80f', font: 'sans-serif'}; \
                 const draw = (more) => { const c = new SvgContext(); \
-                    arm.drawArm(c, 400, 300, {store: rows, row: 300, geometry: about.geometry, colours, ...more}); return c.parts; }; \
+                    arm.drawArm(c, 400, 300, {store: rows, row: 300, geometry: about.geometry, ellipseSigmas: about.ellipse_sigmas, colours, ...more}); return c.parts; }; \
                 const ends_m2 = Array(6).fill([4e-6, 0, 1e-6]); \
                 const contact = [false, false, true, false, false, false]; \
                 const bare = draw({}).length; \

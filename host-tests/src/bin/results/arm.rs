@@ -4,9 +4,9 @@ use std::error::Error;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use calibration_tables::{ArmFile, DriftKeys, DriftKind};
+use calibration_tables::{ArmFile, DriftKind, DriftToml};
 use proprio_calibration::calibrate::{Calibration, CalibrationOptions, HysteresisMode, MapMode, calibrate};
-use proprio_session::{NamedTable, NoProgress, OutputFile};
+use proprio_session::{LoadedTable, NoProgress, OutputFile};
 use proprio_simulation::{ImuColumns, SessionWriter, Simulation};
 use rig_twin::{Motion, Scenario, Setup};
 
@@ -35,11 +35,11 @@ impl Tables {
     pub fn of_sweep(sweep: &Path, arm: &ArmFile) -> Result<Self, Problem> {
         let quadratic = CalibrationOptions { maps: MapMode::Quadratic, hysteresis: HysteresisMode::Never };
         let anchored =
-            ArmFile { drift: Some(DriftKeys { kind: DriftKind::Anchor, ..DriftKeys::kalman() }), ..arm.clone() };
+            ArmFile { drift: Some(DriftToml { kind: DriftKind::Anchor, ..DriftToml::kalman() }), ..arm.clone() };
         let table = |file: &ArmFile, options| -> Result<Calibration, Problem> {
             Ok(calibrate(
                 &[sweep.to_owned()],
-                &NamedTable { file: file.clone(), path: Path::new("planar-6.toml") },
+                &LoadedTable { file: file.clone(), path: Path::new("planar-6.toml") },
                 options,
                 &mut NoProgress,
             )?)
@@ -79,9 +79,9 @@ pub fn setup(arm_seed: u64, scenario: Scenario, motion: Motion) -> Setup {
 pub fn session_seed(arm_seed: u64, scenario: Scenario, motion: Motion) -> u64 {
     let scenario = match scenario {
         Scenario::Sweep => 0,
-        Scenario::One => 1,
-        Scenario::Two => 2,
-        Scenario::Three => 3,
+        Scenario::FreeSwing => 1,
+        Scenario::Push => 2,
+        Scenario::Obstacle => 3,
     };
     let motion = match motion {
         Motion::Swings => 0,

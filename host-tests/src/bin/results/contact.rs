@@ -47,7 +47,7 @@ const CONTACT: &str = "\
 ### Contact
 
 False alarms: contacts of the free arm (scenario I). Pushes over 10° that are detected on their segment within 0.5 s of the first touch
-(scenario II). Times that the obstacle begins to bend a segment by over 10°, detected on any segment within 0.5 s (scenario III).
+(scenario II). Encounters in which the obstacle bends a segment by over 10°, detected on any segment within 0.5 s (scenario III).
 ";
 
 const FREE: &str = "\

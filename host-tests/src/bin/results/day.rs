@@ -5,7 +5,7 @@ use std::fmt::{self, Write};
 use estimator_core::{Method, Q};
 use host_tests::parallel::in_parallel;
 use host_tests::twin::{Replayer, row};
-use proprio_analysis::metrics::Score;
+use proprio_analysis::metrics::ErrorMetrics;
 use proprio_simulation::Simulation;
 use rig_twin::{Motion, Scenario};
 
@@ -63,12 +63,12 @@ impl Day {
 
 /// Figures hour by hour.
 fn measure(tables: &Tables, seed: u64) -> Result<Vec<Hour>, Problem> {
-    let baked = [tables.own.bake::<Q>(RATE_HZ)?, tables.paper.bake::<Q>(RATE_HZ)?];
-    let configs = baked.each_ref().map(|baked| baked.config());
+    let compiled = [tables.own.compile::<Q>(RATE_HZ)?, tables.paper.compile::<Q>(RATE_HZ)?];
+    let configs = compiled.each_ref().map(|compiled| compiled.config());
     let [mut own, mut paper] = configs.each_ref().map(Replayer::new);
     let length_mm = tables.own.length_mm();
-    let mut hours = vec![[(); 2].map(|()| Score::new(length_mm)); HOURS];
-    let simulation = Simulation::of(&setup(seed, Scenario::One, Motion::Swings), HOUR_S * HOURS as f64, RATE_HZ)?;
+    let mut hours = vec![[(); 2].map(|()| ErrorMetrics::new(length_mm)); HOURS];
+    let simulation = Simulation::of(&setup(seed, Scenario::FreeSwing, Motion::Swings), HOUR_S * HOURS as f64, RATE_HZ)?;
     for (k, recorded) in simulation.enumerate() {
         let row = row(&recorded, k == 0);
         let [of_own, of_paper] = &mut hours[k / (HOUR_S * RATE_HZ) as usize];
@@ -79,11 +79,11 @@ fn measure(tables: &Tables, seed: u64) -> Result<Vec<Hour>, Problem> {
 }
 
 impl Hour {
-    fn of([own, paper]: &[Score; 2]) -> Self {
-        let tip_mm = |score: &Score| score.figures().map(|figures| figures.tip_rmse_mm.unwrap_or(f64::INFINITY));
+    fn of([own, paper]: &[ErrorMetrics; 2]) -> Self {
+        let tip_mm = |score: &ErrorMetrics| score.metrics().map(|figures| figures.tip_rmse_mm.unwrap_or(f64::INFINITY));
         Self {
             fusion_mm: tip_mm(own)[Method::Fusion as usize],
-            inside_percent: own.honesty().and_then(|figures| figures.tip_inside_percent).unwrap_or(f64::NAN),
+            inside_percent: own.consistency().and_then(|figures| figures.tip_inside_percent).unwrap_or(f64::NAN),
             paper_mm: tip_mm(paper),
         }
     }

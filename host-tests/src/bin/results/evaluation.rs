@@ -5,7 +5,7 @@ use estimator_core::{Method, Q};
 use host_tests::contact::in_contact;
 use host_tests::twin::{TwinSession, replay, replay_smoothed};
 use proprio_analysis::Outcome;
-use proprio_analysis::metrics::Score;
+use proprio_analysis::metrics::ErrorMetrics;
 use proprio_session::Row;
 use rig_twin::SEGMENTS;
 
@@ -13,8 +13,8 @@ use crate::arm::Tables;
 
 /// The errors of a session.
 pub struct Evaluation {
-    pub own: Score,
-    pub paper: Score,
+    pub own: ErrorMetrics,
+    pub paper: ErrorMetrics,
     /// Contact by the arm's own table, sample by sample.
     pub contact: Vec<[bool; SEGMENTS]>,
     /// Samples in which the estimator reports a condition.
@@ -45,7 +45,7 @@ pub struct Figures {
 impl Evaluation {
     /// Replays rows by both tables.
     pub fn of<R: Iterator<Item = Row>>(tables: &Tables, rate_hz: f64, rows: impl Fn() -> R) -> Result<Self, FileError> {
-        let score = || Score::new(tables.own.length_mm());
+        let score = || ErrorMetrics::new(tables.own.length_mm());
         let mut evaluation = Self { own: score(), paper: score(), contact: Vec::new(), flagged: 0 };
         replay_smoothed(&tables.own, rate_hz, &rows, |row, outcome| evaluation.add(row, outcome))?;
         replay(&tables.paper, rate_hz, rows(), |row, outcome| evaluation.paper.add(row, outcome))?;
@@ -65,17 +65,18 @@ impl Evaluation {
 
     /// The figures.
     pub fn figures(&self) -> Figures {
-        let tip_mm =
-            |score: &Score, method: Method| score.figures()[method as usize].tip_rmse_mm.unwrap_or(f64::INFINITY);
-        let honesty = self.own.honesty();
+        let tip_mm = |score: &ErrorMetrics, method: Method| {
+            score.metrics()[method as usize].tip_rmse_mm.unwrap_or(f64::INFINITY)
+        };
+        let consistency = self.own.consistency();
         let smoothed = self.own.smoothed();
         let smoothed_inside = smoothed.and_then(|smoothed| smoothed.uncertainty?.tip_inside_percent);
         let raw = [&self.own, &self.paper].map(|score| tip_mm(score, Method::Bend).min(tip_mm(score, Method::ImuO)));
         Figures {
             fusion_mm: tip_mm(&self.own, Method::Fusion),
-            inside_percent: honesty.and_then(|figures| figures.tip_inside_percent).unwrap_or(f64::NAN),
-            nees: honesty.and_then(|figures| figures.tip_nees).unwrap_or(f64::NAN),
-            smoothed_mm: smoothed.and_then(|smoothed| smoothed.figures.tip_rmse_mm).unwrap_or(f64::INFINITY),
+            inside_percent: consistency.and_then(|figures| figures.tip_inside_percent).unwrap_or(f64::NAN),
+            nees: consistency.and_then(|figures| figures.tip_nees).unwrap_or(f64::NAN),
+            smoothed_mm: smoothed.and_then(|smoothed| smoothed.metrics.tip_rmse_mm).unwrap_or(f64::INFINITY),
             smoothed_inside_percent: smoothed_inside.unwrap_or(f64::NAN),
             paper_mm: tip_mm(&self.paper, Method::Fusion),
             raw_mm: raw[0].min(raw[1]),
@@ -86,9 +87,9 @@ impl Evaluation {
 
 /// RMSE of fusion by one table, mm.
 pub fn fusion_mm(table: &ArmFile, session: &TwinSession) -> Result<f64, FileError> {
-    let mut score = Score::new(table.length_mm());
+    let mut score = ErrorMetrics::new(table.length_mm());
     session.replay(table, |row, outcome| score.add(row, outcome))?;
-    Ok(score.figures()[Method::Fusion as usize].tip_rmse_mm.unwrap_or(f64::INFINITY))
+    Ok(score.metrics()[Method::Fusion as usize].tip_rmse_mm.unwrap_or(f64::INFINITY))
 }
 
 /// Mean and largest of figures.

@@ -7,7 +7,7 @@ use calibration_tables::ArmFile;
 use host_tests::contact::{ContactSession, Found};
 use host_tests::parallel::in_parallel;
 use host_tests::twin::TwinSession;
-use proprio_analysis::metrics::Figures as MethodFigures;
+use proprio_analysis::metrics::Metrics as MethodMetrics;
 use rig_twin::{Motion, Scenario};
 
 use crate::arm::{Problem, RATE_HZ, SESSION_S, Tables, setup};
@@ -16,7 +16,8 @@ use crate::evaluation::{Evaluation, Figures, fusion_mm, mean_and_worst};
 pub const REFERENCE: u64 = 0;
 pub const DEVELOPMENT: [u64; 6] = [1, 2, 3, 4, 5, 6];
 pub const TEST: [u64; 12] = [101, 102, 103, 104, 105, 106, 107, 108, 109, 110, 111, 112];
-pub const SCENARIOS: [(&str, Scenario); 3] = [("I", Scenario::One), ("II", Scenario::Two), ("III", Scenario::Three)];
+pub const SCENARIOS: [(&str, Scenario); 3] =
+    [("I", Scenario::FreeSwing), ("II", Scenario::Push), ("III", Scenario::Obstacle)];
 
 /// An arm, and its figures in each scenario.
 pub struct ArmFigures {
@@ -24,7 +25,7 @@ pub struct ArmFigures {
     pub tables: Tables,
     pub scenarios: [Figures; 3],
     /// All methods by the paper's table.
-    pub paper: [[MethodFigures; 4]; 3],
+    pub paper: [[MethodMetrics; 4]; 3],
     /// Fusion with quadratic maps and no memory, mm.
     pub quadratic_mm: [f64; 3],
     pub contact: Contact,
@@ -55,7 +56,7 @@ impl ArmFigures {
             let session = TwinSession::new(&setup(seed, scenario, Motion::Swings), SESSION_S, RATE_HZ)?;
             let evaluation = Evaluation::of_twin(&tables, &session)?;
             scenarios.push(evaluation.figures());
-            paper.push(evaluation.paper.figures());
+            paper.push(evaluation.paper.metrics());
             quadratic_mm.push(fusion_mm(&tables.quadratic, &session)?);
             runs.push(ContactSession::of(session, evaluation.contact));
         }
@@ -199,7 +200,7 @@ const SUMMARY: &str = "\
 
 Tip RMSE in mm. Mean and worst session of fusion, mean and lowest share of true tips inside the 95 % ellipse, mean NEES of the tip
 (for each coordinate: 1 is consistent, above 1 overconfident), mean share of time in which the estimator reports a condition although
-nothing is wrong; the same of the estimates that [the smoother](METHOD.md#smoothing) makes of the whole recording; the paper's method (quadratic maps, moving-average anchor, KF_orient and KF_coord) on the same sweep, and the better
+nothing is wrong; the same of the estimates that [the smoother](smoothing.md) makes of the whole recording; the paper's method (quadratic maps, moving-average anchor, KF_orient and KF_coord) on the same sweep, and the better
 of bend sensors and raw IMUs in each session. 15 min a session.
 ";
 

@@ -1,5 +1,5 @@
-//! `cargo xtask results`: calibrates and validates on simulated arms, and writes `docs/RESULTS.md` and
-//! `docs/FAULTS-OF-SESSIONS.md`.
+//! `cargo xtask results`: calibrates and validates on simulated arms, and writes `docs/explanation/results.md` and
+//! `docs/explanation/faults-of-sessions.md`.
 
 mod arm;
 mod contact;
@@ -24,7 +24,7 @@ fn main() -> Result<(), Problem> {
     let folder = tempfile::tempdir()?;
     let results = Results::measure(&root, folder.path())?;
     let faults = Faults::measure(&results.family)?;
-    fs::write(root.join("docs/RESULTS.md"), results.to_markdown()?)?;
-    fs::write(root.join("docs/FAULTS-OF-SESSIONS.md"), faults.to_markdown()?)?;
+    fs::write(root.join("docs/explanation/results.md"), results.to_markdown()?)?;
+    fs::write(root.join("docs/explanation/faults-of-sessions.md"), faults.to_markdown()?)?;
     Ok(())
 }

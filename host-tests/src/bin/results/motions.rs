@@ -16,15 +16,15 @@ pub const ARMS: [u64; 4] = [101, 102, 103, 104];
 
 /// Name, motion, scenario, seconds.
 const MOTIONS: [(&str, Motion, Scenario, f64); 9] = [
-    ("rests of 2 min to 2 h, 4 h in all", Motion::Rests, Scenario::One, 14_400.0),
-    ("one module alone", Motion::OneModule, Scenario::One, SESSION_S),
-    ("slow", Motion::Slow, Scenario::One, 2.0 * SESSION_S),
-    ("fast", Motion::Fast, Scenario::One, SESSION_S),
-    ("leans of minutes", Motion::Lean, Scenario::One, 2.0 * SESSION_S),
-    ("leans on the obstacle", Motion::Lean, Scenario::Three, 2.0 * SESSION_S),
-    ("starts in contact", Motion::BentStart, Scenario::Three, SESSION_S),
-    ("starts bent", Motion::BentStart, Scenario::One, SESSION_S),
-    ("starts in motion", Motion::MovingStart, Scenario::One, SESSION_S),
+    ("rests of 2 min to 2 h, 4 h in all", Motion::Rests, Scenario::FreeSwing, 14_400.0),
+    ("one module alone", Motion::OneModule, Scenario::FreeSwing, SESSION_S),
+    ("slow", Motion::Slow, Scenario::FreeSwing, 2.0 * SESSION_S),
+    ("fast", Motion::Fast, Scenario::FreeSwing, SESSION_S),
+    ("leans of minutes", Motion::Lean, Scenario::FreeSwing, 2.0 * SESSION_S),
+    ("leans on the obstacle", Motion::Lean, Scenario::Obstacle, 2.0 * SESSION_S),
+    ("starts in contact", Motion::BentStart, Scenario::Obstacle, SESSION_S),
+    ("starts bent", Motion::BentStart, Scenario::FreeSwing, SESSION_S),
+    ("starts in motion", Motion::MovingStart, Scenario::FreeSwing, SESSION_S),
 ];
 
 /// Figures of each motion by arm.
@@ -54,7 +54,7 @@ impl Motions {
     /// Free motions: name, false alarms over all arms, seconds.
     pub fn false_alarms(&self) -> impl Iterator<Item = (&'static str, usize, f64)> {
         let motions = MOTIONS.iter().zip(&self.contacts);
-        let free = motions.filter(|((_, _, scenario, _), _)| *scenario == Scenario::One);
+        let free = motions.filter(|((_, _, scenario, _), _)| *scenario == Scenario::FreeSwing);
         free.map(|((name, _, _, seconds), contacts)| (*name, *contacts, ARMS.len() as f64 * seconds))
     }
 

@@ -4,9 +4,9 @@ use std::fmt::{self, Write};
 use std::path::Path;
 
 use estimator_core::Method;
-use proprio_analysis::metrics::Score;
+use proprio_analysis::metrics::ErrorMetrics;
 use proprio_analysis::replay::replay;
-use proprio_session::{NamedTable, NoProgress};
+use proprio_session::{LoadedTable, NoProgress};
 
 use crate::arm::{Problem, planar};
 use crate::contact;
@@ -114,13 +114,13 @@ fn real(root: &Path) -> Result<Option<[f64; 2]>, Problem> {
         return Ok(None);
     }
     let path = root.join("host-tests/tables/trunk-planar.toml");
-    let table = NamedTable::load(&path)?;
-    let mut score = Score::new(table.file.length_mm());
+    let table = LoadedTable::load(&path)?;
+    let mut score = ErrorMetrics::new(table.file.length_mm());
     replay::<estimator_core::Q>(&recording, &table, &mut NoProgress, |row, outcome| {
         score.add(row, outcome);
         Ok(())
     })?;
-    let imu_o = score.figures()[Method::ImuO as usize];
+    let imu_o = score.metrics()[Method::ImuO as usize];
     Ok(imu_o.tip_rmse_mm.zip(imu_o.tip_rmse_percent).map(<[f64; 2]>::from))
 }
 
@@ -131,7 +131,7 @@ fn number(value: Option<f64>) -> String {
 const INTRODUCTION: &str = "\
 # Results
 
-`cargo xtask results` makes this page and [FAULTS-OF-SESSIONS.md](FAULTS-OF-SESSIONS.md): it simulates the sessions, calibrates each arm on
+`cargo xtask results` makes this page and [faults of sessions](faults-of-sessions.md): it simulates the sessions, calibrates each arm on
 its own sweep, and replays the sessions in the board's fixed point, in some minutes. The same command gives the same pages, to the byte.
 Nothing is tuned.
 
@@ -145,7 +145,7 @@ const SEEDS: &str = "\
 
 const REPRODUCE: &str = "\
 The seed of a session is 100 times its arm's, plus 0 for the sweep and 1, 2, 3 for scenarios I, II, III; plus 10 for slow motion, 20 fast,
-30 one module, 40 rests, 50 leans, 60 a bent start and 70 a start in motion. A row again, here arm 101 in scenario II:
+30 one module, 40 rests, 50 leans, 60 a bent start and 70 a start in motion. To repeat a row, here arm 101 in scenario II:
 
 ```sh
 proprio simulate --arm-seed 101 --scenario sweep --seed 10100 --seconds 900 --imu quaternion -o sweep.csv
@@ -177,6 +177,6 @@ const COMPARED: &str = "\
 ## Why the paper's figures cannot be compared with these
 
 Its recordings and its arm are not public, so its sessions cannot be run through this estimator. Errors here are distances of the tip to
-the truth in the world frame; the paper does not state its frame, and its text and its table differ in two places ([PAPER.md](PAPER.md)). A
+the truth in the world frame; the paper does not state its frame, and its text and its table differ in two places ([errata](paper.md)). A
 simulated arm is as good as its makers' guesses. What can be checked against the paper is the order of the methods, and the one place
 where ours differs: in scenario III its raw IMUs are better than its fusion.";

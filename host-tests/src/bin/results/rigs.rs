@@ -9,7 +9,7 @@ use calibration_tables::ArmFile;
 use flate2::read::GzDecoder;
 use host_tests::contact::alarms;
 use host_tests::parallel::in_parallel;
-use proprio_session::{NamedTable, Row, SessionReader};
+use proprio_session::{LoadedTable, Row, SessionReader};
 
 use crate::arm::{Problem, RATE_HZ, Tables};
 use crate::evaluation::{Evaluation, Figures};
@@ -131,7 +131,7 @@ fn unpacked(rig: &Path, session: &str, folder: &Path) -> Result<PathBuf, Problem
 
 /// Reads all rows, and their rate.
 fn rows(session: &Path, tables: &Tables) -> Result<(f64, Vec<Row>), Problem> {
-    let needs = NamedTable { file: tables.own.clone(), path: session }.needs()?;
+    let needs = LoadedTable { file: tables.own.clone(), path: session }.required_columns()?;
     let mut reader = SessionReader::open(session, &needs)?;
     let mut rows = Vec::new();
     while let Some(row) = reader.next_row()? {
@@ -145,6 +145,6 @@ const RIGS: &str = "\
 
 Two programs that share nothing with `rig-twin`: four elastic rods of 60 hinges with friction, post and stick, whose strips are nonlinear,
 hysteretic, creep and drift with temperature, and two arms by formula. As calibrated on their sweeps. Tip RMSE of fusion in mm (share of
-true tips inside the 95 % ellipse); then that of the [smoothed](METHOD.md#smoothing) estimates, the paper's method on the same sweep and the better of bend sensors and raw IMUs. No
+true tips inside the 95 % ellipse); then of the [smoothed](smoothing.md) estimates, of the paper's method on the same sweep, and of the better of bend sensors and raw IMUs. No
 constant was chosen on them.
 ";

@@ -1,15 +1,15 @@
-//! The moving average of the drift anchor, over what there is to show.
+//! The moving average of the drift anchor, for the figures.
 
 use std::collections::VecDeque;
 
-use calibration_tables::AnchorKeys;
+use calibration_tables::AnchorToml;
 
 /// Mean of the newest values, over the time of the anchor's window.
 #[derive(Debug, Clone)]
 pub struct MovingAverage {
     rate_hz: f64,
     window: u64,
-    /// Values of one step of the anchor each.
+    /// Sums of the values in each step of the anchor.
     steps: VecDeque<Step>,
     sum: f64,
     count: u64,
@@ -23,12 +23,12 @@ struct Step {
 }
 
 impl MovingAverage {
-    pub fn new(anchor: &AnchorKeys) -> Self {
+    pub fn new(anchor: &AnchorToml) -> Self {
         let window = u64::from(anchor.window);
         Self { rate_hz: anchor.rate_hz, window, steps: VecDeque::new(), sum: 0.0, count: 0 }
     }
 
-    /// Takes a value, if there is one, and gives the mean of the window that ends with it.
+    /// Takes a value, if there is one, and returns the mean of the window that ends with it.
     pub fn add(&mut self, time_us: u64, value: Option<f64>) -> Option<f64> {
         let number = (time_us as f64 * self.rate_hz / 1e6) as u64;
         while let Some(oldest) = self.steps.pop_front_if(|step| step.number + self.window <= number) {
@@ -49,13 +49,13 @@ impl MovingAverage {
 
 #[cfg(test)]
 mod tests {
-    use calibration_tables::AnchorKeys;
+    use calibration_tables::AnchorToml;
 
     use super::MovingAverage;
 
     #[test]
     fn the_window_is_as_long_at_any_sample_rate() {
-        let anchor = AnchorKeys { window: 20, threshold_deg: 0.5, rate_hz: 10.0 };
+        let anchor = AnchorToml { window: 20, threshold_deg: 0.5, rate_hz: 10.0 };
         for step_us in [100_000, 10_000] {
             let mut average = MovingAverage::new(&anchor);
             let mut last = None;
@@ -69,7 +69,7 @@ mod tests {
 
     #[test]
     fn a_window_without_values_has_no_mean() {
-        let mut average = MovingAverage::new(&AnchorKeys { window: 20, threshold_deg: 0.5, rate_hz: 10.0 });
+        let mut average = MovingAverage::new(&AnchorToml { window: 20, threshold_deg: 0.5, rate_hz: 10.0 });
         assert_eq!(average.add(0, Some(3.0)), Some(3.0));
         assert_eq!(average.add(1_900_000, None), Some(3.0));
         assert_eq!(average.add(2_000_000, None), None);

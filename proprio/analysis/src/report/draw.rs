@@ -1,105 +1,25 @@
 //! A panel as SVG.
 //!
 //! Plotters draws in whole units, so a unit is a tenth of a pixel; the page scales the drawing. Colours are those of
-//! light pages; the style sheet replaces them by what they mean.
+//! light pages; the style sheet replaces them by their meanings.
 
 use std::cmp::Reverse;
 
-use estimator_core::Method;
 use plotters::chart::{ChartBuilder, ChartContext};
-use plotters::coord::Shift;
 use plotters::coord::types::RangedCoordf64;
-use plotters::prelude::{
-    Cartesian2d, Circle, DrawingArea, EmptyElement, IntoDrawingArea, PathElement, Polygon, SVGBackend,
-};
-use plotters::style::text_anchor::{HPos, Pos, VPos};
-use plotters::style::{Color, IntoFont, RGBColor, ShapeStyle, TextStyle};
+use plotters::prelude::{Cartesian2d, Circle, EmptyElement, IntoDrawingArea, PathElement, Polygon, SVGBackend};
+use plotters::style::Color;
+use plotters::style::text_anchor::{HPos, VPos};
 
+use super::canvas::{Area, Drawn, MARGIN_PX, PX, rectangle, star, text};
 use super::legend::{ROW_PX, legend};
 use super::plot::{Colour, Marks, Panel, Series, Size};
 
-/// Units of the drawing in a pixel.
-pub const PX: i32 = 10;
-/// Text, px.
-const TEXT_PX: i32 = 13;
 /// Room for labels left of and below the axes, px.
 const LABELS_PX: [i32; 2] = [62, 44];
-/// Room on all other sides, px.
-pub const MARGIN_PX: i32 = 10;
 /// Half the width of a box on an axis of names.
 const HALF_BOX: f64 = 0.27;
-/// A star's corners about its middle, tenths of its radius.
-const STAR: [(i32, i32); 10] =
-    [(0, -10), (2, -3), (10, -3), (4, 1), (6, 8), (0, 4), (-6, 8), (-4, 1), (-10, -3), (-2, -3)];
-
-pub type Area<'s> = DrawingArea<SVGBackend<'s>, Shift>;
 type Chart<'c, 's> = ChartContext<'c, SVGBackend<'s>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
-pub type Drawn = Result<(), Box<dyn std::error::Error>>;
-
-impl Size {
-    /// Width and height, px.
-    pub const fn px(self) -> [i32; 2] {
-        match self {
-            Self::Half => [560, 360],
-            Self::Third => [380, 300],
-            Self::Quarter => [300, 420],
-        }
-    }
-
-    /// Rows of the legend that there is room for at least, so that plots of one size are alike.
-    const fn legend_rows(self) -> i32 {
-        match self {
-            Self::Half | Self::Third => 1,
-            Self::Quarter => 3,
-        }
-    }
-}
-
-impl Colour {
-    /// Those that differ in their [`Colour::rgb`].
-    pub const ALL: [Self; 7] = [
-        Self::Of(Method::Bend),
-        Self::Of(Method::ImuO),
-        Self::Of(Method::ImuC),
-        Self::Of(Method::Fusion),
-        Self::Smoothed,
-        Self::Ink,
-        Self::Grid,
-    ];
-
-    /// Okabe and Ito's palette, which colour-blind readers can tell apart.
-    pub const fn rgb(self) -> [u8; 3] {
-        match self {
-            Self::Of(Method::Bend) => [0xE6, 0x9F, 0x00],
-            Self::Of(Method::ImuO) => [0xD5, 0x5E, 0x00],
-            Self::Of(Method::ImuC) => [0x00, 0x9E, 0x73],
-            Self::Of(Method::Fusion) => [0x00, 0x72, 0xB2],
-            Self::Smoothed => [0xCC, 0x79, 0xA7],
-            Self::Truth | Self::Ink => [0x1A, 0x1A, 0x1A],
-            Self::Grid => [0xDD, 0xDD, 0xDD],
-        }
-    }
-
-    pub fn drawn(self) -> RGBColor {
-        let [r, g, b] = self.rgb();
-        RGBColor(r, g, b)
-    }
-
-    pub fn stroke(self, tenths_px: u32) -> ShapeStyle {
-        self.drawn().stroke_width(tenths_px)
-    }
-
-    /// The truth is a broad light band, so that an estimate shows inside it; fusion is broader than imu_c, which is often
-    /// as good.
-    pub fn line(self) -> ShapeStyle {
-        match self {
-            Self::Truth => self.drawn().mix(0.35).stroke_width(45),
-            Self::Of(Method::Fusion) => self.stroke(26),
-            _ => self.stroke(14),
-        }
-    }
-}
-
 /// Draws a panel.
 ///
 /// # Panics
@@ -155,7 +75,7 @@ fn draw_plot(area: &Area, panel: &Panel) -> Drawn {
     layers.into_iter().try_for_each(|series| draw_series(&mut chart, series))
 }
 
-/// Which marks lie over which: areas below, then lines, broad ones first.
+/// Layer of the marks: areas below, then lines, broad ones first.
 fn layer(series: &Series) -> (u8, Reverse<u32>) {
     match series.marks {
         Marks::Band { .. } | Marks::Box { .. } => (0, Reverse(0)),
@@ -237,21 +157,7 @@ fn runs<T: Copy>(points: &[(f64, Option<T>)]) -> impl Iterator<Item = Vec<(f64, 
     stretches.map(|run| run.iter().filter_map(|(x, value)| Some((*x, (*value)?))).collect())
 }
 
-pub fn rectangle<T: Copy>((left, top): (T, T), (right, bottom): (T, T)) -> Vec<(T, T)> {
-    vec![(left, top), (right, top), (right, bottom), (left, bottom), (left, top)]
-}
-
-pub fn star(colour: Colour) -> Polygon<(i32, i32)> {
-    Polygon::new(STAR.map(|(x, y)| (x * PX * 7 / 10, y * PX * 7 / 10)), colour.drawn().filled())
-}
-
-/// Plotters draws text 1.24 times smaller than it is asked to.
-pub fn text(horizontal: HPos, vertical: VPos) -> TextStyle<'static> {
-    let style = ("sans-serif", f64::from(TEXT_PX * PX) * 1.24).into_font().color(&Colour::Ink.drawn());
-    style.pos(Pos::new(horizontal, vertical))
-}
-
-/// A tick's number without digits that say nothing.
+/// A tick's number without trailing zeros.
 fn number(value: f64) -> String {
     let text = format!("{value:.3}");
     let text = text.trim_end_matches('0').trim_end_matches('.');

@@ -1,25 +1,25 @@
-//! Drift of the raw IMUs, segment by segment, and what the anchor makes of it.
+//! Drift of the raw IMUs and its correction, segment by segment.
 
 use std::collections::VecDeque;
 
-use calibration_tables::{AnchorKeys, ArmFile, MAX_SEGMENTS};
+use calibration_tables::{AnchorToml, ArmFile, MAX_SEGMENTS};
 use estimator_core::{FusedOps, Method};
 use proprio_session::Row;
 
 use super::average::MovingAverage;
+use super::downsample::Timeline;
 use super::plot::{Axis, Colour, Figure, Marks, Panel, Series, Size, extent, padded, rounded};
-use super::thin::Timeline;
 use crate::Outcome;
 
-/// What is shown of a segment, the truth first, so that it lies below the others.
+/// Curves of a segment, the truth first, so that it is drawn below the others.
 const CURVES: [Colour; 4] =
     [Colour::Truth, Colour::Of(Method::Bend), Colour::Of(Method::ImuO), Colour::Of(Method::ImuC)];
 const TRUTH: usize = 0;
 const BEND: usize = 1;
 const IMU_O: usize = 2;
-/// Bins of a session at least.
+/// Fewest bins of a session.
 const BINS: usize = 256;
-/// The end of the session that is shown as it is, s.
+/// Length of the session's end that is shown without averaging, s.
 const END_S: u64 = 30;
 /// Shortest step between two of its samples, µs.
 const END_STEP_US: u64 = 50_000;
@@ -40,7 +40,7 @@ struct Segment {
 
 impl Drift {
     pub fn new(table: &ArmFile) -> Self {
-        let AnchorKeys { window, rate_hz, .. } = table.anchor;
+        let AnchorToml { window, rate_hz, .. } = table.anchor;
         let average = MovingAverage::new(&table.anchor);
         let segment = |_: &_| Segment { averages: CURVES.map(|_| average.clone()), timeline: Timeline::new(BINS) };
         let segments = table.segments.iter().map(segment).collect();
@@ -128,9 +128,9 @@ fn series(y: &'static str, points: impl Fn(usize) -> Vec<(f64, Option<f64>)>) ->
         };
         (name, colour, points(channel))
     });
-    let said = curves.filter(|(.., points)| points.iter().any(|(_, value)| value.is_some()));
+    let known = curves.filter(|(.., points)| points.iter().any(|(_, value)| value.is_some()));
     let line = |points| Marks::Line { x: "time_s", y, points };
-    said.map(|(name, colour, points)| Series { name: name.to_owned(), colour, marks: line(points) }).collect()
+    known.map(|(name, colour, points)| Series { name: name.to_owned(), colour, marks: line(points) }).collect()
 }
 
 fn axes(series: &[Series], title: &'static str) -> [Axis; 2] {
@@ -138,7 +138,7 @@ fn axes(series: &[Series], title: &'static str) -> [Axis; 2] {
     [Axis::new("time, s", x), Axis::new(title, padded(y))]
 }
 
-/// From the sessions' names, numbers of samples and angles.
+/// The figure of the sessions' names, numbers of samples and angles.
 pub fn figure<'s>(sessions: impl Iterator<Item = (&'s str, u64, &'s Drift)>) -> Figure {
     let (mut panels, mut samples, mut window_s) = (Vec::new(), 0, 0.0);
     for (name, count, drift) in sessions {
@@ -151,7 +151,7 @@ pub fn figure<'s>(sessions: impl Iterator<Item = (&'s str, u64, &'s Drift)>) -> 
         title: "Drift of the IMUs and its correction",
         caption: format!(
             "Moving averages of the bend angles over the anchor's window, {window_s} s, {samples} samples in bins of equally many: raw IMUs \
-             (imu_o), IMUs whose drift bend sensors correct (imu_c), bend sensors and truth, as far as they are known. Of each \
+             (imu_o), IMUs whose drift bend sensors correct (imu_c), bend sensors and truth, where they are known. Of each \
              session the segment that drifts most is large, with its last {END_S} s as they are. Drift is the largest \
              distance of imu_o's average from the truth's, or from the bend sensors' where there is no truth."
         ),

@@ -1,17 +1,17 @@
-//! The numbers of a report: JSON as they are nested, CSV as a row a number.
+//! Export of a report's numbers: nested as JSON, one row per number as CSV.
 
 use csv::Writer;
 use estimator_core::Method;
 
 use super::Report;
 use super::plot::{Figure, Marks, Panel, SMOOTHED};
-use crate::figures::ByMethod;
-use crate::metrics::Figures;
+use crate::metrics::Metrics;
+use crate::session_metrics::ByMethod;
 
 /// The CSV's columns.
 const COLUMNS: [&str; 8] = ["figure", "session", "panel", "series", "x_quantity", "x", "y_quantity", "y"];
 
-/// What a row begins with.
+/// The first cells of a row.
 type Place<'p> = [&'p str; 4];
 
 impl Report {
@@ -24,7 +24,7 @@ impl Report {
         serde_json::to_string(self).expect("numbers and names have a form in JSON") + "\n"
     }
 
-    /// All numbers as CSV. A session's name is empty in what is of all together.
+    /// All numbers as CSV. The session's name is empty in rows of all sessions together.
     ///
     /// # Panics
     /// Never: a table in memory does not fail.
@@ -33,7 +33,7 @@ impl Report {
         let mut rows = Rows(Writer::from_writer(Vec::new()));
         rows.write(COLUMNS);
         for session in &self.numbers.sessions {
-            rows.figures(&session.path, &session.figures);
+            rows.figures(&session.path, &session.metrics);
         }
         rows.figures("", &self.numbers.all);
         for figure in &self.figures {
@@ -56,7 +56,7 @@ impl Rows {
         self.write([figure, session, panel, series, x_name, &x.to_string(), y_name, &y.to_string()]);
     }
 
-    /// One number that is not over anything.
+    /// One number without an x value.
     fn number(&mut self, [figure, session, panel, series]: Place, name: &str, value: f64) {
         self.write([figure, session, panel, series, "", "", name, &value.to_string()]);
     }
@@ -67,7 +67,7 @@ impl Rows {
         }
         if let Some(smoothed) = &figures.smoothed {
             let place = ["table", session, "", SMOOTHED];
-            self.errors(place, &smoothed.figures);
+            self.errors(place, &smoothed.metrics);
             if let Some(inside_percent) = smoothed.uncertainty.and_then(|uncertainty| uncertainty.tip_inside_percent) {
                 self.number(place, "tip_inside_percent", inside_percent);
             }
@@ -77,7 +77,7 @@ impl Rows {
         }
     }
 
-    fn errors(&mut self, place: Place, of: &Figures) {
+    fn errors(&mut self, place: Place, of: &Metrics) {
         let numbers = [
             ("tip_rmse_mm", of.tip_rmse_mm),
             ("tip_rmse_percent", of.tip_rmse_percent),

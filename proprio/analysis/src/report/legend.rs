@@ -4,7 +4,7 @@ use plotters::prelude::{Circle, EmptyElement, PathElement, Polygon};
 use plotters::style::Color;
 use plotters::style::text_anchor::{HPos, VPos};
 
-use super::draw::{Area, Drawn, MARGIN_PX, PX, rectangle, star, text};
+use super::canvas::{Area, Drawn, MARGIN_PX, PX, rectangle, star, text};
 use super::plot::{Colour, Marks, Panel};
 
 /// Room for a character of a name, px, which is wide enough for any usual sans-serif font.

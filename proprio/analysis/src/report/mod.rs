@@ -1,15 +1,17 @@
-//! `proprio report`: sessions replayed into one page of figures, and the numbers behind them.
+//! `proprio report`: sessions replayed into one page of figures, and their numbers.
 //!
-//! | file | |
+//! | file | purpose |
 //! |---|---|
-//! | `boxes.rs`, `drift.rs`, `v_orient.rs`, `tip_error.rs`, `shapes.rs` | the figures |
-//! | `thin.rs`, `average.rs` | long sessions in bounded memory |
-//! | `plot.rs` | what a figure shows |
-//! | `draw.rs`, `legend.rs`, `page.rs`, `style.css` | as SVG, on a page |
-//! | `export.rs` | as JSON and CSV |
+//! | `box_plot.rs`, `drift.rs`, `v_orient.rs`, `tip_error.rs`, `shapes.rs` | the figures |
+//! | `downsample.rs`, `average.rs` | long sessions in bounded memory |
+//! | `plot.rs` | contents of a figure |
+//! | `draw.rs`, `legend.rs`, `canvas.rs`, `page.rs`, `style.css` | drawing as SVG, on a page |
+//! | `export.rs` | export as JSON and CSV |
 
 mod average;
-mod boxes;
+mod box_plot;
+mod canvas;
+mod downsample;
 mod draw;
 mod drift;
 mod export;
@@ -17,14 +19,13 @@ mod legend;
 mod page;
 mod plot;
 mod shapes;
-mod thin;
 mod tip_error;
 mod v_orient;
 
 use std::path::Path;
 
 use estimator_core::{Method, Q};
-use proprio_session::{NamedTable, Progress, Row};
+use proprio_session::{LoadedTable, Progress, Row};
 use serde::Serialize;
 
 use self::drift::Drift;
@@ -33,43 +34,43 @@ use self::shapes::Shapes;
 use self::tip_error::TipErrors;
 use self::v_orient::Readings;
 use crate::error::Error;
-use crate::figures::{AllFigures, ByMethod, SessionFigures};
-use crate::metrics::Score;
+use crate::metrics::ErrorMetrics;
 use crate::outcome::Outcome;
-use crate::replay::{Extent, replay};
+use crate::replay::{SessionSummary, replay};
+use crate::session_metrics::{AllMetrics, ByMethod, SessionMetrics};
 use crate::smooth;
 
-/// A report that is being gathered, session by session. Its memory grows with their number and not with their length.
-pub struct Gathering<'t> {
-    table: &'t NamedTable<'t>,
+/// Builder of a report, session by session. Its memory grows with their number and not with their length.
+pub struct ReportBuilder<'t> {
+    table: &'t LoadedTable<'t>,
     sessions: Vec<Session>,
-    all: Score,
+    all: ErrorMetrics,
     readings: Readings,
 }
 
-/// What is kept of one session.
+/// Data of one session.
 struct Session {
     name: String,
-    extent: Extent,
-    score: Score,
+    summary: SessionSummary,
+    errors: ErrorMetrics,
     drift: Drift,
     tip_errors: TipErrors,
     shapes: Shapes,
 }
 
-/// A finished report: what [`Report::html`], [`Report::json`] and [`Report::csv`] say in three ways.
+/// A finished report, for [`Report::html`], [`Report::json`] and [`Report::csv`].
 #[derive(Debug, Serialize)]
 pub struct Report {
     format: u32,
     proprio: &'static str,
     table: TableName,
     #[serde(flatten)]
-    numbers: AllFigures,
+    numbers: AllMetrics,
     missing: Vec<String>,
     figures: Vec<Figure>,
 }
 
-/// Which table it is.
+/// Identity of the table.
 #[derive(Debug, Serialize)]
 struct TableName {
     path: String,
@@ -81,40 +82,40 @@ struct TableName {
     length_mm: f64,
 }
 
-impl<'t> Gathering<'t> {
+impl<'t> ReportBuilder<'t> {
     /// No session yet.
     #[must_use]
-    pub fn new(table: &'t NamedTable) -> Self {
-        let (all, readings) = (Score::new(table.file.length_mm()), Readings::new(&table.file));
+    pub fn new(table: &'t LoadedTable) -> Self {
+        let (all, readings) = (ErrorMetrics::new(table.file.length_mm()), Readings::new(&table.file));
         Self { table, sessions: Vec::new(), all, readings }
     }
 
     /// Replays a session in fixed point, and smooths it where the table has the bias filter.
     ///
     /// # Errors
-    /// As [`replay`].
-    pub fn add(&mut self, path: &Path, progress: &mut dyn Progress) -> Result<Extent, Error> {
+    /// Errors of [`replay`].
+    pub fn add(&mut self, path: &Path, progress: &mut dyn Progress) -> Result<SessionSummary, Error> {
         let table = &self.table.file;
-        let mut score = Score::new(table.length_mm());
+        let mut errors = ErrorMetrics::new(table.length_mm());
         let (mut drift, mut tip_errors, mut shapes) = (Drift::new(table), TipErrors::new(), Shapes::new(table));
         let readings = &mut self.readings;
         let visit = |row: &Row, outcome: &Outcome<Q>| {
-            score.add(row, outcome);
+            errors.add(row, outcome);
             drift.add(row, outcome);
             tip_errors.add(row, outcome);
             shapes.add(row, outcome);
             readings.add(row);
             Ok(())
         };
-        let extent = if self.table.has_bias_filter() {
+        let summary = if self.table.has_bias_filter() {
             smooth::replay(path, self.table, progress, visit)?
         } else {
             replay(path, self.table, progress, visit)?
         };
-        self.all.append(&score);
+        self.all.append(&errors);
         let name = path.display().to_string();
-        self.sessions.push(Session { name, extent: extent.clone(), score, drift, tip_errors, shapes });
-        Ok(extent)
+        self.sessions.push(Session { name, summary: summary.clone(), errors, drift, tip_errors, shapes });
+        Ok(summary)
     }
 
     /// Makes the figures.
@@ -122,15 +123,15 @@ impl<'t> Gathering<'t> {
     /// # Errors
     /// [`Error::File`] on an arm description.
     pub fn finish(self) -> Result<Report, Error> {
-        let Self { table: NamedTable { file, path }, sessions, all, readings } = &self;
-        let of_session = |session: &Session| SessionFigures {
+        let Self { table: LoadedTable { file, path }, sessions, all, readings } = &self;
+        let of_session = |session: &Session| SessionMetrics {
             path: session.name.clone(),
-            samples: session.extent.samples,
-            seconds: session.extent.seconds,
-            figures: ByMethod::from(&session.score),
+            samples: session.summary.samples,
+            seconds: session.summary.seconds,
+            metrics: ByMethod::from(&session.errors),
             recorded: None,
         };
-        let crc32 = self.table.bake::<Q>(file.rate_hz)?.checksum();
+        let crc32 = self.table.compile::<Q>(file.rate_hz)?.checksum();
         Ok(Report {
             format: 1,
             proprio: env!("CARGO_PKG_VERSION"),
@@ -142,34 +143,34 @@ impl<'t> Gathering<'t> {
                 segments: file.segments.len(),
                 length_mm: file.length_mm(),
             },
-            numbers: AllFigures {
+            numbers: AllMetrics {
                 sessions: sessions.iter().map(of_session).collect(),
                 all: ByMethod::from(all),
                 length_mm: file.length_mm(),
             },
             missing: self.missing(),
             figures: vec![
-                boxes::figure(sessions.iter().map(|s| (s.name.as_str(), &s.score)), all),
-                drift::figure(sessions.iter().map(|s| (s.name.as_str(), s.extent.samples, &s.drift))),
+                box_plot::figure(sessions.iter().map(|s| (s.name.as_str(), &s.errors)), all),
+                drift::figure(sessions.iter().map(|s| (s.name.as_str(), s.summary.samples, &s.drift))),
                 readings.figure(),
-                tip_error::figure(sessions.iter().map(|s| (s.name.as_str(), s.extent.samples, &s.tip_errors))),
-                shapes::figure(sessions.iter().map(|s| (s.name.as_str(), &s.shapes, &s.score))),
+                tip_error::figure(sessions.iter().map(|s| (s.name.as_str(), s.summary.samples, &s.tip_errors))),
+                shapes::figure(sessions.iter().map(|s| (s.name.as_str(), &s.shapes, &s.errors))),
             ],
         })
     }
 
-    /// What a reader would look for in vain, and why.
+    /// Notes about results that are missing, with the reason.
     fn missing(&self) -> Vec<String> {
         let mut missing = Vec::new();
         if self.table.file.segments.iter().all(|segment| segment.bend.iter().flatten().next().is_none()) {
             missing.push(
-                "The table has no bend sensors: only imu_o speaks, nothing corrects its drift, and there is no V–Orient map."
+                "The table has no bend sensors: there is only imu_o, without correction of its drift, and no V–Orient map."
                     .to_owned(),
             );
         }
-        for Session { name, score, .. } in &self.sessions {
-            let has_tips = Method::ALL.iter().any(|method| score.tips(*method).count() > 0);
-            let has_angles = score.figures().iter().any(|figures| figures.theta_rmse_deg.is_some());
+        for Session { name, errors, .. } in &self.sessions {
+            let has_tips = Method::ALL.iter().any(|method| errors.tips(*method).count() > 0);
+            let has_angles = errors.metrics().iter().any(|figures| figures.theta_rmse_deg.is_some());
             match (has_tips, has_angles) {
                 (true, true) => {}
                 (false, false) => missing.push(format!("{name} has no truth: its errors are not known.")),

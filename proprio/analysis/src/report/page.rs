@@ -5,14 +5,14 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use super::plot::{Colour, ESTIMATES, Figure, Panel, SMOOTHED, Size};
 use super::{Report, draw};
-use crate::consistency::HonestyFigures;
-use crate::figures::ByMethod;
-use crate::metrics::Figures;
+use crate::consistency::ConsistencyMetrics;
+use crate::metrics::Metrics;
+use crate::session_metrics::ByMethod;
 
 const STYLE: &str = include_str!("style.css");
 
-/// A group of the table's columns: its head and its figure.
-type Group = (String, fn(&Figures) -> Option<f64>);
+/// A group of the table's columns: its head and its metric.
+type Group = (String, fn(&Metrics) -> Option<f64>);
 
 impl Report {
     /// The page.
@@ -71,7 +71,7 @@ impl Report {
         }
     }
 
-    /// The table of the paper: a row a session, a column a method, and one of the smoothed shape where there is any.
+    /// The table of the paper: one row per session, one column per method, and one of the smoothed shape where there is any.
     fn table(&self) -> Markup {
         let groups: [Group; 4] = [
             ("tip RMSE, mm".to_owned(), |figures| figures.tip_rmse_mm),
@@ -92,13 +92,13 @@ impl Report {
                             tr { @for _ in &groups { @for (k, (name, _)) in ESTIMATES[..count].iter().enumerate() { th.(*name).first[k == 0] scope="col" { (name) } } } }
                         }
                         tbody {
-                            @for session in &self.numbers.sessions { (row(&session.path, &session.figures)) }
+                            @for session in &self.numbers.sessions { (row(&session.path, &session.metrics)) }
                         }
                         tfoot { (row("all together", &self.numbers.all)) }
                     }
                 }
                 p.caption {
-                    "Against the truth, as far as it is known, over " (counted(samples, "sample")) ". bend: bend sensors alone; imu_o: raw IMUs; imu_c: IMUs whose drift bend \
+                    "Against the truth, where it is known, over " (counted(samples, "sample")) ". bend: bend sensors alone; imu_o: raw IMUs; imu_c: IMUs whose drift bend \
                      sensors correct; fusion: Kalman filters over both"
                     @if count > Method::ALL.len() { "; smoothed: fusion by the readings after each sample, too" }
                     ". The best one is bold; a dash is what is not known."
@@ -107,7 +107,7 @@ impl Report {
         }
     }
 
-    /// How honest the covariances are, where there are any.
+    /// Consistency of the covariances, where there are any.
     fn covariances(&self) -> Markup {
         let of = |figures: &ByMethod| [figures.uncertainty, figures.smoothed.and_then(|smoothed| smoothed.uncertainty)];
         let heads: Vec<&str> = ["fusion", SMOOTHED]
@@ -119,7 +119,7 @@ impl Report {
             html! {
                 tr {
                     th scope="row" { (name) }
-                    @for honesty in of(figures).iter().take(heads.len()) { (honesty_cells(honesty.as_ref())) }
+                    @for consistency in of(figures).iter().take(heads.len()) { (honesty_cells(consistency.as_ref())) }
                 }
             }
         };
@@ -133,7 +133,7 @@ impl Report {
                                 tr { th rowspan="2" scope="col" { "session" } @for head in &heads { th colspan="2" scope="colgroup" { (head) } } }
                                 tr { @for _ in &heads { th.first scope="col" { "in 95 % ellipse" } th scope="col" { "NEES" } } }
                             }
-                            tbody { @for session in &self.numbers.sessions { (row(&session.path, &session.figures)) } }
+                            tbody { @for session in &self.numbers.sessions { (row(&session.path, &session.metrics)) } }
                             tfoot { (row("all together", &self.numbers.all)) }
                         }
                     }
@@ -147,11 +147,12 @@ impl Report {
     }
 }
 
-fn honesty_cells(honesty: Option<&HonestyFigures>) -> Markup {
-    let inside = honesty
-        .and_then(|honesty| honesty.tip_inside_percent)
+fn honesty_cells(consistency: Option<&ConsistencyMetrics>) -> Markup {
+    let inside = consistency
+        .and_then(|consistency| consistency.tip_inside_percent)
         .map_or("–".to_owned(), |share| format!("{share:.1} %"));
-    let nees = honesty.and_then(|honesty| honesty.tip_nees).map_or("–".to_owned(), |nees| format!("{nees:.2}"));
+    let nees =
+        consistency.and_then(|consistency| consistency.tip_nees).map_or("–".to_owned(), |nees| format!("{nees:.2}"));
     html! { td.first { (inside) } td { (nees) } }
 }
 
@@ -160,7 +161,7 @@ fn table_row(name: &str, figures: &ByMethod, groups: &[Group], count: usize) -> 
         tr {
             th scope="row" { (name) }
             @for (_, figure) in groups {
-                @let smoothed = figures.smoothed.and_then(|smoothed| figure(&smoothed.figures));
+                @let smoothed = figures.smoothed.and_then(|smoothed| figure(&smoothed.metrics));
                 @let values: Vec<Option<f64>> = figures.methods.iter().map(figure).chain([smoothed]).take(count).collect();
                 @let best = values.iter().flatten().copied().reduce(f64::min);
                 @for (k, value) in values.iter().copied().enumerate() {
@@ -196,7 +197,7 @@ fn plot(panel: &Panel) -> Markup {
     }
 }
 
-/// How many panels stand side by side.
+/// CSS class of a row by its number of panels.
 fn class(row: &[Panel]) -> &'static str {
     match row.first().map(|panel| panel.size) {
         Some(Size::Quarter) => "four",
@@ -205,7 +206,7 @@ fn class(row: &[Panel]) -> &'static str {
     }
 }
 
-/// The rules that give every colour of the drawings its meaning.
+/// CSS rules that map the colours of the drawings to their meanings.
 fn colours() -> String {
     let rule = |colour: Colour| {
         let [r, g, b] = colour.rgb();

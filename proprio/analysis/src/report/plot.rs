@@ -1,4 +1,4 @@
-//! What a figure shows, apart from how it is drawn: the numbers of the page, of the JSON and of the CSV alike.
+//! Contents of a figure without its drawing: the numbers of the page, the JSON and the CSV.
 
 use estimator_core::Method;
 use serde::{Serialize, Serializer};
@@ -10,7 +10,7 @@ pub struct Figure {
     #[serde(rename = "figure")]
     pub name: &'static str,
     pub title: &'static str,
-    /// What is shown, and how many samples.
+    /// Description of the figure, with the number of samples.
     pub caption: String,
     pub panels: Vec<Panel>,
 }
@@ -18,11 +18,11 @@ pub struct Figure {
 /// One plot.
 #[derive(Debug, Serialize)]
 pub struct Panel {
-    /// The session; `None` where it is of all together.
+    /// The session; `None` for all sessions together.
     pub session: Option<String>,
-    /// What it is of: a segment, a sensor, a moment; empty where that is the session.
+    /// Its subject in the session: a segment, a sensor, a moment; empty for the whole session.
     pub name: String,
-    /// What stands above it.
+    /// Title above the plot.
     pub title: String,
     /// Numbers about it, by their names with units.
     #[serde(serialize_with = "as_map")]
@@ -68,7 +68,7 @@ pub struct Series {
     pub marks: Marks,
 }
 
-/// How numbers are drawn. The names of quantities are those of the CSV, with their unit.
+/// Form in which numbers are drawn. The names of quantities are those of the CSV, with their unit.
 #[derive(Debug, Serialize)]
 #[serde(tag = "kind", rename_all = "lowercase")]
 pub enum Marks {
@@ -76,7 +76,7 @@ pub enum Marks {
     Line { x: &'static str, y: &'static str, points: Vec<(f64, Option<f64>)> },
     /// An area between two values.
     Band { x: &'static str, low: &'static str, high: &'static str, points: Vec<(f64, Option<[f64; 2]>)> },
-    /// Points by themselves.
+    /// Single points.
     Dots { x: &'static str, y: &'static str, points: Vec<(f64, f64)> },
     /// A circle about a point, mm.
     Circle { center_x_mm: f64, center_y_mm: f64, radius_mm: f64 },
@@ -178,13 +178,13 @@ impl Extent {
     }
 }
 
-/// A range with a little room at both ends.
+/// A range with a margin at both ends.
 pub fn padded([from, to]: [f64; 2]) -> [f64; 2] {
     let room = 0.04 * (to - from);
     [from - room, to + room]
 }
 
-/// Three decimals: of a millimetre, a degree, a second more than anyone sees, and a third of the digits.
+/// Rounds to three decimals: finer than the drawing's resolution of millimetres, degrees and seconds.
 pub fn rounded(value: f64) -> f64 {
     (value * 1e3).round() / 1e3
 }

@@ -4,12 +4,12 @@ use calibration_tables::{ArmFile, MAX_SEGMENTS};
 use estimator_core::{Angle, FusedOps, Method, UnitArc};
 use proprio_session::{Row, Truth};
 
+use super::downsample::Decimated;
 use super::plot::{Axis, Colour, Figure, Marks, Panel, Series, Size, extent, padded, rounded};
-use super::thin::Thinned;
 use crate::Outcome;
-use crate::metrics::{Score, tip_errors_m};
+use crate::metrics::{ErrorMetrics, tip_errors_m};
 
-/// Moments of a session that are kept at least.
+/// Fewest moments of a session that are kept.
 const MOMENTS: usize = 256;
 /// Points of a drawn segment.
 const SEGMENT_POINTS: u32 = 8;
@@ -21,7 +21,7 @@ pub struct Shapes {
     lengths_m: Vec<f64>,
     /// The method whose errors choose the moments.
     leading: Method,
-    kept: Thinned<Snapshot>,
+    kept: Decimated<Snapshot>,
     worst: Option<Snapshot>,
 }
 
@@ -29,7 +29,7 @@ pub struct Shapes {
 #[derive(Debug, Clone)]
 struct Snapshot {
     time_s: f64,
-    /// Of the leading method.
+    /// Tip error of the leading method, m.
     error_m: Option<f64>,
     shapes: [Vec<Option<End>>; Method::ALL.len()],
     truth: [Option<Truth>; MAX_SEGMENTS],
@@ -50,7 +50,7 @@ impl Shapes {
         Self {
             lengths_m: table.segments.iter().map(|segment| (segment.length_mm + segment.offset_mm) / 1e3).collect(),
             leading: if has_bend_sensors { Method::Fusion } else { Method::ImuO },
-            kept: Thinned::new(MOMENTS),
+            kept: Decimated::new(MOMENTS),
             worst: None,
         }
     }
@@ -65,13 +65,13 @@ impl Shapes {
     }
 
     /// The moments whose tip errors are nearest to the quartiles, and the worst; without truth, four evenly spaced.
-    fn moments(&self, score: &Score) -> Vec<(String, &Snapshot)> {
+    fn moments(&self, errors: &ErrorMetrics) -> Vec<(String, &Snapshot)> {
         let items = self.kept.items();
         let Some(worst) = &self.worst else {
             let moments = (0..4).filter_map(|i| items.get((2 * i + 1) * items.len() / 8));
             return (1..).zip(moments).map(|(i, moment)| (format!("moment {i}"), moment)).collect();
         };
-        let tips = score.tips(self.leading);
+        let tips = errors.tips(self.leading);
         let quartiles = [("first quartile", 0.25), ("median", 0.5), ("third quartile", 0.75)];
         let nearest = quartiles.into_iter().filter_map(|(name, share)| {
             let wanted_m = tips.quantile_m(share)?;
@@ -82,10 +82,10 @@ impl Shapes {
     }
 
     /// The moments' panels, all to one scale.
-    fn panels(&self, session: &str, score: &Score) -> Vec<Panel> {
-        let moments = self.moments(score).into_iter();
+    fn panels(&self, session: &str, errors: &ErrorMetrics) -> Vec<Panel> {
+        let moments = self.moments(errors).into_iter();
         let mut panels: Vec<Panel> =
-            moments.map(|(name, moment)| moment.panel(session, name, &self.lengths_m, score)).collect();
+            moments.map(|(name, moment)| moment.panel(session, name, &self.lengths_m, errors)).collect();
         let [x, y] = extent(panels.iter().flat_map(|panel| &panel.series)).map(padded);
         for panel in &mut panels {
             (panel.x.range, panel.y.range) = (x, y);
@@ -108,7 +108,7 @@ impl Snapshot {
         Self { time_s: row.sample.time_us as f64 / 1e6, error_m, shapes, truth: row.truth }
     }
 
-    fn panel(&self, session: &str, name: String, lengths_m: &[f64], score: &Score) -> Panel {
+    fn panel(&self, session: &str, name: String, lengths_m: &[f64], errors: &ErrorMetrics) -> Panel {
         let (time_s, error_mm) = (self.time_s, self.error_m.map(|m| m * 1e3));
         let title = match error_mm {
             Some(mm) => format!("{name}: {mm:.1} mm at {time_s:.1} s"),
@@ -123,11 +123,11 @@ impl Snapshot {
             size: Size::Quarter,
             x: Axis::new("x, mm", [0.0, 1.0]),
             y: Axis::new("y, mm", [0.0, 1.0]),
-            series: self.series(lengths_m, score),
+            series: self.series(lengths_m, errors),
         }
     }
 
-    fn series(&self, lengths_m: &[f64], score: &Score) -> Vec<Series> {
+    fn series(&self, lengths_m: &[f64], errors: &ErrorMetrics) -> Vec<Series> {
         let mut series = self.true_series(lengths_m);
         for method in Method::ALL {
             let ends = &self.shapes[method as usize];
@@ -136,7 +136,7 @@ impl Snapshot {
                 series.push(named(method.name(), Colour::Of(method), line(points)));
             }
         }
-        series.extend(CIRCLES.into_iter().filter_map(|method| self.circle(method, score)));
+        series.extend(CIRCLES.into_iter().filter_map(|method| self.circle(method, errors)));
         series
     }
 
@@ -157,9 +157,9 @@ impl Snapshot {
     }
 
     /// The circle about the estimated tip inside which three quarters of this session's errors are.
-    fn circle(&self, method: Method, score: &Score) -> Option<Series> {
+    fn circle(&self, method: Method, errors: &ErrorMetrics) -> Option<Series> {
         let tip = (*self.shapes[method as usize].last()?)?;
-        let radius_m = score.tips(method).quantile_m(0.75)?;
+        let radius_m = errors.tips(method).quantile_m(0.75)?;
         let [center_x_mm, center_y_mm, radius_mm] = [tip.x_m, tip.y_m, radius_m].map(|m| rounded(m * 1e3));
         let marks = Marks::Circle { center_x_mm, center_y_mm, radius_mm };
         Some(named(&format!("{} 75 %", method.name()), Colour::Of(method), marks))
@@ -198,12 +198,12 @@ fn curve(ends: impl Iterator<Item = Option<End>>, lengths_m: &[f64]) -> Vec<(f64
     points
 }
 
-/// From the sessions' names, shapes and scores.
-pub fn figure<'s>(sessions: impl Iterator<Item = (&'s str, &'s Shapes, &'s Score)>) -> Figure {
+/// The figure of the sessions' names, shapes and errors.
+pub fn figure<'s>(sessions: impl Iterator<Item = (&'s str, &'s Shapes, &'s ErrorMetrics)>) -> Figure {
     let mut panels = Vec::new();
     let (mut has_errors, mut leading) = (false, Method::Fusion);
-    for (name, shapes, score) in sessions {
-        panels.extend(shapes.panels(name, score));
+    for (name, shapes, errors) in sessions {
+        panels.extend(shapes.panels(name, errors));
         has_errors |= shapes.worst.is_some();
         leading = shapes.leading;
     }

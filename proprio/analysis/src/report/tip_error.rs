@@ -1,14 +1,14 @@
-//! The tip's error against time.
+//! Error of the tip over time.
 
 use estimator_core::FusedOps;
 use proprio_session::Row;
 
+use super::downsample::Timeline;
 use super::plot::{Axis, ESTIMATES, Figure, Marks, Panel, Series, Size, extent, rounded};
-use super::thin::Timeline;
 use crate::Outcome;
 use crate::metrics::{smoothed_tip_error_m, tip_errors_m};
 
-/// Bins of a session at least: few enough for five areas to be told apart.
+/// Fewest bins of a session: with more, five areas cannot be distinguished.
 const BINS: usize = 100;
 const CHANNELS: usize = ESTIMATES.len();
 
@@ -55,7 +55,7 @@ impl TipErrors {
     }
 }
 
-/// From the sessions' names, numbers of samples and errors.
+/// The figure of the sessions' names, numbers of samples and errors.
 pub fn figure<'s>(sessions: impl Iterator<Item = (&'s str, u64, &'s TipErrors)>) -> Figure {
     let (mut panels, mut samples) = (Vec::new(), 0);
     for (name, count, errors) in sessions {

@@ -1,26 +1,26 @@
 //! The V–Orient maps of the table with the data of the sessions.
 
-use calibration_tables::{ArmFile, BendKeys};
+use calibration_tables::{ArmFile, BendToml};
 use estimator_core::{Method, VOLTS_PER_COUNT};
 use proprio_session::{Row, SENSOR_NAMES};
 
+use super::downsample::Decimated;
 use super::plot::{Axis, Colour, Figure, Marks, Panel, Series, Size, extent, padded, rounded};
-use super::thin::Thinned;
 
-/// Readings of a sensor that are shown at least.
+/// Fewest readings of a sensor that are shown.
 const READINGS: usize = 256;
 /// Points of a drawn map.
 const MAP_POINTS: u32 = 60;
 
 /// Readings of all sensors with the true angle.
-pub struct Readings(Vec<Sensor>);
+pub struct Readings(Vec<SensorReadings>);
 
-struct Sensor {
+struct SensorReadings {
     segment: usize,
     place: usize,
-    map: BendKeys,
+    map: BendToml,
     /// Volts and true angle, deg.
-    points: Thinned<(f64, f64)>,
+    points: Decimated<(f64, f64)>,
     square_sum_deg2: f64,
     count: u64,
 }
@@ -29,7 +29,7 @@ impl Readings {
     pub fn new(table: &ArmFile) -> Self {
         let sensors = table.segments.iter().enumerate().flat_map(|(segment, keys)| {
             let maps = keys.bend.iter().flatten().cloned().enumerate();
-            maps.map(move |(place, map)| Sensor::new(segment, place, map))
+            maps.map(move |(place, map)| SensorReadings::new(segment, place, map))
         });
         Self(sensors.collect())
     }
@@ -58,18 +58,18 @@ impl Readings {
             name: "v_orient",
             title: "V–Orient maps",
             caption: format!("Line: the table's map from a sensor's voltage to its segment's bend angle. {data}"),
-            panels: self.0.iter().map(Sensor::panel).collect(),
+            panels: self.0.iter().map(SensorReadings::panel).collect(),
         }
     }
 }
 
-impl Sensor {
-    fn new(segment: usize, place: usize, map: BendKeys) -> Self {
-        Self { segment, place, map, points: Thinned::new(READINGS), square_sum_deg2: 0.0, count: 0 }
+impl SensorReadings {
+    fn new(segment: usize, place: usize, map: BendToml) -> Self {
+        Self { segment, place, map, points: Decimated::new(READINGS), square_sum_deg2: 0.0, count: 0 }
     }
 
     fn mapped_deg(&self, volts: f64) -> f64 {
-        let BendKeys { c0, c1, c2, .. } = self.map;
+        let BendToml { c0, c1, c2, .. } = self.map;
         ((c2 * volts + c1) * volts + c0).to_degrees()
     }
 
@@ -120,7 +120,7 @@ impl Sensor {
     }
 }
 
-/// A hundredth of a count is left.
+/// Rounds to 10 µV, a hundredth of a count.
 fn tens_of_microvolts(volts: f64) -> f64 {
     (volts * 1e5).round() / 1e5
 }

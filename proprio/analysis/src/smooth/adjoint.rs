@@ -1,11 +1,11 @@
-//! The adjoint state λ and its matrix Λ, backwards (modified Bryson–Frazier), and what a block of steps does to them.
+//! The adjoint state λ and its matrix Λ, backwards (modified Bryson–Frazier), step by step and in blocks of steps.
 
 use nalgebra::{DMatrix, DVector};
 
 use super::step::{Step, bias, offset, rate};
 
-/// λ and Λ: what the measurements after a moment show of the states x at it. The smoothed estimate is x − P λ, its
-/// covariance P − P Λ P.
+/// λ and Λ: the information of the later measurements about the states x. The smoothed estimate is x − P λ, its covariance
+/// P − P Λ P.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Adjoint {
     /// λ.
@@ -20,7 +20,7 @@ impl Adjoint {
         Self { vector: DVector::zeros(states), matrix: DMatrix::zeros(states, states) }
     }
 
-    /// From the moment after `step` to the one before it.
+    /// Goes back over `step`.
     ///
     /// Prediction: λ⁻ = Aᵀλ, Λ⁻ = AᵀΛA. Update: λ⁻ = (I − K H)ᵀλ − Hᵀν/S, Λ⁻ = (I − K H)ᵀΛ(I − K H) + HᵀH/S.
     pub fn step_back(&mut self, step: &Step) {
@@ -77,7 +77,7 @@ pub struct Block {
 }
 
 impl Block {
-    /// Of these steps.
+    /// Composes these steps.
     pub fn new(states: usize, steps: &[Step]) -> Self {
         let (mut transition, mut own) = (DMatrix::identity(states, states), Adjoint::zero(states));
         for step in steps.iter().rev() {

@@ -57,10 +57,10 @@ impl<'t, S: FusedOps> SmoothingPass<'t, S> {
         }
     }
 
-    /// Takes a row; shows rows with their smoothed outcomes to `visit`, in their order, when their block is complete.
+    /// Takes a row; passes rows with their smoothed outcomes to `visit`, in their order, when their block is complete.
     ///
     /// # Errors
-    /// Those of `visit`.
+    /// Errors of `visit`.
     pub fn add<E>(&mut self, row: &Row, visit: &mut impl FnMut(&Row, &Outcome<S>) -> Result<(), E>) -> Result<(), E> {
         let outcome = Outcome::of_row(&mut self.estimator, row);
         let absence = self.estimator.absence_variances();
@@ -82,7 +82,7 @@ impl<'t, S: FusedOps> SmoothingPass<'t, S> {
     /// Smooths the rows of the last block.
     ///
     /// # Errors
-    /// Those of `visit`.
+    /// Errors of `visit`.
     pub fn finish<E>(mut self, visit: &mut impl FnMut(&Row, &Outcome<S>) -> Result<(), E>) -> Result<(), E> {
         self.end_block(visit)
     }

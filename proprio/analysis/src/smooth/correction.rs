@@ -1,4 +1,4 @@
-//! Corrections of one row: what the readings after it change in the filter's biases and offsets.
+//! Corrections of one row: the change of the filter's biases and offsets by the later readings.
 
 use nalgebra::DMatrix;
 
@@ -10,16 +10,16 @@ use super::step::{STATES, bias, offset, rate};
 pub struct RowCovariance {
     /// T P: of the biases at the time of the row, then of the offsets, with all states.
     with_states: DMatrix<f64>,
-    /// Of the biases, rad².
+    /// Covariance of the biases, rad².
     biases: DMatrix<f64>,
 }
 
 /// Smoothed less filtered states of a row, and the smoothed covariance.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Correction {
-    /// Of each IMU's bias, rad.
+    /// Correction of each IMU's bias, rad.
     pub biases: Vec<f64>,
-    /// Of each segment's offset, rad.
+    /// Correction of each segment's offset, rad.
     pub offsets: Vec<f64>,
     /// Smoothed covariance of the biases, rad².
     pub covariance: DMatrix<f64>,
@@ -37,7 +37,7 @@ impl RowCovariance {
         Self { with_states, biases }
     }
 
-    /// x_s − x = −P λ and P_s = P − P Λ P, as far as the row's headings depend on them.
+    /// x_s − x = −P λ and P_s = P − P Λ P, for the states that the row's headings depend on.
     pub fn smooth(&self, adjoint: &Adjoint) -> Correction {
         let n = self.biases.nrows();
         let change = -(&self.with_states * &adjoint.vector);

@@ -31,7 +31,7 @@ impl CovarianceFilter {
         &self.p
     }
 
-    /// Applies an operation; gives what the backward pass must undo.
+    /// Applies an operation; returns the step that the backward pass must undo.
     pub fn apply(&mut self, operation: &BiasOperation<Q>) -> Option<Step> {
         match *operation {
             BiasOperation::Start { straightness } => {
@@ -84,7 +84,7 @@ impl CovarianceFilter {
         }
     }
 
-    /// K = P⁻Hᵀ/S, P = P⁻ − K H P⁻; gives K and S.
+    /// K = P⁻Hᵀ/S, P = P⁻ − K H P⁻; returns K and S.
     fn update(&mut self, row: &SparseRow, r: f64) -> (Vec<f64>, f64) {
         let cross: Vec<f64> =
             (0..self.p.nrows()).map(|k| row.iter().map(|(at, h)| h * self.p[(k, *at)]).sum()).collect();

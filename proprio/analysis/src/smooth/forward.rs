@@ -1,4 +1,4 @@
-//! First pass: the gains of all updates, and what they do to the adjoint, block by block.
+//! First pass: the gains of all updates, and their effect on the adjoint, block by block.
 
 use calibration_tables::{MAX_SEGMENTS, MAX_WINDOW};
 use estimator_core::{ArmConfig, Estimator, FusedOps};
@@ -70,7 +70,7 @@ impl<'t, S: FusedOps> ForwardPass<'t, S> {
         self.rows = 0;
     }
 
-    /// Runs backwards over all blocks; gives the adjoint after each of them, from the first to the last.
+    /// Runs backwards over all blocks; returns the adjoint after each of them, from the first to the last.
     #[must_use]
     pub fn finish(mut self) -> Vec<Adjoint> {
         self.end_block();

@@ -1,15 +1,15 @@
-//! Corrections of the headings: a heading that was read by its bias, an absent one by its neighbours.
+//! Corrections of the headings: by its bias for a heading that was read, by its neighbours for an absent one.
 
 use estimator_core::ABSENT_TIME_S;
 
 use super::correction::Correction;
 
-/// What a segment's sensors gave in a row.
+/// Readings of a segment that are present in a row.
 #[derive(Debug, Clone, Copy)]
 pub struct Present {
-    /// Whether the filter has used the heading.
+    /// The filter has used the heading.
     pub heading: bool,
-    /// Whether there was a bend angle.
+    /// The bend angle was read.
     pub bend: bool,
 }
 
@@ -19,7 +19,7 @@ pub struct Present {
 /// θ_bend − o. The correction of such a heading follows the same rule, from that which it had when it was last read.
 #[derive(Debug, Clone)]
 pub struct HeadingCorrections {
-    /// Of θ_i, rad.
+    /// Corrections of θ_i, rad.
     angles: Vec<f64>,
 }
 
@@ -55,7 +55,7 @@ impl HeadingCorrections {
     }
 
     /// Follows an update, which has turned the filter's headings by its change of the `biases`, rad. Smoothed headings do
-    /// not depend on when the filter learned what.
+    /// not depend on the time of the filter's updates.
     pub fn follow_update(&mut self, biases: impl Iterator<Item = f64>) {
         let mut below = 0.0;
         for (angle, bias) in self.angles.iter_mut().zip(biases) {

@@ -1,13 +1,13 @@
-//! Smoothing: estimates of a recorded session by all of its readings, those after each row too.
+//! Smoothing: estimates of a recorded session from all of its readings, also those after each row.
 //!
 //! The model is the [bias filter's](estimator_core::BiasState). A fixed-interval smoother in the modified Bryson–Frazier form
-//! (Bierman 1973) runs its operations backwards, in floats, and corrects the filter's biases at every row; `docs/METHOD.md`
-//! has the equations. A session that starts anew in between is smoothed piece by piece.
+//! (Bierman 1973) runs its operations backwards, in floats, and corrects the filter's biases at every row; `docs/explanation/smoothing.md`
+//! has the equations. A session with several starts of the estimator is smoothed piece by piece.
 //!
 //! The session is read twice. Blocks of 2048 rows are composed into one step back each, so that memory does not hold
 //! the session but one block of rows, and 5 kB for each block of an arm of six segments: 22 MB for a day at 100 Hz.
 //!
-//! | file | |
+//! | file | purpose |
 //! |---|---|
 //! | `step.rs` | the operations of the filter |
 //! | `covariance.rs` | P forwards, and the gains |
@@ -30,7 +30,7 @@ mod tests;
 use std::path::Path;
 
 use estimator_core::FusedOps;
-use proprio_session::{NamedTable, Progress, Row};
+use proprio_session::{LoadedTable, Progress, Row};
 
 pub use adjoint::Adjoint;
 pub use backward::SmoothingPass;
@@ -39,7 +39,7 @@ pub use shape::Smoothed;
 
 use crate::error::Error;
 use crate::outcome::Outcome;
-use crate::replay::{Extent, SessionRows};
+use crate::replay::{SessionRows, SessionSummary};
 
 /// Replays a session with its smoothed estimates, and passes every row with its outcome to `visit`.
 ///
@@ -47,16 +47,16 @@ use crate::replay::{Extent, SessionRows};
 /// [`Error::NotSmoothed`] where the table has no bias filter; else as [`replay`](crate::replay::replay).
 pub fn replay<S: FusedOps>(
     session: &Path,
-    table: &NamedTable,
+    table: &LoadedTable,
     progress: &mut dyn Progress,
     mut visit: impl FnMut(&Row, &Outcome<S>) -> Result<(), Error>,
-) -> Result<Extent, Error> {
+) -> Result<SessionSummary, Error> {
     if !table.has_bias_filter() {
         return Err(Error::NotSmoothed(table.path.to_owned()));
     }
     let mut rows = SessionRows::open(session, table, "first pass over", progress)?;
-    let baked = table.bake::<S>(rows.rate_hz(table))?;
-    let config = baked.config();
+    let compiled = table.compile::<S>(rows.rate_hz(table))?;
+    let config = compiled.config();
     let mut forward = ForwardPass::new(&config);
     while let Some(row) = rows.next_row()? {
         forward.add(&row);
@@ -68,5 +68,5 @@ pub fn replay<S: FusedOps>(
         smoothing.add(&row, &mut visit)?;
     }
     smoothing.finish(&mut visit)?;
-    rows.extent(table)
+    rows.summary(table)
 }

@@ -36,8 +36,8 @@ impl<'t, S: FusedOps> Kinematics<'t, S> {
         absence: &[Q; MAX_SEGMENTS],
     ) -> Smoothed<S> {
         let links = fused.iter().zip(corrections).zip(&self.segments).map(|((segment, correction), pcc)| {
-            let Angle { rest, turns } = segment.theta?;
-            Some(pcc.link(Angle { rest: rest + S::from_f64(*correction), turns }))
+            let Angle { remainder, whole_turns } = segment.theta?;
+            Some(pcc.link(Angle { remainder: remainder + S::from_f64(*correction), whole_turns }))
         });
         let shape: Shape<S, MAX_SEGMENTS> = forward_kinematics(links).collect();
         let uncertainties = self.uncertainties(&shape, covariance, absence);

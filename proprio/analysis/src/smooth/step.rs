@@ -1,4 +1,4 @@
-//! Steps of the bias filter that the backward pass undoes, and the log that they come from.
+//! Steps of the bias filter that the backward pass undoes, and the log of its operations.
 
 use estimator_core::{BiasMeasurement, BiasOperation, BiasTrace, Q};
 
@@ -42,7 +42,7 @@ pub fn sparse_row(measurement: BiasMeasurement) -> SparseRow {
     }
 }
 
-/// A step of the filter, as far as the backward pass needs it: process noise is in the gains.
+/// A step of the filter with the values that the backward pass needs: process noise is in the gains.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Step {
     /// A prior that depends on nothing before.

@@ -246,7 +246,7 @@ fn after_the_last_update_nothing_is_corrected() {
 }
 
 #[test]
-fn a_session_that_starts_anew_leaves_the_piece_before_as_it_was() {
+fn a_start_of_the_estimator_leaves_the_piece_before_as_it_was() {
     let first = Random::new(8).operations();
     let both = [first.clone(), Random::new(9).operations()].concat();
     for (alone, followed) in smooth(&first).iter().zip(&smooth(&both)) {

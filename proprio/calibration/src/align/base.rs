@@ -1,23 +1,23 @@
-//! The base's marker: where {W} is in the camera's frame.
+//! The base's marker: pose of {W} in the camera's frame.
 
 use nalgebra::{Rotation2, Vector2};
 use proprio_session::Pose;
 
+use super::angle::unwrap_near;
 use super::error::AlignmentError;
-use super::frames::near;
 
-/// The camera stands still, and so does the base. Parts of a recording whose bases are further apart say otherwise.
+/// Parts of a recording by which camera and base are checked to be at rest.
 const PARTS: usize = 10;
 /// Largest distance of a part's base from that of all, m.
 const STILL_M: f64 = 0.005;
 /// Largest angle between them, rad.
 const STILL_RAD: f64 = 0.035;
 
-/// Pose of the base in the camera's frame: the median of all frames, so that no frame's noise is in the truth.
+/// Pose of the base in the camera's frame: the median of all frames, so that the noise of single frames is not in the truth.
 pub(super) fn median(mut seen: Vec<Pose>) -> Result<Pose, AlignmentError> {
     let first = seen.first().ok_or(AlignmentError::NoBase)?.heading_rad;
     for pose in &mut seen {
-        pose.heading_rad = near(pose.heading_rad, first);
+        pose.heading_rad = unwrap_near(pose.heading_rad, first);
     }
     let all = middle(&seen);
     for part in seen.chunks(seen.len().div_ceil(PARTS)) {
@@ -40,7 +40,7 @@ fn middle(poses: &[Pose]) -> Pose {
     Pose { x_m: median(|pose| pose.x_m), y_m: median(|pose| pose.y_m), heading_rad: median(|pose| pose.heading_rad) }
 }
 
-/// A pose of the camera's frame as it is seen from the base.
+/// Transforms a pose from the camera's frame to that of the base.
 pub(super) fn from_base(base: &Pose, pose: &Pose) -> Pose {
     // Headings are clockwise, so that this turns back.
     let place = Rotation2::new(base.heading_rad) * Vector2::new(pose.x_m - base.x_m, pose.y_m - base.y_m);
@@ -58,7 +58,7 @@ mod tests {
 
     /// The base looks to the right of the picture: its y axis is the picture's x, its x axis points down.
     #[test]
-    fn what_is_right_of_a_base_that_looks_right_is_ahead_of_it() {
+    fn a_pose_to_the_right_of_a_base_that_looks_right_is_ahead_of_it() {
         let seen = from_base(&pose(1.0, 2.0, 90.0), &pose(1.5, 1.9, 120.0));
         assert!((seen.x_m - 0.1).abs() < 1e-12 && (seen.y_m - 0.5).abs() < 1e-12, "{seen:?}");
         assert!((seen.heading_rad.to_degrees() - 30.0).abs() < 1e-9, "{seen:?}");

@@ -1,6 +1,6 @@
-//! Why a camera's file and a session cannot be brought together.
+//! Errors of the alignment of a camera's file and a session.
 
-/// Why there is no alignment.
+/// An error that prevents an alignment.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum AlignmentError {
     /// The session has no reading to compare.
@@ -15,9 +15,9 @@ pub enum AlignmentError {
     /// The base's marker was not at rest.
     #[error("the base's marker moved by {mm:.0} mm and {deg:.1}° during the recording")]
     BaseMoved {
-        /// How far, mm.
+        /// Distance of the motion, mm.
         mm: f64,
-        /// How far it turned, degrees.
+        /// Angle of the motion, degrees.
         deg: f64,
     },
     /// A recording is too short.
@@ -56,15 +56,15 @@ pub enum AlignmentError {
         correlations[0], correlations[1]
     )]
     Ambiguous {
-        /// From one to the other, s.
+        /// Time between them, s.
         apart_s: f64,
         /// Their correlations.
         correlations: [f64; 2],
     },
-    /// Pauses leave too little.
+    /// The overlap without pauses is too short.
     #[error("shares less than {least_s} s with the session at any offset, pauses of markers and sensors left out")]
     Hidden {
-        /// What both must have seen, s.
+        /// Shortest overlap, s.
         least_s: f64,
     },
     /// The arm rests nearly all the time.
@@ -83,7 +83,7 @@ pub enum AlignmentError {
         "the clocks do not run evenly: pieces of the recording are {residual_ms:.0} ms RMS off, expected at most {most_ms}"
     )]
     Uneven {
-        /// Root mean square of what a steady rate leaves, ms.
+        /// Root mean square of the residual lags after a steady rate, ms.
         residual_ms: f64,
         /// Allowed value, ms.
         most_ms: f64,

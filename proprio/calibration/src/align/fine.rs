@@ -1,20 +1,20 @@
-//! Both clocks to a fraction of a sample: windows of the recording, each with its own lag, and the line through these.
+//! Both clocks to a fraction of a sample: lags of windows of the recording, and the regression line through them.
 
 use super::error::AlignmentError;
-use super::motion::{Motion, Pair, Sensors};
+use super::motion::{ComparedSensors, Motion, Pair};
 use super::signal::GRID_S;
 
 /// Length of a window, s.
 const WINDOW_S: f64 = 20.0;
-/// Most rounds of windows and lines; four do.
+/// Largest number of rounds; four are usual.
 const ROUNDS: usize = 20;
-/// A round that moves the lag by less than this is the last, s.
+/// Change of the lag in a round below which it has converged, s.
 const CONVERGED_S: f64 = 1e-6;
-/// Most that a window's lag moves in one round, s: the coarse lag is no further off, and steps have turned over by then.
+/// Largest change of a window's lag in one round, s: the coarse lag is no further off.
 const LONGEST_MOVE_S: f64 = 1.0;
-/// No sensor is better than this, as a share of its mean square: rounding would decide.
+/// Smallest noise of a sensor, as a share of its mean square: less would be rounding.
 const LEAST_NOISE: f64 = 1e-9;
-/// A line through fewer windows says nothing of its own error.
+/// Fewest windows of a line whose error can be estimated.
 const LEAST_WINDOWS: f64 = 2.5;
 
 /// The camera's clock as a line over the sensors': camera = lag + (1 + skew) · sensors, each since its own start.
@@ -30,20 +30,20 @@ impl Clocks {
     }
 }
 
-/// What the comparison came to.
+/// The fitted clocks, with their errors.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Fit {
+pub(super) struct ClockFit {
     pub clocks: Clocks,
-    /// Middle of what both saw, by the sensors' clock, where the lag is known best.
+    /// Middle of the overlap by the sensors' clock, s, where the lag is known best.
     pub middle_s: f64,
-    /// Standard errors of the lag there and of the skew, from how the windows scatter.
+    /// Standard errors of the lag there, s, and of the skew, from the scatter of the windows.
     pub lag_error_s: f64,
     pub skew_error: f64,
-    /// Root mean square of the windows' own lags about the line.
+    /// Root mean square of the windows' lags about the line, s.
     pub residual_s: f64,
-    /// Median over the pairs, some of which may be wrong.
+    /// Median correlation of the pairs, some of which may be wrong.
     pub correlation: f64,
-    /// Moments at which steps were compared.
+    /// Number of moments at which differences were compared.
     pub matched: usize,
 }
 
@@ -54,7 +54,7 @@ struct Moment {
 }
 
 /// Refines a lag that is right to some tenths of a second.
-pub(super) fn fit(motion: &Motion, lag_s: f64) -> Result<Fit, AlignmentError> {
+pub(super) fn fit(motion: &Motion, lag_s: f64) -> Result<ClockFit, AlignmentError> {
     let windows = windows(motion);
     let mut clocks = Clocks { lag_s, skew: 0.0 };
     let mut rounds = 0;
@@ -66,7 +66,7 @@ pub(super) fn fit(motion: &Motion, lag_s: f64) -> Result<Fit, AlignmentError> {
         clocks = Clocks { lag_s: clocks.lag_s + line.at(0.0), skew: clocks.skew + line.slope };
         rounds += 1;
         if line.lag_s.abs().max(line.at(0.0).abs()) < CONVERGED_S || rounds == ROUNDS {
-            return Ok(Fit {
+            return Ok(ClockFit {
                 clocks,
                 middle_s: line.middle_s,
                 lag_error_s: line.lag_error_s,
@@ -79,17 +79,17 @@ pub(super) fn fit(motion: &Motion, lag_s: f64) -> Result<Fit, AlignmentError> {
     }
 }
 
-fn median_correlation(by: Sensors, gains: &[Gain]) -> f64 {
+fn median_correlation(by: ComparedSensors, gains: &[Gain]) -> f64 {
     let known = gains.iter().map(Gain::correlation).filter(|correlation| correlation.is_finite());
     let mut known: Vec<f64> = match by {
-        Sensors::Imus => known.collect(),
-        Sensors::Bend => known.map(f64::abs).collect(),
+        ComparedSensors::Imus => known.collect(),
+        ComparedSensors::Bend => known.map(f64::abs).collect(),
     };
     known.sort_unstable_by(f64::total_cmp);
     known.get(known.len() / 2).copied().unwrap_or_default()
 }
 
-/// Moments at which a step of some sensor has its like.
+/// Number of moments at which a sensor's difference has one of the camera.
 fn matched(motion: &Motion, windows: &[Vec<Moment>], clocks: Clocks) -> usize {
     let has_like = |moment: &&Moment| {
         let camera_s = clocks.camera_s(moment.time_s);
@@ -112,7 +112,7 @@ fn windows(motion: &Motion) -> Vec<Vec<Moment>> {
     moments.chunks(per_window).map(|window| window.iter().copied().map(moment).collect()).collect()
 }
 
-/// How a pair's sensor follows the camera.
+/// Regression of a pair's sensor on the camera.
 #[derive(Debug, Default, Clone, Copy)]
 struct Gain {
     sensor_square: f64,
@@ -134,7 +134,7 @@ impl Gain {
         if self.camera_square > 0.0 { self.product / self.camera_square } else { 0.0 }
     }
 
-    /// What the camera does not explain: the mean square of the rest.
+    /// Mean square of the residual that the camera does not explain.
     fn noise(&self) -> f64 {
         let rest = self.sensor_square - self.value() * self.product;
         rest.max(LEAST_NOISE * self.sensor_square) / self.count
@@ -157,18 +157,18 @@ fn gains(motion: &Motion, windows: &[Vec<Moment>], clocks: Clocks) -> Vec<Gain> 
     gains
 }
 
-/// By how much the camera's clock is ahead of the line in one window.
+/// Lead of the camera's clock over the line in one window.
 #[derive(Debug, Clone, Copy)]
 struct WindowLag {
-    /// Middle of what was compared.
+    /// Middle of the compared moments, s.
     time_s: f64,
     lag_s: f64,
-    /// Inverse square of the lag's error: what the motion in the window tells of it.
+    /// Inverse variance of the lag: its information from the motion in the window.
     weight: f64,
 }
 
-/// One step of Gauss and Newton: the lag by which the camera's steps would have to move to be the sensors'. The slope is
-/// the sensors', which is less noisy than a single camera's.
+/// One Gauss–Newton step: the lag that maps the camera's differences to the sensors'. The slope is that of the sensors, which is
+/// less noisy than a single camera's.
 fn window_lag(motion: &Motion, window: &[Moment], clocks: Clocks, gains: &[Gain]) -> Option<WindowLag> {
     let (mut pull, mut weight, mut time) = (0.0, 0.0, 0.0);
     for moment in window {
@@ -198,7 +198,7 @@ struct Line {
 }
 
 impl Line {
-    /// Weighted least squares; `None` where too few windows tell anything.
+    /// Weighted least squares; `None` with too few windows of any weight.
     fn through(lags: &[WindowLag]) -> Option<Self> {
         let sum = |of: &dyn Fn(&WindowLag) -> f64| lags.iter().map(|lag| lag.weight * of(lag)).sum::<f64>();
         let weight = sum(&|_| 1.0);
@@ -211,7 +211,7 @@ impl Line {
         let spread = sum(&|lag| (lag.time_s - middle_s).powi(2));
         let slope = sum(&|lag| (lag.time_s - middle_s) * lag.lag_s) / spread;
         let square = sum(&|lag| (lag.lag_s - lag_s - slope * (lag.time_s - middle_s)).powi(2));
-        // Two of the windows' worth went into the line.
+        // The line takes two degrees of freedom.
         let variance = square / weight * windows / (windows - 2.0);
         Some(Self {
             middle_s,

@@ -1,16 +1,16 @@
-//! What the camera saw, in {W}: its frames in memory, and the poses between them.
+//! The camera's frames in {W}, and interpolated poses.
 
-use std::f64::consts::TAU;
 use std::path::Path;
 
-use proprio_session::{CameraReader, Pose, Problem, Progress, SessionError};
+use proprio_session::{CameraReader, Pose, Progress, SessionError, SessionProblem};
 
+use super::angle::unwrap_near;
 use super::base;
 use super::error::AlignmentError;
 use super::signal::Reading;
 use crate::error::Error;
 
-/// A pose is interpolated between two frames that are at most this far apart, s.
+/// Longest time between two frames over which a pose is interpolated, s.
 const LONGEST_GAP_S: f64 = 0.2;
 
 /// All frames. Headings are unwrapped.
@@ -48,7 +48,7 @@ impl Frames {
         }
         if frames.times_s.is_empty() {
             let path = camera.to_owned();
-            return Err(SessionError { path, line: None, column: None, problem: Problem::NoSamples }.into());
+            return Err(SessionError { path, line: None, column: None, problem: SessionProblem::NoSamples }.into());
         }
         let refuse = |source| Error::Alignment { path: camera.to_owned(), source };
         if frames.ends.iter().flatten().all(Option::is_none) {
@@ -67,7 +67,7 @@ impl Frames {
         self.ends.len()
     }
 
-    /// From the first frame to the last.
+    /// Time from the first frame to the last, s.
     pub fn seconds(&self) -> f64 {
         self.times_s.last().copied().unwrap_or_default()
     }
@@ -92,8 +92,8 @@ impl Frames {
         self.times_s.iter().zip(values).filter_map(|(time_s, value)| Some((*time_s, value?))).collect()
     }
 
-    /// Poses of all segments' ends at a time since the first frame, on a line between the frames before and after it
-    /// that have the marker; none where these are far apart or missing.
+    /// Poses of all segments' ends at a time since the first frame, interpolated between the frames before and after it
+    /// that have the marker; `None` where these are far apart or missing.
     pub fn poses_at(&self, time_s: f64) -> impl Iterator<Item = Option<Pose>> {
         let next = self.times_s.partition_point(|frame_s| *frame_s <= time_s);
         self.ends.iter().map(move |end| self.pose_at(end, next, time_s))
@@ -117,16 +117,11 @@ impl Frames {
     }
 }
 
-/// Takes a turn's jumps out of headings, and begins within ±π.
+/// Unwraps headings, beginning within ±π.
 fn unwrap(end: &mut [Option<Pose>]) {
     let mut last = 0.0;
     for pose in end.iter_mut().flatten() {
-        pose.heading_rad = near(pose.heading_rad, last);
+        pose.heading_rad = unwrap_near(pose.heading_rad, last);
         last = pose.heading_rad;
     }
-}
-
-/// The same direction, at most half a turn from `other`.
-pub(super) fn near(heading_rad: f64, other: f64) -> f64 {
-    heading_rad - TAU * ((heading_rad - other) / TAU).round()
 }

@@ -1,12 +1,15 @@
-//! Camera and sensors brought to one clock: truth for a session that has none.
+//! Alignment of a camera's clock with that of the sensors: truth for a session without it.
 //!
-//! 1. Both recordings are taken apart into steps from two seconds to the next two: what moves stays, drift and noise go. An
-//!    IMU's steps are those of its segment's heading; a bend sensor's follow those of the bend angle, one way or the other.
-//! 2. The lag to a tenth of a second is where all of them correlate best.
-//! 3. In windows of 20 s the lag is refined by least squares. The line through the windows' lags is the offset and the
-//!    difference of the rates, and what it leaves tells how good they are.
+//! 1. Both recordings become differences between the means of two seconds and of the next two, which keep motion and remove drift
+//!    and noise. An IMU's differences are those of its segment's heading; a bend sensor's follow those of the bend angle, with
+//!    either sign.
+//! 2. The lag to a tenth of a second is the peak of their cross-correlation.
+//! 3. In windows of 20 s the lag is refined by least squares. The line through the windows' lags gives the offset and the
+//!    difference of the rates, and its residuals their errors.
 //! 4. The camera's poses are interpolated at the session's time stamps.
 
+mod alignment;
+mod angle;
 mod base;
 mod coarse;
 mod error;
@@ -18,62 +21,34 @@ mod truth;
 
 use std::path::Path;
 
-use proprio_session::{NamedTable, Progress};
+use proprio_session::{LoadedTable, Progress};
 
+pub use alignment::{Alignment, AlignmentReport};
 pub use error::AlignmentError;
-pub use motion::Sensors;
+pub use motion::ComparedSensors;
 pub use truth::Written;
 
 use crate::error::Error;
 use coarse::LEAST_OVERLAP_S;
-use fine::{Clocks, Fit};
+use fine::ClockFit;
 use frames::Frames;
 use motion::{Motion, Readings};
 
-/// Longest recording, h: memory goes with its length, and a wrong time stamp makes any length.
+/// Longest recording, h: memory grows with its length, and a wrong time stamp may give any length.
 const MOST_H: f64 = 24.0;
-/// Most that the rates of two clocks may differ: a camera of 29.97 frames a second whose times are counted as of 30.
+/// Largest difference of the clocks' rates: a camera of 29.97 frames per second whose times are counted as of 30.
 const MOST_SKEW: f64 = 1.5e-3;
-
-/// A camera's recording beside a session, on one clock.
-pub struct Alignment {
-    frames: Frames,
-    readings: Readings,
-    clocks: Clocks,
-    /// How well they fit.
-    pub report: AlignmentReport,
-}
-
-/// How well camera and sensors fit.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct AlignmentReport {
-    /// Which sensors were compared with the camera.
-    pub sensors: Sensors,
-    /// The camera's time less the session's, in the middle of what both saw, s.
-    pub offset_s: f64,
-    /// Its standard error, from how pieces of the recording scatter, ms. What lag all of them share is not in it.
-    pub offset_error_ms: f64,
-    /// That middle, by the session's clock, s.
-    pub middle_s: f64,
-    /// By how much the camera's clock is faster, ppm.
-    pub skew_ppm: f64,
-    /// Its standard error, ppm.
-    pub skew_error_ppm: f64,
-    /// Root mean square of what offset and skew leave of the lags of pieces of 20 s, ms.
-    pub residual_ms: f64,
-    /// Median of the sensors' correlations with the camera.
-    pub correlation: f64,
-    /// Moments, ten a second, at which both were compared.
-    pub matched: usize,
-    /// Whether the last lines of session and camera file are ended; if not, their last numbers may have been cut.
-    pub end_with_line: [bool; 2],
-}
 
 /// Finds the clocks of `camera` and of `session`, which has no truth yet.
 ///
 /// # Errors
 /// [`Error::File`] where one of the files cannot be used, [`Error::Alignment`] where they do not fit together.
-pub fn align(session: &Path, camera: &Path, arm: &NamedTable, progress: &mut dyn Progress) -> Result<Alignment, Error> {
+pub fn align(
+    session: &Path,
+    camera: &Path,
+    arm: &LoadedTable,
+    progress: &mut dyn Progress,
+) -> Result<Alignment, Error> {
     let refuse = |path: &Path, source| Error::Alignment { path: path.to_owned(), source };
     let mut readings = Readings::read(session, &arm.file, progress)?;
     let frames = Frames::read(camera, arm.file.segments.len(), progress)?;
@@ -111,8 +86,8 @@ fn check_length(seconds: f64) -> Result<(), AlignmentError> {
     }
 }
 
-/// Whether a fit is good enough to be believed.
-fn check(by: Sensors, fit: Fit) -> Result<Fit, AlignmentError> {
+/// Checks that a fit is good enough.
+fn check(by: ComparedSensors, fit: ClockFit) -> Result<ClockFit, AlignmentError> {
     let (correlation, least) = (fit.correlation, by.least_correlation());
     if correlation < least {
         return Err(AlignmentError::Unrelated { correlation, least });
@@ -121,7 +96,7 @@ fn check(by: Sensors, fit: Fit) -> Result<Fit, AlignmentError> {
         let (residual_ms, most_ms) = (fit.residual_s * 1e3, by.most_residual_s() * 1e3);
         return Err(AlignmentError::Uneven { residual_ms, most_ms });
     }
-    // Short recordings of bend sensors say little of the rates.
+    // Short recordings of bend sensors determine the rates poorly.
     if fit.clocks.skew.abs() - 3.0 * fit.skew_error > MOST_SKEW {
         return Err(AlignmentError::Skewed { ppm: fit.clocks.skew * 1e6, most_ppm: MOST_SKEW * 1e6 });
     }

@@ -1,41 +1,42 @@
-//! What sensors and camera both saw: pairs of columns that follow the same motion.
+//! Motion in both recordings: pairs of a sensor's and the camera's column that follow the same motion.
 
 use std::mem;
 use std::path::Path;
 
 use calibration_tables::ArmFile;
 use estimator_core::{ImuReading, SENSORS_PER_SEGMENT};
-use proprio_session::{Kind, Needs, Problem, Progress, Row, SessionError, SessionReader};
+use proprio_session::{FileFormat, Progress, RequiredColumns, Row, SessionError, SessionProblem, SessionReader};
 
+use super::angle::unwrap_near;
 use super::error::AlignmentError;
-use super::frames::{Frames, near};
+use super::frames::Frames;
 use super::signal::{Reading, Signal};
 use crate::error::Error;
 
-/// A sensor and what the camera saw of its motion.
+/// A sensor and the camera's column of the same motion.
 pub(super) struct Pair {
     pub sensor: Signal,
     pub camera: usize,
 }
 
-/// All that both saw. Times are since the first row and the first frame.
+/// The motion in both recordings. Times are since the first row and the first frame.
 pub(super) struct Motion {
     pub pairs: Vec<Pair>,
     pub cameras: Vec<Signal>,
-    pub by: Sensors,
+    pub by: ComparedSensors,
 }
 
-/// Which sensors are compared with the camera.
+/// Sensors that are compared with the camera.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Sensors {
+pub enum ComparedSensors {
     /// IMUs, whose headings must follow those of the segments' ends.
     Imus,
-    /// Bend sensors, of which is not known which way they run. They lag, and each in its own way.
+    /// Bend sensors, of unknown sign. Each of them has a lag of its own.
     Bend,
 }
 
-impl Sensors {
-    /// Correlation that good ones have.
+impl ComparedSensors {
+    /// Smallest correlation of good sensors.
     pub(super) const fn least_correlation(self) -> f64 {
         match self {
             Self::Imus => 0.95,
@@ -43,7 +44,7 @@ impl Sensors {
         }
     }
 
-    /// Scatter of the windows' lags beyond which it is not the sensors but a clock, s.
+    /// Largest scatter of the windows' lags that sensors explain, s: more is an uneven clock.
     pub(super) const fn most_residual_s(self) -> f64 {
         match self {
             Self::Imus => 0.02,
@@ -52,11 +53,11 @@ impl Sensors {
     }
 }
 
-/// Readings of a session's sensors, those that were missing left out.
+/// Readings of a session's sensors, without the missing ones.
 pub(super) struct Readings {
     pub times_us: Vec<u64>,
     pub ends_with_line: bool,
-    /// When runs of the board began, s: there an IMU's heading has a new zero.
+    /// Starts of the board's runs, s, at which an IMU's heading has a new zero.
     starts_s: Vec<f64>,
     imu: Vec<Vec<Reading>>,
     bend: Vec<[Vec<Reading>; SENSORS_PER_SEGMENT]>,
@@ -64,17 +65,17 @@ pub(super) struct Readings {
 
 impl Readings {
     pub fn read(session: &Path, arm: &ArmFile, progress: &mut dyn Progress) -> Result<Self, Error> {
-        let needs = Needs { truth: false, ..Needs::of_calibration(arm) };
+        let needs = RequiredColumns { truth: false, ..RequiredColumns::of_calibration(arm) };
         let mut reader = SessionReader::open(session, &needs)?;
         let refuse = |line, problem| SessionError { path: session.to_owned(), line, column: None, problem };
         if !reader.is_regular_file() {
-            return Err(refuse(None, Problem::NotAFile).into());
+            return Err(refuse(None, SessionProblem::NotAFile).into());
         }
-        if reader.kind() != Kind::Csv {
-            return Err(refuse(None, Problem::NotCsv).into());
+        if reader.kind() != FileFormat::Csv {
+            return Err(refuse(None, SessionProblem::NotCsv).into());
         }
         if let Some(column) = reader.truth_column() {
-            return Err(refuse(Some(1), Problem::HasTruth(column.to_owned())).into());
+            return Err(refuse(Some(1), SessionProblem::HasTruth(column.to_owned())).into());
         }
         let n = arm.segments.len();
         let mut readings = Self {
@@ -119,25 +120,25 @@ impl Readings {
         (time_us - self.first_us()) as f64 / 1e6
     }
 
-    /// From the first row to the last.
+    /// Time from the first row to the last, s.
     pub fn seconds(&self) -> f64 {
         self.times_us.last().map_or(0.0, |last_us| self.since_start_s(*last_us))
     }
 }
 
 impl Motion {
-    /// IMUs where there are any, as they lag and remember least; else bend sensors.
+    /// The motion by IMUs where there are any, as they have the least lag and memory; else by bend sensors.
     ///
-    /// Takes the readings' columns, which are large.
+    /// Takes the readings' columns out of `readings`, as they are large.
     pub fn of(readings: &mut Readings, frames: &Frames) -> Result<Self, AlignmentError> {
         let imus = mem::take(&mut readings.imu).into_iter().map(unwrapped).enumerate();
         let bend =
             mem::take(&mut readings.bend).into_iter().enumerate().flat_map(|(i, pair)| pair.map(|sensor| (i, sensor)));
         let (imus, bend) = (seen(imus), seen(bend));
-        let by = if imus.is_empty() { Sensors::Bend } else { Sensors::Imus };
+        let by = if imus.is_empty() { ComparedSensors::Bend } else { ComparedSensors::Imus };
         let (sensors, cameras, starts_s) = match by {
-            Sensors::Imus => (imus, frames.headings(), &readings.starts_s[..]),
-            Sensors::Bend => (bend, frames.bends(), &[][..]),
+            ComparedSensors::Imus => (imus, frames.headings(), &readings.starts_s[..]),
+            ComparedSensors::Bend => (bend, frames.bends(), &[][..]),
         };
         let pairs: Vec<Pair> =
             sensors.into_iter().map(|(camera, read)| Pair { sensor: Signal::new(&read, starts_s), camera }).collect();
@@ -147,7 +148,7 @@ impl Motion {
         Ok(Self { pairs, cameras: cameras.iter().map(|seen| Signal::new(seen, &[])).collect(), by })
     }
 
-    /// The step of what the camera saw of a pair's motion.
+    /// Difference of the camera's column of a pair.
     pub fn camera_step(&self, pair: usize, time_s: f64) -> Option<f64> {
         self.cameras[self.pairs[pair].camera].step(time_s).map(|[step, _]| step)
     }
@@ -158,11 +159,11 @@ fn seen(columns: impl Iterator<Item = (usize, Vec<Reading>)>) -> Vec<(usize, Vec
     columns.filter(|(_, readings)| !readings.is_empty()).collect()
 }
 
-/// Headings without their jumps of a turn.
+/// Unwraps headings.
 fn unwrapped(mut headings: Vec<Reading>) -> Vec<Reading> {
     let mut last = 0.0;
     for (_, heading) in &mut headings {
-        *heading = near(*heading, last);
+        *heading = unwrap_near(*heading, last);
         last = *heading;
     }
     headings

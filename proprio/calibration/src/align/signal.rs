@@ -1,19 +1,19 @@
-//! A column as a function of time, and its steps: what both clocks' recordings are compared by.
+//! A column as a function of time, and its low-frequency differences, by which the recordings are compared.
 
-/// Span of the two means that a step is between, s. What moves in seconds stays, drift and noise do not; and neither do the
-/// jerks in which an IMU's own filter errs.
+/// Span of the two means of a difference, s. It keeps motion within seconds and removes drift, noise and the short errors of an
+/// IMU's own filter.
 const SPAN_S: f64 = 2.0;
-/// Time from one compared step to the next, s.
+/// Period of the compared differences, s.
 pub(super) const GRID_S: f64 = 0.1;
-/// A pause between readings of more than this hides motion, s.
+/// Longest time between readings that is no pause, s.
 const PAUSE_S: f64 = 0.3;
-/// At low rates a pause is more than so many of the usual steps.
+/// The same at low rates, in usual sampling periods.
 const PAUSE_STEPS: f64 = 2.5;
 
-/// A time, s, and what was read then.
+/// A time, s, and the value read then.
 pub(super) type Reading = (f64, f64);
 
-/// A column: straight lines from reading to reading.
+/// A column, linear between readings.
 pub(super) struct Signal {
     points: Vec<Point>,
 }
@@ -26,7 +26,7 @@ struct Point {
     area: f64,
     /// Time in pauses since then.
     hidden_s: f64,
-    /// Whether the line to it is no motion: across a pause, or a new zero.
+    /// The line to it is no motion: it crosses a pause or a new zero.
     is_hidden: bool,
 }
 
@@ -51,7 +51,7 @@ impl Signal {
         Self { points }
     }
 
-    /// When the first and the last reading were taken.
+    /// Times of the first and the last reading, s.
     pub fn ends_s(&self) -> Option<[f64; 2]> {
         Some([self.points.first()?.time_s, self.points.last()?.time_s])
     }
@@ -63,8 +63,8 @@ impl Signal {
         Some(from.line_to(time_s, value, to.is_hidden))
     }
 
-    /// The step at `time_s`, which is the mean over the span after it less the mean over the span before, and the step's
-    /// rate of change; `None` where the column was not read all the while.
+    /// The difference at `time_s`, which is the mean over the span after it less the mean over the span before, and its rate
+    /// of change; `None` where the column has a pause in these spans.
     pub fn step(&self, time_s: f64) -> Option<[f64; 2]> {
         let [before, now, after] = [-SPAN_S, 0.0, SPAN_S].map(|offset_s| self.at(time_s + offset_s));
         let (before, now, after) = (before?, now?, after?);
@@ -89,7 +89,7 @@ mod tests {
     use super::Signal;
 
     #[test]
-    fn a_ramp_steps_by_its_slope_times_the_span_however_it_was_sampled() {
+    fn a_ramp_has_a_difference_of_its_slope_times_the_span_at_any_sampling() {
         let times = [0.0, 1.0, 1.1, 1.11, 3.0, 3.5, 6.0];
         let signal = Signal::new(&times.map(|time| (time, 3.0 * time)), &[]);
         let [step, rate] = signal.step(2.5).expect("it lies within");

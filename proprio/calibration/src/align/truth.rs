@@ -1,33 +1,33 @@
-//! The session once more, with truth beside its cells.
+//! Writes a copy of the session with columns of truth.
 
 use std::fs;
 use std::io::{self, Write};
 use std::path::Path;
 
 use csv::ByteRecord;
-use proprio_session::{OutputFile, Pose, Problem, SessionError};
+use proprio_session::{OutputFile, Pose, SessionError, SessionProblem};
 
-use super::Alignment;
+use super::alignment::Alignment;
 use crate::error::Error;
 
-/// What was written.
+/// Numbers of the written rows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Written {
     /// Rows of the session.
     pub rows: usize,
-    /// Those in which the camera saw every segment.
+    /// Rows in which the camera saw every segment.
     pub with_truth: usize,
 }
 
 impl Alignment {
-    /// Writes the session that was aligned, every cell as it is, and the truth behind it. Cells stay empty where the camera
+    /// Writes the aligned session with its cells unchanged and columns of truth after them. Cells stay empty where the camera
     /// did not see the segment within 0.2 s.
     ///
     /// # Errors
     /// [`Error::File`] where the output cannot be written or the session cannot be read again.
     pub fn write(&self, session: &Path, sink: &mut OutputFile) -> Result<Written, Error> {
         let failed = |source| {
-            let problem = Problem::Read(source);
+            let problem = SessionProblem::Read(source);
             SessionError { path: session.to_owned(), line: None, column: None, problem }
         };
         let text = fs::read(session).map_err(failed)?;
@@ -61,7 +61,7 @@ impl Alignment {
     }
 }
 
-/// Where the header and each row begin, or the line ends before them.
+/// Offsets of the header and each row, or of the line ends before them.
 fn row_starts(text: &[u8]) -> io::Result<Vec<usize>> {
     let mut csv = csv::ReaderBuilder::new().has_headers(false).from_reader(text);
     let mut record = ByteRecord::new();

@@ -1,8 +1,9 @@
-//! `bend_error`: size and persistence of the errors that the maps leave of the sweep.
+//! `bend_error`: size and persistence of the maps' errors in the sweep.
 
-use calibration_tables::BendErrorKeys;
+use calibration_tables::BendErrorToml;
 
 use super::maps::FittedMap;
+use super::statistics::rms;
 use super::sweep::{LEAST_ROWS, Sweep};
 
 /// Rate of the series, that of the bias filter, Hz.
@@ -30,7 +31,7 @@ struct Series {
 }
 
 /// Errors of the sensors of `segment`; `None` where they were hardly ever read together.
-pub(super) fn of(sweep: &Sweep, segment: usize, sensors: &[&FittedMap]) -> Option<BendErrorKeys> {
+pub(super) fn of(sweep: &Sweep, segment: usize, sensors: &[&FittedMap]) -> Option<BendErrorToml> {
     let errors = sensors.iter().map(|sensor| Series::new(&centred(&sensor.errors, sweep), sweep));
     let errors: Vec<Series> = errors.collect();
     let first = errors.first()?;
@@ -46,7 +47,7 @@ pub(super) fn of(sweep: &Sweep, segment: usize, sensors: &[&FittedMap]) -> Optio
     let slow_mean = mean.slow_deviation().unwrap_or(0.0);
     let correlation_s = mean.correlation_s();
     let speed = Series::new(&sweep.theta[segment], sweep).speed();
-    Some(BendErrorKeys {
+    Some(BendErrorToml {
         mean_deg: rounded(deviation_deg(&mean)),
         sensor_deg: errors.iter().map(|series| rounded(deviation_deg(series))).collect(),
         noise_deg: rounded(errors.iter().map(Series::noise).fold(0.0, f64::max).to_degrees()),
@@ -86,23 +87,22 @@ pub(super) fn session_deviation(sweep: &Sweep, sensors: &[&FittedMap]) -> Option
     let mean: Vec<_> = both.map(|(a, b)| Some(f64::midpoint((*a)?, (*b)?))).collect();
     let means: Vec<f64> = session_means(&mean, sweep).into_iter().flatten().collect();
     let count = means.len() as f64;
-    // Of few sessions: the mean is theirs, too.
+    // Bessel's correction: the mean is that of the same sessions.
     (means.len() > 1).then(|| deviation(&means) * (count / (count - 1.0)).sqrt())
 }
 
 /// `drift.offset_deg` of all segments' deviations, rad.
 pub(super) fn offset_deg(deviations: &[f64]) -> f64 {
-    rounded(super::rms(deviations.iter().copied()).to_degrees().clamp(LEAST_OFFSET_DEG, MAX_OFFSET_DEG))
+    rounded(rms(deviations.iter().copied()).to_degrees().clamp(LEAST_OFFSET_DEG, MAX_OFFSET_DEG))
 }
 
-/// Four digits behind the point.
+/// Rounds to four decimals.
 fn rounded(value: f64) -> f64 {
     (value * 1e4).round() / 1e4
 }
 
 fn held_back_ratio(sensor: &FittedMap) -> f64 {
-    let [fitted, held_back] =
-        [&sensor.errors, &sensor.held_back].map(|errors| super::rms(errors.iter().flatten().copied()));
+    let [fitted, held_back] = [&sensor.errors, &sensor.held_back].map(|errors| rms(errors.iter().flatten().copied()));
     if fitted > 0.0 { (held_back / fitted).clamp(HELD_BACK_RATIO[0], HELD_BACK_RATIO[1]) } else { HELD_BACK_RATIO[0] }
 }
 
@@ -141,7 +141,7 @@ impl Series {
         deviation(&changes)
     }
 
-    /// Standard deviation of the means of every stretch of [`SLOW_S`]; `None` where there is none.
+    /// Standard deviation of the means of every stretch of [`SLOW_S`]; `None` without two of them.
     fn slow_deviation(&self) -> Option<f64> {
         let length = (SLOW_S / self.step_s).round().max(1.0) as usize;
         let (mut sum, mut count) = (0.0, 0_usize);
@@ -217,14 +217,14 @@ impl ChunkByRun for [Option<f64>] {
 /// Standard deviation.
 fn deviation(values: &[f64]) -> f64 {
     let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
-    super::rms(values.iter().map(|value| value - mean))
+    rms(values.iter().map(|value| value - mean))
 }
 
 #[cfg(test)]
 mod tests {
     use super::super::sweep::Sweep;
     use super::{FittedMap, of, offset_deg, session_deviation};
-    use crate::calibrate::MapKind;
+    use crate::calibrate::options::MapKind;
 
     const ROWS: usize = 9000;
 
@@ -274,7 +274,7 @@ mod tests {
     }
 
     #[test]
-    fn what_changes_between_two_sessions_is_an_offset_and_no_error_within_them() {
+    fn a_change_between_two_sessions_is_an_offset_and_no_error_within_them() {
         let mut sweep = sweep();
         sweep.sessions = (0..ROWS).map(|row| row / (ROWS / 2)).collect();
         let one = sensor(|row| if row < ROWS / 2 { 2.0 } else { -2.0 } + 0.5 * sign(row, 20));

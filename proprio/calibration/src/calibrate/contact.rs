@@ -1,12 +1,12 @@
 //! Limits of contact detection: coupled segments and their responses, and the scatter of the residuals over the sweep.
 //!
-//! The response of a segment beside the one that it is coupled to is fitted to the true angles; the scatter is that of the
-//! IMUs and bend sensors, as the detector sees them. The same model in fixed point is `estimator_core`'s `contact`.
+//! The response of a segment to the one that it is coupled to is fitted to the true angles; the scatter is that of the IMUs
+//! and bend sensors at the detector's rate. The same model in fixed point is `estimator_core`'s `contact`.
 
-use calibration_tables::{ArmFile, ChangeKeys, CoupledKeys, RATIO_RANGE};
+use calibration_tables::{ArmFile, ChangeToml, CoupledToml, RATIO_RANGE};
 
 use super::maps::FittedMap;
-use super::quantile;
+use super::statistics::{quantile, rms};
 use super::sweep::{LEAST_ROWS, Sweep};
 
 /// Squared correlation of two segments whose response is fitted, and the share of the later one's variance that a response
@@ -18,8 +18,8 @@ const PLAY_STEPS: i32 = 6;
 const PLAY_STEP_DEG: f64 = 0.5;
 const LAG_STEPS: i32 = 3;
 const LAG_STEP_S: f64 = 0.1;
-/// Share of the fitted lag that is used: what the ratios and the play do not explain of a slow sweep looks like lag. Chosen on
-/// fast motion of development arms.
+/// Share of the fitted lag that is used: a part of it is motion of a slow sweep that the ratios and the play do not explain.
+/// Chosen on fast motion of development arms.
 const LAG_SHARE: f64 = 0.85;
 /// Values of the detector's window, and of its motion, which is the window of the fit, too.
 const WINDOW: usize = 10;
@@ -73,9 +73,9 @@ pub(super) fn set(sweep: &Sweep, sensors: &[Vec<&FittedMap>], has_limits: bool, 
         let bend = sensors.get(i).and_then(|sensors| values.bend_limit(sweep, i, sensors));
         segment.contact = bend.filter(|_| has_limits);
         segment.coupled_to = values.coupled(i).map(|coupled| {
-            let CoupledKeys { segment, ratio, ratio_left, .. } = coupled;
+            let CoupledToml { segment, ratio, ratio_left, .. } = coupled;
             let one_ratio = ratio_left.map_or(ratio, |left| f64::midpoint(ratio, left));
-            if has_limits { coupled } else { CoupledKeys::with_ratio(segment, one_ratio) }
+            if has_limits { coupled } else { CoupledToml::with_ratio(segment, one_ratio) }
         });
     }
 }
@@ -99,7 +99,7 @@ impl Values {
     }
 
     /// Limit of the IMUs against the bend sensors of segment `i`.
-    fn bend_limit(&self, sweep: &Sweep, i: usize, sensors: &[&FittedMap]) -> Option<ChangeKeys> {
+    fn bend_limit(&self, sweep: &Sweep, i: usize, sensors: &[&FittedMap]) -> Option<ChangeToml> {
         let (first, last) = (sensors.first()?, sensors.last()?);
         let errors = first.errors.iter().zip(&last.errors).map(|(a, b)| Some(f64::midpoint((*a)?, (*b)?)));
         let per = sweep.runs.len() / self.runs.len().max(1);
@@ -113,7 +113,7 @@ impl Values {
     }
 
     /// The earlier segment that segment `j` is coupled to, with the response and the limit.
-    fn coupled(&self, j: usize) -> Option<CoupledKeys> {
+    fn coupled(&self, j: usize) -> Option<CoupledToml> {
         let candidates = (0..j).map(|i| (i, correlation(&self.theta[i], &self.theta[j])));
         let (i, correlation) = candidates.max_by(|(_, a), (_, b)| a.total_cmp(b))?;
         if correlation < CANDIDATE {
@@ -123,7 +123,7 @@ impl Values {
         let limit = self.limit(&self.residuals(&model, i, j, &self.imu));
         let is_within = model.ratios.iter().all(|ratio| RATIO_RANGE.contains(ratio));
         let limit = limit.filter(|limit| is_within && limit.change_deg <= LIMITS_DEG[1])?;
-        Some(CoupledKeys {
+        Some(CoupledToml {
             segment: i + 1,
             ratio: model.ratios[0],
             ratio_left: Some(model.ratios[1]),
@@ -150,7 +150,7 @@ impl Values {
         let (_, model, residuals) = trials.filter_map(trial).min_by(|(a, ..), (b, ..)| a.total_cmp(b))?;
         let left = variance(residuals.iter().flatten().map(|[residual, _]| *residual));
         let all = variance(self.theta[j].iter().flatten().copied());
-        // A lag at the bound is none: friction looks like it at the sweep's pace, and does not at another.
+        // A lag at the bound is an artefact: friction looks like a lag at the sweep's pace alone.
         let is_lag = model.lag_s.abs() < (f64::from(LAG_STEPS) - 0.5) * LAG_STEP_S;
         (is_lag && left < (1.0 - COUPLED) * all).then_some(Model { lag_s: LAG_SHARE * model.lag_s, ..model })
     }
@@ -181,7 +181,7 @@ impl Values {
         residuals.collect()
     }
 
-    fn limit(&self, residuals: &[Residual]) -> Option<ChangeKeys> {
+    fn limit(&self, residuals: &[Residual]) -> Option<ChangeToml> {
         let scatter = rms_change(residuals, &self.runs, WINDOW)?;
         let mut held = 0.0_f64;
         let motions = changes(residuals, &self.runs, MOTION_WINDOW).map(|[_, motion]| {
@@ -192,7 +192,7 @@ impl Values {
         motions.sort_unstable_by(f64::total_cmp);
         let largest = changes(residuals, &self.runs, WINDOW).map(|[change, _]| change.abs()).fold(0.0, f64::max);
         let change_rad = (FACTOR * scatter).max(LARGEST_FACTOR * largest);
-        Some(ChangeKeys {
+        Some(ChangeToml {
             change_deg: rounded(change_rad.to_degrees().max(LIMITS_DEG[0])),
             motion_deg: rounded(quantile(&motions, USUAL).to_degrees()),
         })
@@ -206,14 +206,14 @@ impl Model {
 }
 
 impl Response {
-    /// Of the coupled segment for a `sign` of 1, of the segment itself for −1.
+    /// The response of the coupled segment for a `sign` of 1, of the segment itself for −1.
     fn new(model: &Model, sign: f64, step_s: f64) -> Self {
         let lag_s = (sign * model.lag_s).max(0.0);
         let share = if lag_s > 0.0 { 1.0 - (-step_s / lag_s).exp() } else { 1.0 };
         Self { radius: (sign * model.play_rad).max(0.0), share, state: None }
     }
 
-    /// Takes one value; gives the output and its change.
+    /// Takes one value; returns the output and its change.
     fn step(&mut self, angle: f64) -> [f64; 2] {
         let [play, lag] = self.state.unwrap_or([angle; 2]);
         let play = play.clamp(angle - self.radius, angle + self.radius);
@@ -246,7 +246,7 @@ fn changes<'r>(residuals: &'r [Residual], runs: &'r [u32], window: usize) -> imp
 
 fn rms_change(residuals: &[Residual], runs: &[u32], window: usize) -> Option<f64> {
     let count = changes(residuals, runs, window).count();
-    (count >= LEAST_ROWS).then(|| super::rms(changes(residuals, runs, window).map(|[change, _]| change)))
+    (count >= LEAST_ROWS).then(|| rms(changes(residuals, runs, window).map(|[change, _]| change)))
 }
 
 /// Squared correlation of two columns without their means.
@@ -274,7 +274,7 @@ fn variance(values: impl Iterator<Item = f64> + Clone) -> f64 {
     values.map(|value| (value - mean).powi(2)).sum::<f64>() / count
 }
 
-/// To a thousandth: no sweep shows more.
+/// Rounds to a thousandth, the resolution of a sweep.
 fn rounded(value: f64) -> f64 {
     (value * 1000.0).round() / 1000.0
 }

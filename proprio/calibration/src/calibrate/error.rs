@@ -1,8 +1,8 @@
-//! Why no table can be made of a session, and what deserves a look although one can.
+//! Errors and warnings of a calibration.
 
 use proprio_session::LAST_LINE;
 
-/// Why no good table can be made of a session.
+/// An error that prevents a good table.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum CalibrationError {
     /// The session has no bend sensor at all.
@@ -17,9 +17,9 @@ pub enum CalibrationError {
     /// Sessions of different sample rates.
     #[error("the sample rate is {found_hz:.1} Hz, that of the first session {expected_hz:.1} Hz")]
     OtherRate {
-        /// Of this session.
+        /// Rate of this session, Hz.
         found_hz: f64,
-        /// Of the first.
+        /// Rate of the first, Hz.
         expected_hz: f64,
     },
     /// The camera hardly saw a segment.
@@ -32,7 +32,7 @@ pub enum CalibrationError {
         /// Rows needed.
         least: usize,
     },
-    /// The truth does not hang together.
+    /// The truth is inconsistent.
     #[error("the truth's points are {percent:.0} % of the arm's length away from where its headings put them")]
     TruthMisfit {
         /// Root mean square distance of the tip from the chain of the true bend angles, % of the arm's length.
@@ -53,7 +53,7 @@ pub enum CalibrationError {
     SmallSweep {
         /// The segment, from 1.
         segment: usize,
-        /// From the smallest to the largest bend angle.
+        /// Range of the bend angle, degrees.
         range_deg: f64,
         /// Range needed.
         least_deg: f64,
@@ -63,7 +63,7 @@ pub enum CalibrationError {
     Dead {
         /// The sensor.
         name: String,
-        /// From the lowest to the highest reading.
+        /// Range of the readings, counts.
         range: u16,
     },
     /// A bend sensor at the end of its range.
@@ -99,9 +99,9 @@ pub enum CalibrationError {
     NotMonotonic {
         /// The sensor.
         name: String,
-        /// Where it turns back.
+        /// Voltage at which it turns back, V.
         volts: f64,
-        /// How far it goes back.
+        /// Angle by which it turns back, degrees.
         back_deg: f64,
     },
     /// An IMU that turns the wrong way.
@@ -126,15 +126,15 @@ pub enum CalibrationError {
     },
 }
 
-/// What deserves a look although a table can be made.
+/// A warning about a table.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum Warning {
     /// A segment bends little.
-    #[error("segment {segment} bends by only {range_deg:.0}° in all; the maps say little beyond that")]
+    #[error("segment {segment} bends by only {range_deg:.0}° in all; the maps are not reliable beyond that")]
     NarrowSweep {
         /// The segment, from 1.
         segment: usize,
-        /// From the smallest to the largest bend angle.
+        /// Range of the bend angle, degrees.
         range_deg: f64,
     },
     /// A map that turns back at the edge of its data.
@@ -142,9 +142,9 @@ pub enum Warning {
     TurnsBack {
         /// The sensor.
         name: String,
-        /// Where it turns back.
+        /// Voltage at which it turns back, V.
         volts: f64,
-        /// How far it goes back.
+        /// Angle by which it turns back, degrees.
         back_deg: f64,
     },
     /// A bend sensor that runs the other way than its like.
@@ -166,9 +166,9 @@ pub enum Warning {
         /// Number of readings.
         count: usize,
     },
-    /// Segments that the sweep cannot tell apart.
+    /// Segments that the sweep cannot distinguish.
     #[error("segments {} bend alike here, so that sensors swapped between them would not be noticed", pairs(.0))]
-    Alike(
+    CoupledSegments(
         /// Pairs of segments, from 1.
         Vec<(usize, usize)>,
     ),
@@ -187,7 +187,7 @@ pub enum Warning {
         fusion_mm: f64,
     },
     /// An IMU without readings.
-    #[error("imu{segment} was not read; the sweep says nothing about it")]
+    #[error("imu{segment} was not read; the sweep does not check it")]
     ImuNotRead {
         /// The segment, from 1.
         segment: usize,

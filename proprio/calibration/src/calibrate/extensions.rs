@@ -1,12 +1,12 @@
 //! Error sources of the estimates.
 //!
-//! Their parameters are those of the reference arm, but for what a sweep shows of its own: the errors of the bend sensors,
-//! and the error of constant curvature.
+//! Their parameters are those of the reference arm, but for those that a sweep determines: the errors of the bend sensors, and
+//! the error of constant curvature.
 
-use calibration_tables::{ArmFile, SegmentKeys, UncertaintyKeys};
+use calibration_tables::{ArmFile, SegmentToml, UncertaintyToml};
 use serde::de::IgnoredAny;
 
-use super::quantile;
+use super::statistics::{quantile, rms};
 use super::sweep::{MeanSquare, Sweep};
 
 /// Share of the bend sensors' error that the moving-average anchor passes on to θ.
@@ -22,16 +22,16 @@ const END_SHARE: f64 = 0.9;
 pub(super) fn set(sweep: &Sweep, table: &mut ArmFile) {
     let bend_deg = bend_deg(&table.segments);
     let is_filtered = table.bias_filter().is_some();
-    let deviations = UncertaintyKeys {
+    let deviations = UncertaintyToml {
         theta_deg: ANCHORED_SHARE * bend_deg,
-        bias_share: UncertaintyKeys::bias_share(),
+        bias_share: UncertaintyToml::bias_share(),
         retired: IgnoredAny,
         bend_deg,
         contact_deg: CONTACT_DEG,
         heading_deg: if is_filtered { HEADING_DEG } else { 0.0 },
         end_mm: if is_filtered { end_mm(sweep) } else { anchored_end_mm(sweep) },
     };
-    // As far as the format goes.
+    // Clamped to the range of the format.
     table.uncertainty = Some(deviations.scaled(1.0));
 }
 
@@ -48,10 +48,10 @@ fn anchored_end_mm(sweep: &Sweep) -> f64 {
 }
 
 /// Root mean square error of the bend sensors, over the segments that have any.
-fn bend_deg(segments: &[SegmentKeys]) -> f64 {
-    let of_segment = |segment: &SegmentKeys| {
+fn bend_deg(segments: &[SegmentToml]) -> f64 {
+    let of_segment = |segment: &SegmentToml| {
         let of_filter = segment.orient.as_ref().map(|noise| noise.r_bend.sqrt().to_degrees());
         of_filter.or(segment.bend_error.as_ref().map(|error| error.mean_deg))
     };
-    super::rms(segments.iter().filter_map(of_segment))
+    rms(segments.iter().filter_map(of_segment))
 }

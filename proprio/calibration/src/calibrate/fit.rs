@@ -1,15 +1,15 @@
 //! Least-squares quadratic of bend angle over voltage.
 
-use calibration_tables::BendKeys;
+use calibration_tables::BendToml;
 use estimator_core::VOLTS_PER_COUNT;
 use nalgebra::{Matrix3, Vector3};
 
 use super::sweep::range;
 
-/// A fitted map and what it leaves.
+/// A fitted map and its residuals.
 #[derive(Debug, Clone)]
-pub(super) struct Fit {
-    pub map: BendKeys,
+pub(super) struct QuadraticFit {
+    pub map: BendToml,
     pub samples: usize,
     /// Root mean square residual, rad.
     pub rmse: f64,
@@ -18,7 +18,7 @@ pub(super) struct Fit {
 }
 
 /// Fits θ = c2 V² + c1 V + c0 to pairs of counts and true angles (rad); `None` where they do not determine it.
-pub(super) fn quadratic(pairs: &[(u16, f64)]) -> Option<Fit> {
+pub(super) fn quadratic(pairs: &[(u16, f64)]) -> Option<QuadraticFit> {
     let [lo, hi] = range(pairs.iter().map(|(counts, _)| volts(*counts)));
     // Within ±1 the normal equations are well conditioned.
     let (middle, half) = (f64::midpoint(lo, hi), (hi - lo) / 2.0);
@@ -39,7 +39,7 @@ pub(super) fn quadratic(pairs: &[(u16, f64)]) -> Option<Fit> {
     let residual = pairs.iter().map(|(counts, theta)| (theta - basis(*counts).dot(&b)).powi(2)).sum::<f64>() / n;
     let variance = pairs.iter().map(|(_, theta)| (theta - mean).powi(2)).sum::<f64>() / n;
     let (slope, curve) = (b.y / half, b.z / (half * half));
-    let map = BendKeys {
+    let map = BendToml {
         c0: b.x - slope * middle + curve * middle * middle,
         c1: slope - 2.0 * curve * middle,
         c2: curve,
@@ -48,7 +48,7 @@ pub(super) fn quadratic(pairs: &[(u16, f64)]) -> Option<Fit> {
         curve: None,
         memory: None,
     };
-    Some(Fit { map, samples: pairs.len(), rmse: residual.sqrt(), unexplained: residual / variance })
+    Some(QuadraticFit { map, samples: pairs.len(), rmse: residual.sqrt(), unexplained: residual / variance })
 }
 
 pub(super) fn volts(counts: u16) -> f64 {
@@ -67,7 +67,7 @@ mod tests {
     }
 
     #[test]
-    fn finds_none_in_one_voltage() {
+    fn one_voltage_makes_no_quadratic() {
         assert!(quadratic(&[(1000, 0.0), (1000, 0.1), (1000, 0.2)]).is_none());
     }
 }

@@ -3,18 +3,19 @@
 use std::path::PathBuf;
 
 use estimator_core::{Method, Q};
-use proprio_analysis::metrics::Score;
+use proprio_analysis::metrics::ErrorMetrics;
 use proprio_analysis::replay::replay;
-use proprio_session::{NamedTable, Progress};
+use proprio_session::{LoadedTable, Progress};
 
+use super::derive;
 use super::error::Warning;
+use super::options::CalibrationOptions;
 use super::sweep::Sweep;
-use super::{CalibrationOptions, derive};
 use crate::error::Error;
 
 /// Share of a session that is held out.
 const SHARE: f64 = 0.2;
-/// Error of the fusion over that of the best single method from which on something is wrong.
+/// Ratio of the fusion's error to that of the best single method above which there is a warning.
 const WORSE: f64 = 1.1;
 
 /// Errors on the rows that were held out.
@@ -24,11 +25,11 @@ pub struct HeldOut {
     pub tip_rmse_mm: [Option<f64>; Method::ALL.len()],
 }
 
-/// Replays whole sessions, as headings need the tare, and scores their last fifth; `None` where the rest makes no table.
-pub(super) fn score(
+/// Replays whole sessions, as headings need the tare, and evaluates their last fifth; `None` where the rest makes no table.
+pub(super) fn evaluate(
     sweep: &Sweep,
     sessions: &[PathBuf],
-    arm: &NamedTable,
+    arm: &LoadedTable,
     options: CalibrationOptions,
     progress: &mut dyn Progress,
 ) -> Result<Option<HeldOut>, Error> {
@@ -37,22 +38,22 @@ pub(super) fn score(
     else {
         return Ok(None);
     };
-    let table = NamedTable { file: derived.table, path: arm.path };
-    let mut score = Score::new(table.file.length_mm());
+    let table = LoadedTable { file: derived.table, path: arm.path };
+    let mut errors = ErrorMetrics::new(table.file.length_mm());
     let mut rows = is_held_out.into_iter();
     for session in sessions {
         replay::<Q>(session, &table, progress, |row, outcome| {
             if rows.next().is_some_and(|is_held_out| is_held_out) {
-                score.add(row, outcome);
+                errors.add(row, outcome);
             }
             Ok(())
         })?;
     }
-    Ok(Some(HeldOut { tip_rmse_mm: score.figures().map(|figures| figures.tip_rmse_mm) }))
+    Ok(Some(HeldOut { tip_rmse_mm: errors.metrics().map(|metrics| metrics.tip_rmse_mm) }))
 }
 
 impl HeldOut {
-    /// Whether a single method is better than all sensors together.
+    /// The warning where a single method is better than all sensors together.
     pub(super) fn warning(&self) -> Option<Warning> {
         let fusion_mm = self.tip_rmse_mm[Method::Fusion as usize]?;
         let others = Method::ALL.into_iter().filter(|method| *method != Method::Fusion);

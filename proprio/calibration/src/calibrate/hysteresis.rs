@@ -1,49 +1,38 @@
 //! Hysteresis compensation of a segment by plays on top of its quadratics, for tables that use the moving-average anchor.
 //!
-//! The weights of plays of fixed widths, and a scale of the maps beside them, come by least squares from the first four
-//! fifths of the sweep. They are kept where they lower the error on the last fifth enough for it to be more than luck.
+//! The weights of plays of fixed widths, and a scale of the maps, are fitted by least squares to the first four fifths of the
+//! sweep. They are kept where they lower the error on the last fifth significantly.
 
-use calibration_tables::{BendKeys, PlayKeys, SegmentKeys};
+use calibration_tables::{BendToml, PlayToml, SegmentToml};
 use nalgebra::{Matrix4, Vector4};
 
 use super::fit::volts;
+use super::options::HysteresisMode;
 use super::sweep::{SensorColumn, Sweep, range};
 
 /// Half widths of the plays, shares of half the segment's range.
 const HALF_WIDTHS: [f64; 3] = [0.1, 0.25, 0.5];
 /// Share of the sweep that the weights are fitted on.
 const FITTED: f64 = 0.8;
-/// The correction must leave less of the held-back error than this. What plays gain on one kind of motion is partly its
-/// own, and other motion loses it again: on the simulated arm, those that left nine tenths of a sweep's error made an arm
-/// that leans against an obstacle worse.
+/// Largest share of the held-back error that a correction may leave. A part of the gain is specific to the sweep's motion: on the
+/// simulated arm, corrections that left nine tenths of a sweep's error made an arm that leans against an obstacle worse.
 const WORTH_IT: f64 = 0.8;
-/// Added to the normal equations, as a share of the mean square of the bend angle: plays of like widths are like each other,
-/// and weights that fight each other are not hysteresis.
+/// Ridge of the normal equations, as a share of the mean square of the bend angle: plays of similar widths are collinear, and
+/// large opposed weights are no hysteresis.
 const RIDGE: f64 = 0.01;
 
 /// Weights of the plays' differences, and of the angle itself.
 type Weights = Vector4<f64>;
 
-/// Rows of one segment that have truth and a bend angle: what the angle is off by, and what explains it.
+/// Rows of one segment that have truth and a bend angle: the errors of the angle and the terms that explain them.
 struct Rows {
     half_widths: [f64; 3],
     error: Vec<f64>,
     terms: Vec<Vector4<f64>>,
 }
 
-/// Compensation of hysteresis and creep.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum HysteresisMode {
-    /// Where it lowers the error on held-back data
-    Auto,
-    /// Everywhere
-    Always,
-    /// Nowhere
-    Never,
-}
-
-/// Sets `hysteresis` of the segments that are to have it, and scales their maps; clears it from the others.
-pub(super) fn set(sweep: &Sweep, segments: &mut [SegmentKeys], which: HysteresisMode) {
+/// Sets `hysteresis` of the segments that need it, and scales their maps; clears it from the others.
+pub(super) fn set(sweep: &Sweep, segments: &mut [SegmentToml], which: HysteresisMode) {
     for (i, segment) in segments.iter_mut().enumerate() {
         segment.hysteresis.clear();
         let rows = Rows::new(sweep, i, segment.bend.as_deref().unwrap_or_default());
@@ -59,13 +48,13 @@ pub(super) fn set(sweep: &Sweep, segments: &mut [SegmentKeys], which: Hysteresis
 }
 
 /// θ + Σ w (θ − play(θ)) + s θ as plays on an angle that is 1 + s times as large.
-fn apply(rows: &Rows, weights: Weights, segment: &mut SegmentKeys) {
+fn apply(rows: &Rows, weights: Weights, segment: &mut SegmentToml) {
     let scale = 1.0 + weights.w;
     for map in segment.bend.iter_mut().flatten() {
         (map.c0, map.c1, map.c2) = (map.c0 * scale, map.c1 * scale, map.c2 * scale);
     }
     let plays = rows.half_widths.iter().zip(weights.iter());
-    let play = |(half_width, weight): (&f64, &f64)| PlayKeys {
+    let play = |(half_width, weight): (&f64, &f64)| PlayToml {
         radius_deg: (half_width * scale).to_degrees(),
         weight: weight / scale,
     };
@@ -73,7 +62,7 @@ fn apply(rows: &Rows, weights: Weights, segment: &mut SegmentKeys) {
 }
 
 impl Rows {
-    fn new(sweep: &Sweep, segment: usize, maps: &[BendKeys]) -> Self {
+    fn new(sweep: &Sweep, segment: usize, maps: &[BendToml]) -> Self {
         let columns: Vec<&SensorColumn> = sweep.sensors.iter().filter(|column| column.segment == segment).collect();
         let [lo, hi] = range(sweep.theta[segment].iter().flatten().copied());
         let half_widths = HALF_WIDTHS.map(|share| share * (hi - lo) / 2.0);
@@ -103,7 +92,7 @@ impl Rows {
         rows
     }
 
-    /// Whether weights from the first rows are worth it on the others.
+    /// True where weights from the first rows lower the error on the others enough.
     fn gain(&self) -> bool {
         let fitted = (self.error.len() as f64 * FITTED) as usize;
         let held_back = fitted..self.error.len();

@@ -1,7 +1,8 @@
 //! Sensitivity of each IMU's heading: its turns over those of the camera.
 //!
-//! Turns over a few seconds are large beside the noise, and drift adds next to nothing to them.
+//! Turns over a few seconds are large compared with the noise and with drift.
 
+use super::statistics::quantile;
 use super::sweep::{LEAST_ROWS, Sweep};
 
 /// Time of a turn, s.
@@ -38,7 +39,7 @@ fn scale(imu: &[Option<f64>], truth: &[Option<f64>], runs: &[u32], lag: usize) -
     };
     let mut errors: Vec<f64> = (0..PARTS).filter_map(part).collect();
     errors.sort_unstable_by(f64::total_cmp);
-    (!errors.is_empty()).then(|| (1.0 + super::quantile(&errors, 0.5)).clamp(RANGE[0], RANGE[1]))
+    (!errors.is_empty()).then(|| (1.0 + quantile(&errors, 0.5)).clamp(RANGE[0], RANGE[1]))
 }
 
 #[cfg(test)]

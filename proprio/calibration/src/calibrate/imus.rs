@@ -1,4 +1,4 @@
-//! The IMUs: each must follow its own segment's end, the right way round.
+//! The IMUs: each must follow its own segment's end, with the right sign.
 //!
 //! Headings have an unknown zero and drift, so steps over one second are compared instead. An IMU measures them one to
 //! one, and so the size counts as well: the ends of a module's two segments turn alike, but not equally far.
@@ -6,11 +6,11 @@
 use super::error::{CalibrationError, Warning};
 use super::sweep::{LEAST_ROWS, Sweep};
 
-/// Share of its steps that even a poor IMU in its place leaves unexplained, in squares.
+/// Share of the squared steps that a poor but correctly mounted IMU leaves unexplained.
 const GOOD_ENOUGH: f64 = 0.1;
 /// An IMU is swapped or inverted where that explains it this many times better than its own place does.
 const BETTER: f64 = 4.0;
-/// An IMU that leaves more than this unexplained follows nothing.
+/// Unexplained share above which an IMU follows no segment.
 const UNRELATED: f64 = 0.5;
 
 pub(super) fn check(sweep: &Sweep) -> Result<Vec<Warning>, CalibrationError> {

@@ -3,43 +3,24 @@
 //! The one-standard-error rule (Breiman, Friedman, Olshen and Stone 1984) decides: the simplest map whose error on the tenths that were held back
 //! is within one standard error of the smallest.
 
-use calibration_tables::{BendKeys, CurveKeys, MemoryKeys};
+use calibration_tables::{BendToml, CurveToml, MemoryToml};
 use estimator_core::{BendMap, CurveMap, QuadraticMap};
 
 use super::fit::{quadratic, volts};
 use super::folds::{FOLDS, Observation, fold};
-use super::hysteresis::HysteresisMode;
+use super::options::{CalibrationOptions, HysteresisMode, MapKind, MapMode};
+use super::statistics::quantile;
 use super::sweep::{SensorColumn, Sweep};
-use super::{CalibrationOptions, memory, quantile, spline};
+use super::{memory, spline};
 
 /// Share of the bend angles' sizes that are below the largest that the plays refer to.
 const LARGEST: f64 = 0.99;
 
-/// V–Orient maps that a table gets.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum MapMode {
-    /// For each sensor a curve where that lowers the held-back error
-    Auto,
-    /// Monotone curves
-    Curve,
-    /// The paper's quadratics
-    Quadratic,
-}
-
-/// Form of a sensor's map.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum MapKind {
-    /// θ = c2 V² + c1 V + c0.
-    Quadratic,
-    /// A monotone curve.
-    Curve,
-}
-
-/// A sensor's map and the errors that it leaves, θ − truth, rad; a value a row of the sweep.
+/// A sensor's map and its errors, θ − truth, rad; one value per row of the sweep.
 pub(super) struct FittedMap {
     pub kind: MapKind,
-    pub curve: Option<CurveKeys>,
-    pub memory: Option<MemoryKeys>,
+    pub curve: Option<CurveToml>,
+    pub memory: Option<MemoryToml>,
     pub errors: Vec<Option<f64>>,
     /// Each tenth of the sweep by a map fitted without it.
     pub held_back: Vec<Option<f64>>,
@@ -47,12 +28,12 @@ pub(super) struct FittedMap {
 
 /// A map without memory, and those that were fitted without one tenth each.
 struct Form {
-    curve: Option<CurveKeys>,
+    curve: Option<CurveToml>,
     map: BendMap<f64>,
     held_back: Vec<BendMap<f64>>,
 }
 
-/// Everything that the fits of one sensor have in common.
+/// Data of all fits of one sensor.
 struct Fitter<'s> {
     sweep: &'s Sweep,
     counts: &'s [Option<u16>],
@@ -79,7 +60,7 @@ impl FittedMap {
 pub(super) fn fit(
     sweep: &Sweep,
     column: &SensorColumn,
-    plain: &BendKeys,
+    plain: &BendToml,
     CalibrationOptions { maps, hysteresis }: CalibrationOptions,
 ) -> FittedMap {
     let fitter = Fitter::new(sweep, column);
@@ -98,7 +79,7 @@ pub(super) fn fit(
     if maps != MapMode::Quadratic {
         add(fitter.curve(&fitter.observations), MapKind::Curve);
     }
-    // Too narrow for a curve.
+    // The data may be too narrow for a curve.
     simplest(candidates).unwrap_or_else(|| fitter.without_memory(fitter.quadratic(plain), MapKind::Quadratic))
 }
 
@@ -110,7 +91,7 @@ fn simplest(candidates: Vec<FittedMap>) -> Option<FittedMap> {
     candidates.into_iter().nth(place)
 }
 
-/// Whether the mean of `errors` exceeds that of `smallest` by no more than the standard error of their difference.
+/// True where the mean of `errors` exceeds that of `smallest` by no more than the standard error of their difference.
 fn is_within_standard_error(errors: &[f64; FOLDS], smallest: &[f64; FOLDS]) -> bool {
     let differences: [f64; FOLDS] = std::array::from_fn(|fold| errors[fold] - smallest[fold]);
     let count = FOLDS as f64;
@@ -138,7 +119,7 @@ impl<'s> Fitter<'s> {
 
     fn curve(&self, observations: &[Observation]) -> Option<Form> {
         let fitted = spline::fit(observations, self.sweep.rate_hz)?;
-        let map = |curve: &CurveKeys| {
+        let map = |curve: &CurveToml| {
             let angles: Vec<f64> = curve.theta_deg.iter().copied().map(f64::to_radians).collect();
             BendMap::Curve(CurveMap::from_volts(&angles, curve.volts))
         };
@@ -149,8 +130,8 @@ impl<'s> Fitter<'s> {
         })
     }
 
-    fn quadratic(&self, plain: &BendKeys) -> Form {
-        let map = |of: &BendKeys| BendMap::Quadratic(QuadraticMap::from_volts(of.c2, of.c1, of.c0, of.range_volts()));
+    fn quadratic(&self, plain: &BendToml) -> Form {
+        let map = |of: &BendToml| BendMap::Quadratic(QuadraticMap::from_volts(of.c2, of.c1, of.c0, of.range_volts()));
         let held_back = |fold: usize| {
             let others = self.observations.iter().filter(|observation| observation.fold != fold);
             let pairs: Vec<_> = others.filter_map(|of| Some((self.counts[of.row]?, of.theta))).collect();
@@ -164,7 +145,7 @@ impl<'s> Fitter<'s> {
         self.counts.iter().map(|counts| map.angle((*counts)?)).collect()
     }
 
-    /// A value a row of the sweep, of the rows that have truth.
+    /// One value per row of the sweep; `None` for rows without truth.
     fn errors(&self, error: impl Fn(&Observation) -> Option<f64>) -> Vec<Option<f64>> {
         let mut errors = vec![None; self.counts.len()];
         for observation in &self.observations {
@@ -184,7 +165,7 @@ impl<'s> Fitter<'s> {
         FittedMap { kind, curve: form.curve, memory: None, errors, held_back }
     }
 
-    /// A curve is fitted twice, the second time to what the memory leaves. A quadratic stays as it is.
+    /// Fits the memory. A curve is fitted again to the residual of the memory; a quadratic stays unchanged.
     fn with_memory(&self, form: &Form, kind: MapKind) -> Option<FittedMap> {
         let second;
         let form = match kind {
@@ -252,7 +233,7 @@ mod tests {
     }
 
     fn held_back_rmse(found: &FittedMap) -> f64 {
-        super::super::rms(found.held_back.iter().flatten().copied())
+        crate::calibrate::statistics::rms(found.held_back.iter().flatten().copied())
     }
 
     #[test]
@@ -265,7 +246,7 @@ mod tests {
     }
 
     #[test]
-    fn a_quadratic_is_kept_where_it_is_asked_for() {
+    fn a_quadratic_is_kept_with_the_option_quadratic() {
         let found = fitted(&sweep(rippled), MapMode::Quadratic, HysteresisMode::Never);
         assert!(found.kind == MapKind::Quadratic && found.curve.is_none() && found.memory.is_none());
     }
@@ -283,7 +264,7 @@ mod tests {
         assert!(!is_within_standard_error(&[1.01; FOLDS], &[1.0; FOLDS]), "every tenth is better");
     }
 
-    /// The angle is 0.2 times further than the map's by what it came, up to a tenth of the range.
+    /// The angle exceeds the map's by 0.4 times a play's difference, up to a tenth of the range.
     #[test]
     fn a_sensor_with_hysteresis_gets_a_memory() {
         let mut sweep = sweep(|volts| 0.9 * (volts - 1.6));

@@ -1,18 +1,18 @@
 //! Memory of a bend sensor: weights of a lag and a play, by least squares.
 //!
 //! The features are computed by the recursion of `estimator-core`'s `sensing/hysteresis.rs`. The table's format has two lags and
-//! two plays; calibration uses one of each. In a sweep with periods of 20 to 40 s a lag of as many seconds cannot be told from
-//! the slope of the map, nor one play well from another: their weights become large and opposed, and are wrong where the arm
+//! two plays; calibration uses one of each. In a sweep with periods of 20 to 40 s a lag of as many seconds is collinear with the
+//! slope of the map, and one play nearly with another: their weights become large and opposed, and are wrong where the arm
 //! stays bent for minutes.
 
-use calibration_tables::MemoryKeys;
+use calibration_tables::MemoryToml;
 use nalgebra::{Matrix2, Vector2};
 
 use super::folds::{FOLDS, fold};
 use super::sweep::Sweep;
 
 /// Time constant of the lag, s: a bend sensor creeps, or overshoots, within seconds. Half a sweep's period is three times
-/// as long, so that the lag is told from the map.
+/// as long, so that the lag can be separated from the map.
 const LAG_S: f64 = 4.0;
 /// Radius of the play, a share of the largest bend angle. Shares from 0.1 to 0.2 are equally good on the simulated arms.
 const PLAY_SHARE: f64 = 0.15;
@@ -46,8 +46,8 @@ struct State {
 }
 
 /// The table's keys with these weights, for bend angles up to `largest_rad`.
-pub(super) fn keys(weights: &Vector2<f64>, largest_rad: f64) -> MemoryKeys {
-    MemoryKeys {
+pub(super) fn keys(weights: &Vector2<f64>, largest_rad: f64) -> MemoryToml {
+    MemoryToml {
         lag_s: [LAG_S, UNUSED_LAG_S],
         lag_weight: [weights.x, 0.0],
         play_deg: [(PLAY_SHARE * largest_rad).to_degrees(); 2],
@@ -75,7 +75,7 @@ pub(super) fn features(angles: &[Option<f64>], sweep: &Sweep, largest_rad: f64) 
     features.collect()
 }
 
-/// Fits the weights to what a map leaves, `errors` = truth − angle; `None` where the features do not determine them.
+/// Fits the weights to the residual of a map, `errors` = truth − angle; `None` where the features do not determine them.
 pub(super) fn fit(features: &Features, errors: &[Option<f64>]) -> Option<FittedMemory> {
     let mut folds = [Sums::default(); FOLDS];
     for (row, (terms, error)) in features.iter().zip(errors).enumerate() {
@@ -103,7 +103,7 @@ fn solve<'s>(sums: impl Iterator<Item = &'s Sums>) -> Option<Vector2<f64>> {
 
 #[cfg(test)]
 mod tests {
-    use calibration_tables::{ArmFile, BendKeys, CurveKeys, PLANAR_6_ARM};
+    use calibration_tables::{ArmFile, BendToml, CurveToml, PLANAR_6_ARM};
     use estimator_core::{BendMap, CurveMap, Estimator, Sample};
     use nalgebra::Vector2;
 
@@ -122,15 +122,15 @@ mod tests {
         Sweep::of_sensor(10.0, (0..2000).map(counts).collect(), vec![Some(0.0); 2000], runs)
     }
 
-    fn curve() -> CurveKeys {
-        CurveKeys { volts: [0.8, 2.4], theta_deg: (0..65).map(|k| f64::from(k * k) / 64.0 - 20.0).collect() }
+    fn curve() -> CurveToml {
+        CurveToml { volts: [0.8, 2.4], theta_deg: (0..65).map(|k| f64::from(k * k) / 64.0 - 20.0).collect() }
     }
 
     /// The arm's first segment with this sensor.
     fn table() -> ArmFile {
         let mut table = ArmFile::parse(PLANAR_6_ARM).expect("it is committed");
         table.segments.truncate(1);
-        table.segments[0].bend = Some(vec![BendKeys {
+        table.segments[0].bend = Some(vec![BendToml {
             c0: 0.0,
             c1: 1.0,
             c2: 0.0,
@@ -151,8 +151,8 @@ mod tests {
         let angles: Vec<Option<f64>> = counts.iter().map(|counts| map.angle((*counts)?)).collect();
         let features = features(&angles, &sweep, LARGEST_RAD);
 
-        let baked = table().bake::<f64>(10.0).expect("it is a table");
-        let config = baked.config();
+        let compiled = table().compile::<f64>(10.0).expect("it is a table");
+        let config = compiled.config();
         let mut estimator = Estimator::<f64, 1, 1000>::new(&config).expect("it has one segment");
         for (row, counts) in counts.iter().enumerate() {
             if row > 0 && sweep.runs[row] != sweep.runs[row - 1] {
@@ -163,7 +163,7 @@ mod tests {
             let expected = angles[row].zip(features[row]).map(|(angle, terms)| angle + WEIGHTS.dot(&terms));
             assert_eq!(bend.is_some(), expected.is_some(), "row {row}");
             if let Some((found, expected)) = bend.zip(expected) {
-                // The estimator's memory works in fixed point, whatever its number is.
+                // The estimator's memory works in fixed point with any number type.
                 assert!((found - expected).abs() < 2e-5, "row {row}: {found} and {expected} rad");
             }
         }

@@ -1,24 +1,23 @@
 //! The filters' default parameters, from the errors of bend sensors and IMUs on the calibration session.
 //!
-//! R_bend is the mean square of the bend sensors' error, of each segment by itself. R_imu is R_bend times a ratio of two
-//! mean squares, for which the IMUs' error is the one that they would have if perfect bend sensors anchored them. What they
-//! really have on top of it behind the anchor is the slow part of the bend sensors' error, which the anchor passes on; it is in
-//! both measurements, no filter can remove it, and it must not count against one of them.
+//! R_bend is the mean square of each segment's error by its bend sensors. R_imu is R_bend times a ratio of two mean squares,
+//! for which the IMUs' error is the one with an anchor by perfect bend sensors. The anchor adds the slow part of the bend
+//! sensors' error to it; this part is in both measurements, no filter can remove it, and it must not count against one of them.
 //!
 //! For KF_coord these are the errors of a segment's end in its own frame. For KF_orient they are those of the headings
 //! that the bend angles add up to, the same for the whole arm: along the chain the errors of bend sensors grow, where
-//! those of IMUs do not, as each heading is measured by itself.
+//! those of IMUs do not, as each heading is measured separately.
 
 use std::path::PathBuf;
 
-use calibration_tables::{MAX_WINDOW, NoiseKeys};
+use calibration_tables::{MAX_WINDOW, NoiseToml};
 use estimator_core::{
     AnchorConfig, Angle, ArmConfig, Decimated, Decimator, MovingAverageAnchor, Pcc, SegmentConfig, SegmentEstimate,
     Turns,
 };
 use nalgebra::Vector2;
 use proprio_analysis::replay::replay;
-use proprio_session::{NamedTable, Progress, Row};
+use proprio_session::{LoadedTable, Progress, Row};
 
 use super::sweep::Sweep;
 use crate::error::Error;
@@ -46,23 +45,23 @@ impl Errors {
         (self.imu / self.bend).clamp(lo, hi)
     }
 
-    /// Parameters with these errors' R_bend; `None` where the two measurements were never there together.
-    fn noise(&self, ratio: f64) -> Option<NoiseKeys> {
+    /// Parameters with these errors' R_bend; `None` where the two measurements never coincided.
+    fn noise(&self, ratio: f64) -> Option<NoiseToml> {
         let r_bend = self.bend / self.count;
-        (r_bend > 0.0).then(|| NoiseKeys::from_variances(ratio * r_bend, r_bend))
+        (r_bend > 0.0).then(|| NoiseToml::from_variances(ratio * r_bend, r_bend))
     }
 }
 
-/// What is accumulated of one segment while the sessions are replayed.
+/// Accumulated errors of one segment in a replay.
 struct ResidualAccumulator<'t> {
     segment: &'t SegmentConfig<f64>,
-    /// Anchors to the truth, as perfect bend sensors would be.
+    /// Anchor to the truth, in place of perfect bend sensors.
     anchor: MovingAverageAnchor<{ MAX_WINDOW as usize }>,
     orient: Errors,
     coord: Errors,
 }
 
-/// What is accumulated of the arm.
+/// Accumulated errors of the arm.
 struct Residuals<'t> {
     accumulators: Vec<ResidualAccumulator<'t>>,
     headings: Errors,
@@ -74,12 +73,12 @@ struct Residuals<'t> {
 pub(super) fn set_filters(
     sessions: &[PathBuf],
     sweep: &Sweep,
-    table: &mut NamedTable,
+    table: &mut LoadedTable,
     progress: &mut dyn Progress,
 ) -> Result<(), Error> {
-    let baked = table.bake::<f64>(sweep.rate_hz)?;
-    let baked = baked.config();
-    let mut residuals = Residuals::new(&baked);
+    let compiled = table.compile::<f64>(sweep.rate_hz)?;
+    let compiled = compiled.config();
+    let mut residuals = Residuals::new(&compiled);
     for (number, session) in sessions.iter().enumerate() {
         let mut rows_left = sweep.sessions.iter().filter(|of| **of == number).count();
         residuals.start();
@@ -115,7 +114,7 @@ impl<'t> Residuals<'t> {
         }
     }
 
-    /// Forgets the anchors: the estimator starts.
+    /// Resets the anchors at a start of the estimator.
     fn start(&mut self) {
         self.decimator = Decimator::new();
         for accumulator in &mut self.accumulators {
@@ -127,7 +126,7 @@ impl<'t> Residuals<'t> {
         if row.starts {
             self.start();
         }
-        let slot = self.decimator.tick(&self.anchor);
+        let slot = self.decimator.advance(&self.anchor);
         let mut sums = Some([0.0, 0.0]);
         for (i, (accumulator, estimate)) in self.accumulators.iter_mut().zip(estimates).enumerate() {
             let errors = accumulator.add_row(row.true_theta(i), estimate, slot);
@@ -140,7 +139,7 @@ impl<'t> Residuals<'t> {
 }
 
 impl ResidualAccumulator<'_> {
-    /// Adds one row; gives the errors of θ by the IMUs and by the bend sensors, rad, where both are known.
+    /// Adds one row; returns the errors of θ by the IMUs and by the bend sensors, rad, where both are known.
     fn add_row(&mut self, truth: Option<f64>, estimate: &SegmentEstimate<f64>, slot: Decimated) -> Option<[f64; 2]> {
         let imu = estimate.imu_o.map(Angle::rad);
         self.anchor.push(slot, imu.zip(truth).map(|(imu, truth)| Turns::from_rad(imu - truth)));

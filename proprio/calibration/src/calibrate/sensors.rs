@@ -1,12 +1,13 @@
 //! The bend sensors: each fitted to its segment, and checked.
 
-use calibration_tables::BendKeys;
+use calibration_tables::BendToml;
 
 use super::error::{CalibrationError, Warning};
-use super::fit::{Fit, quadratic, volts};
+use super::fit::{QuadraticFit, quadratic, volts};
 use super::maps::{self, FittedMap};
+use super::options::CalibrationOptions;
+use super::report::SensorReport;
 use super::sweep::{LEAST_ROWS, SensorColumn, Sweep, range};
-use super::{CalibrationOptions, SensorReport};
 
 /// A sensor whose readings stay within this range is dead: ten times the noise of a good one.
 const DEAD_COUNTS: u16 = 20;
@@ -14,22 +15,22 @@ const DEAD_COUNTS: u16 = 20;
 const END_COUNTS: u16 = 2;
 /// Share of the rows at one end, and bending meanwhile, that make a sensor saturated.
 const SATURATED: (f64, f64) = (0.01, 15.0 * std::f64::consts::PI / 180.0);
-/// The same at the ends of the converter itself, where nothing else can be meant.
+/// The same at the ends of the converter's range, where the reading is unambiguous.
 const SATURATED_AT_RAIL: (f64, f64) = (0.01, 5.0 * std::f64::consts::PI / 180.0);
-/// Readings this many RMSE off the map are no noise.
+/// Error of an outlier, in RMSE of the map.
 const OUTLIER: f64 = 6.0;
-/// A map that leaves more of the variance than this follows nothing.
+/// Unexplained share of the variance above which a sensor follows no segment.
 const UNRELATED: f64 = 0.5;
 /// A sensor is swapped where another segment explains it this many times better, and its own does it worse than
 /// [`GOOD_ENOUGH`].
 const SWAPPED: f64 = 4.0;
-/// Share of the variance that even a poor sensor in its place leaves.
+/// Share of the variance that a poor but correctly placed sensor leaves.
 const GOOD_ENOUGH: f64 = 0.1;
 
 /// One sensor's map.
-pub(super) struct Sensor {
+pub(super) struct FittedSensor {
     pub segment: usize,
-    pub map: BendKeys,
+    pub map: BendToml,
     pub fitted: FittedMap,
     pub report: SensorReport,
     place: usize,
@@ -40,10 +41,10 @@ pub(super) fn fit(
     sweep: &Sweep,
     options: CalibrationOptions,
     warnings: &mut Vec<Warning>,
-) -> Result<Vec<Sensor>, CalibrationError> {
+) -> Result<Vec<FittedSensor>, CalibrationError> {
     let columns = sweep.sensors.iter();
     let sensors = columns.map(|column| fit_one(sweep, column, options, warnings)).collect::<Result<Vec<_>, _>>()?;
-    let names = sensors.iter().filter(|sensor| runs_against_its_like(sensor, &sensors));
+    let names = sensors.iter().filter(|sensor| is_inverted(sensor, &sensors));
     warnings.extend(names.map(|sensor| Warning::Inverted { name: sensor.report.name.clone() }));
     Ok(sensors)
 }
@@ -53,7 +54,7 @@ fn fit_one(
     column: &SensorColumn,
     options: CalibrationOptions,
     warnings: &mut Vec<Warning>,
-) -> Result<Sensor, CalibrationError> {
+) -> Result<FittedSensor, CalibrationError> {
     let name = column.name.clone();
     let pairs = pairs(column, &sweep.theta[column.segment]);
     if pairs.len() < LEAST_ROWS {
@@ -75,8 +76,8 @@ fn fit_one(
         range_deg: range(pairs.iter().map(|(_, theta)| *theta)).map(f64::to_degrees),
     };
     let fitted = maps::fit(sweep, column, &fit.map, options);
-    let map = BendKeys { curve: fitted.curve.clone(), memory: fitted.memory.clone(), ..fit.map };
-    Ok(Sensor { segment: column.segment, map, fitted, report, place: column.place })
+    let map = BendToml { curve: fitted.curve.clone(), memory: fitted.memory.clone(), ..fit.map };
+    Ok(FittedSensor { segment: column.segment, map, fitted, report, place: column.place })
 }
 
 /// Readings and true angles of the rows that have both.
@@ -93,7 +94,7 @@ fn count_range(pairs: &[(u16, f64)]) -> u16 {
     hi - lo
 }
 
-/// A dead sensor, or one that stays at one end of its range while the segment bends on.
+/// Refuses a dead sensor, or one that stays at one end of its range while the segment bends further.
 fn check_alive(name: &str, pairs: &[(u16, f64)]) -> Result<(), CalibrationError> {
     let range_counts = count_range(pairs);
     if range_counts < DEAD_COUNTS {
@@ -104,7 +105,7 @@ fn check_alive(name: &str, pairs: &[(u16, f64)]) -> Result<(), CalibrationError>
         let mut thetas: Vec<f64> = at_end.map(|(_, theta)| *theta).collect();
         thetas.sort_unstable_by(f64::total_cmp);
         let share = thetas.len() as f64 / pairs.len() as f64;
-        // Without a tenth at either side: a noisy sensor gets to its end now and then.
+        // Without a tenth at either side: a noisy sensor reaches its end occasionally.
         let tenth = thetas.len() / 10;
         let span = thetas[thetas.len() - 1 - tenth] - thetas[tenth];
         let (least_share, least_span) = if [0, 4095].contains(&end) { SATURATED_AT_RAIL } else { SATURATED };
@@ -116,8 +117,8 @@ fn check_alive(name: &str, pairs: &[(u16, f64)]) -> Result<(), CalibrationError>
     Ok(())
 }
 
-/// A sensor that follows another segment than its own, or none.
-fn check_place(sweep: &Sweep, column: &SensorColumn, fit: &Fit) -> Result<(), CalibrationError> {
+/// Refuses a sensor that follows another segment than its own, or no segment.
+fn check_place(sweep: &Sweep, column: &SensorColumn, fit: &QuadraticFit) -> Result<(), CalibrationError> {
     let name = column.name.clone();
     if fit.unexplained > GOOD_ENOUGH {
         let others = (0..sweep.theta.len()).filter(|j| *j != column.segment);
@@ -133,8 +134,8 @@ fn check_place(sweep: &Sweep, column: &SensorColumn, fit: &Fit) -> Result<(), Ca
     Ok(())
 }
 
-/// A map may turn back at the edge of its data by less than its own residual; there its range ends.
-fn check_monotonic(name: &str, fit: &mut Fit, warnings: &mut Vec<Warning>) -> Result<(), CalibrationError> {
+/// Refuses a map that is not monotonic. It may turn back at the edge of its data by less than its residual; its range ends there.
+fn check_monotonic(name: &str, fit: &mut QuadraticFit, warnings: &mut Vec<Warning>) -> Result<(), CalibrationError> {
     let Some([lo, hi]) = fit.map.volts.filter(|volts| !fit.map.is_monotonic_within(*volts)) else { return Ok(()) };
     let turning_point = fit.map.turning_point();
     let back = |end: f64| (fit.map.angle(end) - fit.map.angle(turning_point)).abs();
@@ -149,13 +150,13 @@ fn check_monotonic(name: &str, fit: &mut Fit, warnings: &mut Vec<Warning>) -> Re
     Ok(())
 }
 
-fn rises(map: &BendKeys) -> bool {
+fn rises(map: &BendToml) -> bool {
     let [lo, hi] = map.volts.unwrap_or_default();
     map.angle(hi) > map.angle(lo)
 }
 
-/// Whether most sensors in the same place on the segments run the other way.
-fn runs_against_its_like(sensor: &Sensor, all: &[Sensor]) -> bool {
+/// True where most sensors in the same place on the segments have the opposite sign.
+fn is_inverted(sensor: &FittedSensor, all: &[FittedSensor]) -> bool {
     let like = || all.iter().filter(|other| other.place == sensor.place);
     let against = like().filter(|other| rises(&other.map) != rises(&sensor.map)).count();
     2 * against > like().count() && like().count() > 2

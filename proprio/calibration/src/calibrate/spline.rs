@@ -3,10 +3,11 @@
 //! B-splines on evenly spaced knots, a penalty on the third differences of their coefficients. The penalty is the one with
 //! the smallest held-back error: each tenth of the sweep is predicted from the others.
 
-use calibration_tables::CurveKeys;
+use calibration_tables::CurveToml;
 use nalgebra::{SMatrix, SVector};
 
 use super::folds::{FOLDS, Observation};
+use super::statistics::quantile;
 
 /// Intervals between the knots.
 const INTERVALS: usize = 16;
@@ -17,7 +18,7 @@ const POINTS: usize = 65;
 const PENALTIES: [f64; 9] = [1e-3, 1e-2, 1e-1, 1.0, 1e1, 1e2, 1e3, 1e4, 1e5];
 /// Held-back square errors within this factor of the smallest are a tie, which the smoother curve wins.
 const TIE: f64 = 1.005;
-/// Keeps the normal equations definite where no reading is.
+/// Ridge that keeps the normal equations definite where there is no reading.
 const RIDGE: f64 = 1e-6;
 /// Quantiles of the voltage between which the spline is fitted.
 const QUANTILES: [f64; 2] = [0.0005, 0.9995];
@@ -29,8 +30,8 @@ type Coefficients = SVector<f64, BASIS>;
 
 /// A curve fitted to all observations, and those that were fitted without one tenth each.
 pub(super) struct FittedCurve {
-    pub curve: CurveKeys,
-    pub held_back: [CurveKeys; FOLDS],
+    pub curve: CurveToml,
+    pub held_back: [CurveToml; FOLDS],
 }
 
 /// Sums of the normal equations over some observations.
@@ -73,8 +74,8 @@ pub(super) fn fit(observations: &[Observation], rate_hz: f64) -> Option<FittedCu
 fn voltage_range(observations: &[Observation]) -> Option<[f64; 2]> {
     let mut volts: Vec<f64> = observations.iter().map(|observation| observation.volts).collect();
     volts.sort_unstable_by(f64::total_cmp);
-    // As they stand in the table.
-    let [lo, hi] = QUANTILES.map(|share| rounded(super::quantile(&volts, share), 1e6));
+    // Rounded as in the table.
+    let [lo, hi] = QUANTILES.map(|share| rounded(quantile(&volts, share), 1e6));
     (hi - lo > LEAST_VOLTS).then_some([lo, hi])
 }
 
@@ -143,7 +144,7 @@ impl Sums {
         Some(normal.cholesky()?.solve(&self.right))
     }
 
-    /// Sum of the squared errors that the coefficients leave.
+    /// Sum of the squared errors with these coefficients.
     fn square_error(&self, coefficients: &Coefficients) -> f64 {
         let mut explained = 0.0;
         for (i, c) in coefficients.iter().enumerate() {
@@ -156,7 +157,7 @@ impl Sums {
 const ZEROS: Coefficients = Coefficients::from_array_storage(nalgebra::ArrayStorage([[0.0; BASIS]; 1]));
 
 /// The spline at evenly spaced voltages, made monotone; in steps of 10⁻⁴ degrees.
-fn curve(coefficients: &Coefficients, volts: [f64; 2]) -> CurveKeys {
+fn curve(coefficients: &Coefficients, volts: [f64; 2]) -> CurveToml {
     let [lo, hi] = volts;
     let theta = |k: usize| {
         let (first, splines) = basis(lo + (hi - lo) * k as f64 / (POINTS - 1) as f64, volts);
@@ -164,11 +165,10 @@ fn curve(coefficients: &Coefficients, volts: [f64; 2]) -> CurveKeys {
     };
     let points: Vec<f64> = (0..POINTS).map(theta).collect();
     let theta_deg = monotone(&points).into_iter().map(|theta| rounded(theta.to_degrees(), 1e4)).collect();
-    CurveKeys { volts, theta_deg }
+    CurveToml { volts, theta_deg }
 }
 
-/// The nearest values, in the sum of squares, that only rise or only fall (pool adjacent violators); which of the two, the
-/// ends decide.
+/// The nearest monotone values by the sum of squares (pool adjacent violators); the ends determine the direction.
 fn monotone(values: &[f64]) -> Vec<f64> {
     let sign = if values.last() >= values.first() { 1.0 } else { -1.0 };
     // Means of blocks that rise, and the blocks' lengths.

@@ -4,21 +4,21 @@ use std::path::{Path, PathBuf};
 
 use calibration_tables::{ArmFile, MAX_SEGMENTS};
 use estimator_core::{HeadingTracker, ImuReading, Phase, SENSORS_PER_SEGMENT, SegmentConfig, Turns};
-use proprio_session::{Needs, Problem, Progress, Row, SENSOR_NAMES, SessionError, SessionReader};
+use proprio_session::{Progress, RequiredColumns, Row, SENSOR_NAMES, SessionError, SessionProblem, SessionReader};
 
 use super::curvature::{constant_curvature_error, end_error, geometry};
 use super::error::{CalibrationError, Warning};
 use crate::error::Error;
 
-/// Bending that a quadratic can be fitted to at all, degrees.
+/// Smallest range of bending to which a quadratic can be fitted, degrees.
 const LEAST_RANGE_DEG: f64 = 10.0;
-/// Bending that a good sweep goes beyond, degrees.
+/// Range of bending that a good sweep exceeds, degrees.
 const GOOD_RANGE_DEG: f64 = 45.0;
 /// Squared correlation from which on two segments are coupled: a sensor's error is a few percent of its signal.
 const COUPLED: f64 = 0.98;
-/// Difference of two sessions' sample rates, as a share, that is none.
+/// Largest difference of two sessions' sample rates that count as equal, as a share.
 const SAME_RATE: f64 = 0.02;
-/// Rows that a fit needs at least.
+/// Fewest rows of a fit.
 pub(super) const LEAST_ROWS: usize = 50;
 
 /// Readings of one bend sensor.
@@ -33,13 +33,13 @@ pub(super) struct SensorColumn {
     pub counts: Vec<Option<u16>>,
 }
 
-/// Readings and truth of a session; all columns have one value a row.
+/// Readings and truth of a session; all columns have one value per row.
 pub(super) struct Sweep {
     pub rate_hz: f64,
     /// Time of each row, µs, from its own session's zero.
     pub time_us: Vec<u64>,
     pub ends_with_line: bool,
-    /// In which run of the estimator each row is: where a new one starts, headings have a new zero and plays are at rest.
+    /// Run of the estimator of each row: at a start, headings have a new zero and plays are reset.
     pub runs: Vec<u32>,
     /// The session that each row is of.
     pub sessions: Vec<usize>,
@@ -64,7 +64,7 @@ pub(super) struct MeanSquare {
     count: f64,
 }
 
-/// Two segments that bend alike.
+/// Two coupled segments.
 pub(super) struct Coupling {
     /// Number of the earlier, from 1.
     pub first: usize,
@@ -72,7 +72,7 @@ pub(super) struct Coupling {
     pub second: usize,
 }
 
-/// Headings come within one turn, from cameras as from IMUs.
+/// Unwraps headings, which cameras and IMUs give within one turn.
 struct Unwrap {
     imu: [HeadingTracker<f64>; MAX_SEGMENTS],
     truth: [HeadingTracker<f64>; MAX_SEGMENTS],
@@ -96,7 +96,7 @@ impl Sweep {
             tip: MeanSquare::default(),
             segments: arm.segments.iter().map(geometry).collect(),
         };
-        let mut needs = Needs::of_calibration(arm);
+        let mut needs = RequiredColumns::of_calibration(arm);
         for (number, session) in sessions.iter().enumerate() {
             sweep.read_one(session, number, arm, &mut needs, progress)?;
         }
@@ -108,20 +108,20 @@ impl Sweep {
         session: &Path,
         number: usize,
         arm: &ArmFile,
-        needs: &mut Needs,
+        needs: &mut RequiredColumns,
         progress: &mut dyn Progress,
     ) -> Result<(), Error> {
         let mut reader = SessionReader::open(session, needs)?;
         if !reader.is_regular_file() {
             let path = session.to_owned();
-            return Err(SessionError { path, line: None, column: None, problem: Problem::NotAFile }.into());
+            return Err(SessionError { path, line: None, column: None, problem: SessionProblem::NotAFile }.into());
         }
         let refuse = |source| Error::Calibration { path: session.to_owned(), source };
         let rate_hz = reader.rate_hz(arm.rate_hz);
         if number == 0 {
             self.rate_hz = rate_hz;
             self.sensors = sensor_columns(&reader).map_err(refuse)?;
-            // Those of the first session are needed of all.
+            // All sessions must have the sensors of the first one.
             for (count, present) in needs.bend.iter_mut().zip(reader.bend_sensors()) {
                 *count = Some(present.into_iter().filter(|present| *present).count());
             }
@@ -176,7 +176,7 @@ impl Sweep {
         }
     }
 
-    /// Whether each row is in the last `share` of its session.
+    /// True for each row in the last `share` of its session.
     pub fn last_rows(&self, share: f64) -> Vec<bool> {
         let sessions = self.sessions.chunk_by(|a, b| a == b);
         let is_last = |rows: &[usize]| {
@@ -195,7 +195,7 @@ impl Sweep {
         }
     }
 
-    /// Whether every segment bends far enough.
+    /// Checks that every segment bends far enough.
     pub fn check_range(&self) -> Result<Vec<Warning>, CalibrationError> {
         let mut warnings = Vec::new();
         for (i, theta) in self.theta.iter().enumerate() {
@@ -214,7 +214,7 @@ impl Sweep {
         }
         let coupled = self.coupled();
         let pairs: Vec<_> = coupled.iter().map(|pair| (pair.first, pair.second)).collect();
-        warnings.extend((!pairs.is_empty()).then_some(Warning::Alike(pairs)));
+        warnings.extend((!pairs.is_empty()).then_some(Warning::CoupledSegments(pairs)));
         warnings.extend((!self.ends_with_line).then_some(Warning::LastLine));
         Ok(warnings)
     }
@@ -243,7 +243,7 @@ impl MeanSquare {
         }
     }
 
-    /// Root mean square; `None` of no values.
+    /// Root mean square; `None` without values.
     pub fn rms(&self) -> Option<f64> {
         (self.count > 0.0).then(|| (self.sum / self.count).sqrt())
     }

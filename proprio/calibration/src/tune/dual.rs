@@ -1,4 +1,4 @@
-//! The number that carries a derivative through the estimator.
+//! Dual numbers, which carry a derivative through the estimator.
 
 use std::cmp::Ordering;
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
@@ -69,7 +69,7 @@ impl Neg for Dual {
     }
 }
 
-/// By value: the estimator takes the same branches as with floats.
+/// Compares values alone: the estimator takes the same branches as with floats.
 impl PartialEq for Dual {
     fn eq(&self, other: &Self) -> bool {
         self.0.re == other.0.re

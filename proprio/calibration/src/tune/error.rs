@@ -1,9 +1,9 @@
-//! Why filters cannot be tuned.
+//! Errors of the tuning.
 
-/// Why the filters of a table cannot be tuned on a session.
+/// An error that prevents the tuning of a table's filters on a session.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum TuningError {
-    /// Without a bend sensor there is no fusion.
+    /// The table has no bend sensor, and so no fusion.
     #[error("no segment has a bend sensor, expected at least one: without any there is no fusion to tune")]
     NoBendSensors,
     /// The truth does not move.
@@ -19,23 +19,23 @@ pub enum TuningError {
     /// Too little truth to tune on, or to check the tuning.
     #[error("{part} has {found} samples with a fused and a true tip, expected at least {least}")]
     TooFewSamples {
-        /// Which part of the session.
+        /// Part of the session.
         part: &'static str,
         /// Samples found.
         found: u64,
         /// Samples needed.
         least: u64,
     },
-    /// The truth does not hang together.
+    /// The truth is inconsistent.
     #[error("the truth's points are {percent:.0} % of the arm's length away from where its headings put them")]
     TruthMisfit {
         /// Root mean square distance of the tip from the chain of the true bend angles, % of the arm's length.
         percent: f64,
     },
-    /// The errors fall on and on.
+    /// The errors do not converge.
     #[error("the filters do not converge: their RMSE still falls after {iterations} iterations, expected 30 to 50")]
     NotConverged {
-        /// Iterations after which descent is given up.
+        /// Largest number of iterations.
         iterations: u64,
     },
     /// The errors are no numbers.

@@ -2,11 +2,11 @@
 
 use std::f64::consts::TAU;
 
-use calibration_tables::RmseKeys;
+use calibration_tables::RmseToml;
 use estimator_core::SegmentShape;
 use nalgebra::Vector2;
 
-use super::training::Measured;
+use super::sample::Measured;
 
 /// The fused end of one segment in {W}.
 #[derive(Debug, Clone, Copy)]
@@ -15,11 +15,11 @@ pub(super) struct End {
     pub point: Vector2<f64>,
     /// rad.
     pub heading: f64,
-    /// How far it is from its true place, where the camera saw that.
+    /// Error against the true end; `None` where the camera did not see it.
     pub error: Option<EndError>,
 }
 
-/// How far an end is from its true place.
+/// Error of an end.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct EndError {
     /// m.
@@ -28,7 +28,7 @@ pub(super) struct EndError {
     pub heading: f64,
 }
 
-/// The ends of a shape, as far as it is known.
+/// The ends of a shape up to the first unknown one.
 pub(super) fn ends(shape: impl Iterator<Item = SegmentShape<f64>>, measured: &[Measured]) -> Vec<End> {
     let mut heading = 0.0;
     let end = |(segment, measured): (SegmentShape<f64>, &Measured)| {
@@ -70,7 +70,7 @@ impl Squares {
         (self.sum / self.count as f64).sqrt()
     }
 
-    /// Derivative of the root mean square where half that of the sum is 1.
+    /// Derivative of the root mean square by half the sum of squares.
     pub fn slope(self) -> f64 {
         1.0 / (self.rms() * self.count as f64)
     }
@@ -79,11 +79,11 @@ impl Squares {
 /// Errors of one part of a session.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(super) struct Errors {
-    /// Of all segments' ends, m².
+    /// Position errors of all segments' ends, m².
     pub positions: Squares,
-    /// Of the last one, m².
+    /// Position errors of the last one, m².
     pub tips: Squares,
-    /// Of the headings of all segments' ends, rad².
+    /// Heading errors of all segments' ends, rad².
     pub headings: Squares,
 }
 
@@ -111,12 +111,19 @@ impl Errors {
         self.positions.rms() + lever_m * self.headings.rms()
     }
 
-    /// As a table records them.
-    pub fn keys(&self) -> RmseKeys {
-        RmseKeys {
+    /// The errors in the form of a table's record.
+    pub fn keys(&self) -> RmseToml {
+        RmseToml {
             position_rmse_mm: self.positions.rms() * 1e3,
             tip_rmse_mm: self.tips.rms() * 1e3,
             heading_rmse_deg: self.headings.rms().to_degrees(),
         }
     }
+}
+
+/// Errors of one session.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(super) struct SessionErrors {
+    pub training: Errors,
+    pub validation: Errors,
 }

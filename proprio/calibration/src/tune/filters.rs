@@ -5,7 +5,7 @@ use nalgebra::{SVector, Vector2};
 
 use super::Dual;
 use super::parameters::PARAMETERS;
-use super::training::Measured;
+use super::sample::Measured;
 
 /// KF_orient's and KF_coord's parameters of one segment, once for each derivative.
 pub(super) type SegmentNoises = [[KalmanParams<Dual>; PARAMETERS]; 2];
@@ -21,7 +21,7 @@ pub(super) struct Filters {
     coord: Filter<2>,
 }
 
-/// One filter, as many times as it has parameters: its state, each time with the derivative by one of them.
+/// One filter, once for each parameter, with the derivative of its state by that parameter.
 #[derive(Debug, Clone)]
 struct Filter<const D: usize> {
     gains: [KalmanGains<Dual>; PARAMETERS],
@@ -34,10 +34,10 @@ impl Filters {
         Self { pcc: *pcc, orient: Filter::new(orient), coord: Filter::new(coord) }
     }
 
-    /// Takes one sample; gives the fused link.
+    /// Takes one sample; returns the fused link.
     pub fn step(&mut self, measured: &Measured) -> Option<Link<f64>> {
         let links = [measured.imu_c, measured.bend].map(|theta| theta.map(|theta| self.pcc.link(Angle::from(theta))));
-        let theta = self.orient.step(links.map(|link| link.map(|link| SVector::from([link.theta.rest]))));
+        let theta = self.orient.step(links.map(|link| link.map(|link| SVector::from([link.theta.remainder]))));
         let end = self.coord.step(links.map(|link| link.map(|link| link.end)));
         theta.zip(end).map(|(theta, end)| Link { theta: Angle::from(theta.x), end })
     }

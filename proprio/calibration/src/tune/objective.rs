@@ -1,8 +1,8 @@
-//! What the search and descent lower, and its exact gradient by the parameters of the Kalman filters.
+//! Objective of search and descent, and its exact gradient by the parameters of the Kalman filters.
 //!
-//! Of a session it is the RMSE of all segments' positions plus that of their headings, at the lever of the arm's length: a
-//! heading counts as what it moves the far end by. Of several sessions it is the geometric mean, so that a percent counts
-//! the same in each.
+//! For a session it is the RMSE of all segments' positions plus that of their headings, at the lever of the arm's length: the
+//! displacement of the far end by the heading. For several sessions it is the geometric mean, so that a percent counts the same
+//! in each.
 //!
 //! The filters carry the derivatives of their states by their own parameters. From there to the errors, each segment moves
 //! all that lies beyond it as a rigid body: with θ_i it turns about that segment's end, with P_i it shifts.
@@ -15,12 +15,13 @@ use estimator_core::{Angle, Link, Pcc, SegmentConfig, UnitArc, forward_kinematic
 use nalgebra::Vector2;
 
 use super::Dual;
-use super::errors::{End, Errors, ends};
+use super::errors::{End, Errors, SessionErrors, ends};
 use super::filters::{Filters, SegmentGradient, SegmentNoises};
-use super::parameters::{PARAMETERS, Place, Ranges};
-use super::training::{Moment, Training};
+use super::parameters::{FilterCoordinates, PARAMETERS, Ranges};
+use super::sample::TrainingSample;
+use super::training::Training;
 
-/// The sessions, and the arm that they are of.
+/// The sessions and their arm.
 #[derive(Debug)]
 pub(super) struct Objective {
     sessions: Vec<Training>,
@@ -29,24 +30,17 @@ pub(super) struct Objective {
     lever_m: f64,
 }
 
-/// What a table, or the filters at one place, are worth.
+/// Evaluation of a table, or of the filters at one place.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Evaluation {
-    /// Logarithm of the objective on what descent sees.
+    /// Logarithm of the objective on the training part.
     pub loss: f64,
-    /// The same of what is held back.
-    pub held_back_loss: f64,
-    /// Of `loss` by each coordinate of the place; empty with the bias filter.
+    /// Logarithm of the objective on the validation part.
+    pub validation_loss: f64,
+    /// Gradient of `loss` by the coordinates of the place; empty with the bias filter.
     pub gradient: Vec<f64>,
-    /// Of each session.
+    /// Errors of each session.
     pub sessions: Vec<SessionErrors>,
-}
-
-/// Errors of one session.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub(super) struct SessionErrors {
-    pub training: Errors,
-    pub held_back: Errors,
 }
 
 impl Objective {
@@ -69,28 +63,28 @@ impl Objective {
         });
     }
 
-    /// What a table is worth that differs from the one of the last [`measure`](Self::measure) in no more than its Kalman
-    /// filters; its gradient is not for use.
+    /// Evaluates a table that differs from the one of the last [`measure`](Self::measure) only in its Kalman filters. The
+    /// gradient is not valid.
     pub fn of_table(&self, table: &ArmFile) -> Evaluation {
         if let Some(fused) = self.sessions.iter().map(Training::fused).collect() {
             return self.pool(fused);
         }
         self.evaluate(|rate_hz| {
-            let baked = table.bake::<Dual>(rate_hz).expect("it is a table");
-            let segments = baked.config().segments.iter();
+            let compiled = table.compile::<Dual>(rate_hz).expect("it is a table");
+            let segments = compiled.config().segments.iter();
             segments.map(|segment| [[segment.orient; PARAMETERS], [segment.coord; PARAMETERS]]).collect()
         })
     }
 
-    /// What the filters are worth at a place.
+    /// Evaluates the filters at a place.
     pub fn at(&self, place: &[f64]) -> Evaluation {
         self.evaluate(|rate_hz| {
             segments(place).iter().map(|places| places.each_ref().map(|p| self.ranges.noises(p, rate_hz))).collect()
         })
     }
 
-    /// Where to begin: at the table's filters or, where those are worse, at the defaults of the format. From filters that
-    /// are far off, descent ends in a poor valley.
+    /// Start of the descent: the table's filters or, where those are worse, the defaults of the format. From filters that are
+    /// far off, descent ends in a poor local minimum.
     pub fn start(&self, table: &ArmFile) -> Vec<f64> {
         let mut plain = table.clone();
         plain.segments.iter_mut().for_each(|segment| (segment.orient, segment.coord) = (None, None));
@@ -98,7 +92,7 @@ impl Objective {
         if self.at(&plain).loss < self.at(&own).loss { plain } else { own }
     }
 
-    /// Where a table's filters lie.
+    /// Place of a table's filters.
     pub fn place(&self, table: &ArmFile) -> Vec<f64> {
         let filters =
             table.segments.iter().flat_map(|segment| [segment.orient_or_default(), segment.coord_or_default()]);
@@ -141,7 +135,7 @@ impl Objective {
             let parts = || sessions.iter().map(part).filter(|errors| errors.tips.count() > 0);
             parts().map(|errors| libm::log(errors.joint_m(self.lever_m))).sum::<f64>() / parts().count() as f64
         };
-        (all.loss, all.held_back_loss) = (mean(|session| &session.training), mean(|session| &session.held_back));
+        (all.loss, all.validation_loss) = (mean(|session| &session.training), mean(|session| &session.validation));
         Evaluation { sessions, ..all }
     }
 
@@ -153,15 +147,15 @@ impl Objective {
         let mut filters = start();
         let (mut errors, mut gradient) = (SessionErrors::default(), Gradient::new(filters.len()));
         let mut links: Vec<Option<Link<f64>>> = Vec::new();
-        for Moment { is_held_back, starts, measured } in session.rows() {
+        for TrainingSample { is_validation, starts, measured } in session.rows() {
             if starts {
                 filters = start();
             }
             links.clear();
             links.extend(filters.iter_mut().zip(measured).map(|(filters, measured)| filters.step(measured)));
             let ends = ends(forward_kinematics(links.iter().copied()), measured);
-            if is_held_back {
-                errors.held_back.add(&ends, filters.len());
+            if is_validation {
+                errors.validation.add(&ends, filters.len());
             } else {
                 errors.training.add(&ends, filters.len());
                 gradient.add(&ends, &filters);
@@ -172,7 +166,7 @@ impl Objective {
 }
 
 /// KF_orient's and KF_coord's place of each segment.
-fn segments(place: &[f64]) -> &[[Place; 2]] {
+fn segments(place: &[f64]) -> &[[FilterCoordinates; 2]] {
     place.as_chunks::<PARAMETERS>().0.as_chunks::<2>().0
 }
 

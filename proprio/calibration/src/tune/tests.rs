@@ -2,21 +2,21 @@
 
 use std::path::{Path, PathBuf};
 
-use calibration_tables::{ArmFile, DriftKeys, NoiseKeys, Stopped};
+use calibration_tables::{ArmFile, DriftToml, NoiseToml, StopReason};
 use estimator_core::{
     ArmConfig, BendMap, BendSensorConfig, Estimator, FusedOps, ImuReading, KalmanParams, Method, Phase, Q,
     QuadraticMap, Sample, SegmentConfig,
 };
-use proprio_analysis::metrics::Score;
+use proprio_analysis::metrics::ErrorMetrics;
 use proprio_analysis::replay::replay;
-use proprio_session::{NamedTable, NoProgress};
+use proprio_session::{LoadedTable, NoProgress};
 use proprio_simulation::{ImuColumns, SessionWriter, Simulation};
 use rig_twin::Scenario;
 
 use super::descent::{MAX_ITERATIONS, descend};
 use super::objective::{Evaluation, Objective};
 use super::parameters::Ranges;
-use super::search::{MAX_RUNS, Place, filter_at, search};
+use super::search::{GridPoint, MAX_RUNS, filter_at, search};
 use super::training::{Part, Training};
 use super::{Dual, TuningError, pooled};
 
@@ -45,30 +45,30 @@ fn session(folder: &Path, scenario: Scenario, rate_hz: f64, gaps: bool) -> PathB
 }
 
 /// The reference table, which has the bias filter.
-fn reference() -> NamedTable<'static> {
+fn reference() -> LoadedTable<'static> {
     let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../calibration-tables/planar-6.toml"));
-    NamedTable { file: ArmFile::load(path).expect("it is committed"), path }
+    LoadedTable { file: ArmFile::load(path).expect("it is committed"), path }
 }
 
 /// The reference table with the anchor, and with Kalman filters that remember, weigh and scale.
-fn table() -> NamedTable<'static> {
+fn table() -> LoadedTable<'static> {
     let mut table = reference();
     (table.file.drift, table.file.uncertainty) = (None, None);
     for (i, segment) in (1..).map(f64::from).zip(&mut table.file.segments) {
         let keys =
-            |r_imu| NoiseKeys { q: 2e-3 * i, r_imu, r_bend: 1e-3, h_imu: 1.0 - 0.01 * i, h_bend: 1.0 + 0.02 * i };
+            |r_imu| NoiseToml { q: 2e-3 * i, r_imu, r_bend: 1e-3, h_imu: 1.0 - 0.01 * i, h_bend: 1.0 + 0.02 * i };
         (segment.orient, segment.coord) = (Some(keys(3e-4 * i)), Some(keys(8e-4)));
     }
     table
 }
 
-fn objective(table: &NamedTable, sessions: &[PathBuf]) -> Objective {
+fn objective(table: &LoadedTable, sessions: &[PathBuf]) -> Objective {
     let read = |path: &PathBuf| Training::read(path, Part::Both, table, &mut NoProgress).expect("a good session");
     let sessions = sessions.iter().map(read).collect();
-    Objective::new(sessions, table.bake::<f64>(10.0).expect("a table").config().segments)
+    Objective::new(sessions, table.compile::<f64>(10.0).expect("a table").config().segments)
 }
 
-fn assert_gradient_is_exact(table: &NamedTable, sessions: &[PathBuf]) {
+fn assert_gradient_is_exact(table: &LoadedTable, sessions: &[PathBuf]) {
     let objective = objective(table, sessions);
     let place = objective.place(&table.file);
     let exact = objective.at(&place).gradient;
@@ -84,38 +84,40 @@ fn assert_gradient_is_exact(table: &NamedTable, sessions: &[PathBuf]) {
         let finite = (at(h) - at(-h)) / (2.0 * h);
         assert!((exact[k] - finite).abs() < 1e-9 + 1e-7 * finite.abs(), "{k}: {} instead of {finite}", exact[k]);
     }
-    let felt = exact.iter().filter(|derivative| derivative.abs() > 1e-5).count();
-    assert!(felt > 40, "only {felt} parameters act, so that this test shows little");
+    let acting = exact.iter().filter(|derivative| derivative.abs() > 1e-5).count();
+    assert!(acting > 40, "only {acting} parameters act, so that this test shows little");
 }
 
 #[test]
 fn the_gradient_of_a_session_is_that_of_finite_differences() {
     let folder = tempfile::tempdir().expect("a temporary folder");
-    assert_gradient_is_exact(&table(), &[session(folder.path(), Scenario::Two, 10.0, false)]);
+    assert_gradient_is_exact(&table(), &[session(folder.path(), Scenario::Push, 10.0, false)]);
 }
 
 #[test]
 fn the_gradient_is_exact_over_sessions_of_two_rates_with_readings_and_truth_missing() {
     let folder = tempfile::tempdir().expect("a temporary folder");
-    let sessions =
-        [session(folder.path(), Scenario::One, 10.0, true), session(folder.path(), Scenario::Three, 25.0, true)];
+    let sessions = [
+        session(folder.path(), Scenario::FreeSwing, 10.0, true),
+        session(folder.path(), Scenario::Obstacle, 25.0, true),
+    ];
     assert_gradient_is_exact(&table(), &sessions);
 }
 
-fn assert_errors_are_those_of_replay(table: &NamedTable) {
+fn assert_errors_are_those_of_replay(table: &LoadedTable) {
     let folder = tempfile::tempdir().expect("a temporary folder");
-    let path = session(folder.path(), Scenario::One, 10.0, true);
-    let mut score = Score::new(table.file.length_mm());
+    let path = session(folder.path(), Scenario::FreeSwing, 10.0, true);
+    let mut errors = ErrorMetrics::new(table.file.length_mm());
     let visit = |row: &_, outcome: &_| {
-        score.add(row, outcome);
+        errors.add(row, outcome);
         Ok(())
     };
     replay::<f64>(&path, table, &mut NoProgress, visit).expect("a good session");
-    let [.., fusion] = score.figures();
+    let [.., fusion] = errors.metrics();
 
     let found = objective(table, &[path]).of_table(&table.file);
     let mut errors = pooled(&found, |session| &session.training);
-    errors.append(&pooled(&found, |session| &session.held_back));
+    errors.append(&pooled(&found, |session| &session.validation));
     let (found, expected) = (errors.keys().tip_rmse_mm, fusion.tip_rmse_mm.expect("there is truth"));
     assert!((found - expected).abs() < 1e-9 * expected, "{found} instead of {expected}");
 }
@@ -133,13 +135,13 @@ fn the_errors_with_the_anchor_are_those_of_replay() {
 #[test]
 fn of_three_sessions_the_third_judges_and_of_two_the_last_fifths() {
     let folder = tempfile::tempdir().expect("a temporary folder");
-    let path = session(folder.path(), Scenario::One, 10.0, false);
+    let path = session(folder.path(), Scenario::FreeSwing, 10.0, false);
     let counts = |count: usize| -> Vec<[u64; 2]> {
         let sessions = (0..count).map(|k| {
             let training = Training::read(&path, Part::of_session(k, count), &reference(), &mut NoProgress)
                 .expect("a good session");
             let errors = training.fused().expect("it has the bias filter");
-            [errors.training.tips.count(), errors.held_back.tips.count()]
+            [errors.training.tips.count(), errors.validation.tips.count()]
         });
         sessions.collect()
     };
@@ -151,7 +153,7 @@ fn of_three_sessions_the_third_judges_and_of_two_the_last_fifths() {
 #[test]
 fn the_errors_with_the_bias_filter_do_not_depend_on_the_kalman_filters() {
     let folder = tempfile::tempdir().expect("a temporary folder");
-    let sessions = [session(folder.path(), Scenario::One, 10.0, true)];
+    let sessions = [session(folder.path(), Scenario::FreeSwing, 10.0, true)];
     let (bare, mut filtered) = (reference(), reference());
     filtered.file.segments = table().file.segments;
     assert_ne!(bare.file.segments, filtered.file.segments);
@@ -163,12 +165,12 @@ fn the_errors_with_the_bias_filter_do_not_depend_on_the_kalman_filters() {
 fn a_place_is_worth_what_its_table_is() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let table = table();
-    let objective = objective(&table, &[session(folder.path(), Scenario::One, 10.0, false)]);
+    let objective = objective(&table, &[session(folder.path(), Scenario::FreeSwing, 10.0, false)]);
     let place = objective.place(&table.file);
     let tables = [table.file.clone(), objective.table(&place, table.file.clone())];
     for of_table in tables.map(|table| objective.of_table(&table)) {
         assert!((of_table.loss - objective.at(&place).loss).abs() < 1e-12);
-        assert!((of_table.held_back_loss - objective.at(&place).held_back_loss).abs() < 1e-12);
+        assert!((of_table.validation_loss - objective.at(&place).validation_loss).abs() < 1e-12);
     }
 }
 
@@ -184,8 +186,8 @@ fn every_place_is_a_table_in_which_fixed_point_keeps_its_digits() {
             file.segments[2].coord = Some(keys);
             let file = ArmFile::parse(&file.to_toml()).unwrap_or_else(|error| panic!("{r} {q} {h} {r_bend}: {error}"));
             for rate_hz in [10.0, 100.0] {
-                let baked = file.bake::<Q>(rate_hz).expect("a table");
-                let noise = baked.config().segments[2].coord;
+                let compiled = file.compile::<Q>(rate_hz).expect("a table");
+                let noise = compiled.config().segments[2].coord;
                 assert!(noise.q.to_f64() > 0.999e-3, "{r} {q}: {} a sample", noise.q.to_f64());
             }
         }
@@ -208,7 +210,7 @@ fn descent_finds_the_bottom_of_a_valley() {
         last.clone_from(&iterate.place);
         true
     });
-    assert_eq!(stopped, Ok(Stopped::Converged));
+    assert_eq!(stopped, Ok(StopReason::Converged));
     assert!(last.iter().all(|x| (x - 1.0).abs() < 1e-2), "{last:?}");
 }
 
@@ -226,7 +228,7 @@ fn descent_is_given_up_where_there_is_no_bottom() {
 #[test]
 fn descent_ends_when_it_is_told_to() {
     let stopped = descend(valley, vec![3.0, -4.0], |iterate| iterate.number < 2);
-    assert_eq!(stopped, Ok(Stopped::Interrupted));
+    assert_eq!(stopped, Ok(StopReason::Interrupted));
 }
 
 #[test]
@@ -237,8 +239,8 @@ fn errors_that_are_no_numbers_are_refused() {
     assert_eq!(descend(steep, vec![0.0], |_| true), Err(TuningError::NotFinite));
 }
 
-/// What a place costs that is off from the bottom of a bowl, in decades.
-fn bowl(place: &Place, bottom: [f64; 5], depth: f64) -> Evaluation {
+/// Evaluation of a point by its distance from the bottom of a bowl, in decades.
+fn bowl(place: &GridPoint, bottom: [f64; 5], depth: f64) -> Evaluation {
     let off = place.iter().zip(bottom).map(|(steps, bottom)| f64::from(*steps) / 8.0 - bottom);
     Evaluation { loss: depth * off.map(|off| off * off).sum::<f64>(), ..Evaluation::default() }
 }
@@ -285,17 +287,17 @@ fn the_search_ends_when_it_is_told_to_and_has_the_best_so_far() {
 #[test]
 fn a_bias_filter_at_any_place_is_one_that_the_format_takes() {
     for start in [
-        DriftKeys {
+        DriftToml {
             rate_deg_per_s: 1e-4,
             rate_random_walk_deg_per_s_sqrt_s: 1e-5,
             offset_deg: 0.0,
-            ..DriftKeys::kalman()
+            ..DriftToml::kalman()
         },
-        DriftKeys {
+        DriftToml {
             rate_deg_per_s: 0.2,
             rate_random_walk_deg_per_s_sqrt_s: 0.01,
             offset_deg: 20.0,
-            ..DriftKeys::kalman()
+            ..DriftToml::kalman()
         },
     ] {
         for place in [[-8, -8, -8, 0, -8], [8; 5]] {

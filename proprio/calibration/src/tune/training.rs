@@ -1,61 +1,45 @@
-//! A training session: what the camera saw, and what the Kalman filters measure or how far the fused shape is off.
+//! A training session: its truth, and the inputs of the Kalman filters or the errors of the fused shape.
 
 use std::path::{Path, PathBuf};
 
 use calibration_tables::{ArmFile, MAX_SEGMENTS};
 use estimator_core::{Estimator, Sample};
 use proprio_analysis::HostEstimator;
-use proprio_session::{NamedTable, Needs, Progress, SessionReader, Truth};
+use proprio_session::{LoadedTable, Progress, RequiredColumns, SessionReader};
 
 use super::error::TuningError;
-use super::errors::{Errors, ends};
-use super::objective::SessionErrors;
+use super::errors::{Errors, SessionErrors, ends};
+use super::sample::{Measured, TrainingSample};
 use crate::calibrate::{MISFIT_PERCENT, constant_curvature_error};
 use crate::error::Error;
 
-/// Of a session of which a part is held back, one in so many samples, those at the end.
-const HELD_BACK: usize = 5;
-/// One in so many sessions is held back as a whole, where there are as many.
-const HELD_BACK_SESSIONS: usize = 3;
-/// Samples with truth that each part of a session needs.
+/// One in this number of samples, at the end of a session, is for validation where no whole session is.
+const VALIDATION_SAMPLES: usize = 5;
+/// One in this number of sessions is for validation as a whole, where there are as many.
+const VALIDATION_SESSIONS: usize = 3;
+/// Fewest samples with truth of each part of a session.
 const LEAST_SAMPLES: u64 = 50;
-/// An arm of which no true heading changes by more than this does not move, degrees.
+/// Largest range of the true headings of an arm that does not move, degrees.
 const STILL_DEG: f64 = 10.0;
 
-/// One segment in one sample.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Measured {
-    /// θ_c as the filters take it, rad.
-    pub imu_c: Option<f64>,
-    /// θ_bend, rad.
-    pub bend: Option<f64>,
-    pub truth: Option<Truth>,
-}
-
-impl Measured {
-    const fn unknown(truth: Option<Truth>) -> Self {
-        Self { imu_c: None, bend: None, truth }
-    }
-}
-
-/// What a session is for.
+/// Use of a session.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Part {
-    /// To train on.
-    Seen,
-    /// To judge by.
-    HeldBack,
-    /// The last fifth to judge by, the rest to train on.
+    /// Training.
+    Training,
+    /// Validation.
+    Validation,
+    /// The last fifth for validation, the rest for training.
     Both,
 }
 
 impl Part {
-    /// Of session `k` of `count`.
+    /// Use of session `k` of `count`.
     pub fn of_session(k: usize, count: usize) -> Self {
-        match k % HELD_BACK_SESSIONS {
-            _ if count < HELD_BACK_SESSIONS => Self::Both,
-            2 => Self::HeldBack,
-            _ => Self::Seen,
+        match k % VALIDATION_SESSIONS {
+            _ if count < VALIDATION_SESSIONS => Self::Both,
+            2 => Self::Validation,
+            _ => Self::Training,
         }
     }
 }
@@ -74,27 +58,17 @@ pub(super) struct Training {
     measured: Vec<Measured>,
     /// Errors of the fused shape; `None` with the anchor, where they depend on the Kalman filters.
     fused: Option<SessionErrors>,
-    /// Rows before which the estimator starts anew.
+    /// Rows before which the estimator is started (again).
     starts: Vec<bool>,
-}
-
-/// One sample.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Moment<'t> {
-    pub is_held_back: bool,
-    /// Whether the filters start anew before it.
-    pub starts: bool,
-    /// Its segments.
-    pub measured: &'t [Measured],
 }
 
 impl Training {
     /// Reads a session and [measures](Self::measure) it.
-    pub fn read(session: &Path, part: Part, table: &NamedTable, progress: &mut dyn Progress) -> Result<Self, Error> {
-        let mut reader = SessionReader::open(session, &Needs { truth: true, ..table.needs()? })?;
+    pub fn read(session: &Path, part: Part, table: &LoadedTable, progress: &mut dyn Progress) -> Result<Self, Error> {
+        let mut reader = SessionReader::open(session, &RequiredColumns { truth: true, ..table.required_columns()? })?;
         let rate_hz = reader.rate_hz(table.file.rate_hz);
-        let baked = table.bake::<f64>(rate_hz)?;
-        let segments = baked.config().segments;
+        let compiled = table.compile::<f64>(rate_hz)?;
+        let segments = compiled.config().segments;
 
         let work = format!("reading {}", session.display());
         let (mut samples, mut measured, mut starts) = (Vec::new(), Vec::new(), Vec::new());
@@ -127,10 +101,10 @@ impl Training {
     /// Runs the estimator on all samples. With the bias filter, which bypasses the Kalman filters, it computes the errors of
     /// the fused shape; with the anchor, the inputs of the Kalman filters, which do not depend on their parameters.
     pub fn measure(&mut self, table: &ArmFile) {
-        let baked = table.bake::<f64>(self.rate_hz).expect("it is a table");
-        let baked = baked.config();
-        let mut estimator: Box<HostEstimator<f64>> = Box::new(Estimator::new(&baked).expect("the file was checked"));
-        let seen = self.seen();
+        let compiled = table.compile::<f64>(self.rate_hz).expect("it is a table");
+        let compiled = compiled.config();
+        let mut estimator: Box<HostEstimator<f64>> = Box::new(Estimator::new(&compiled).expect("the file was checked"));
+        let training = self.training_count();
         self.fused = table.bias_filter().map(|_| SessionErrors::default());
         let rows = self.measured.chunks_exact_mut(self.segments).zip(&self.samples).zip(&self.starts);
         for (row, ((measured, sample), starts)) in rows.enumerate() {
@@ -139,14 +113,14 @@ impl Training {
             }
             if let Some(errors) = &mut self.fused {
                 let ends = ends(estimator.update(sample).iter().copied(), measured);
-                let part = if row < seen { &mut errors.training } else { &mut errors.held_back };
+                let part = if row < training { &mut errors.training } else { &mut errors.validation };
                 part.add(&ends, self.segments);
                 continue;
             }
             let estimate = estimator.update_full(sample);
             for (measured, segment) in measured.iter_mut().zip(&estimate.segments) {
                 // Without whole turns, as the filters take them.
-                let thetas = [segment.imu_c, segment.bend].map(|link| link.map(|link| link.theta.rest));
+                let thetas = [segment.imu_c, segment.bend].map(|link| link.map(|link| link.theta.remainder));
                 [measured.imu_c, measured.bend] = thetas;
             }
         }
@@ -157,20 +131,24 @@ impl Training {
         self.fused
     }
 
-    /// How many samples are not held back.
-    pub fn seen(&self) -> usize {
+    /// Number of samples for training.
+    pub fn training_count(&self) -> usize {
         match self.part {
-            Part::Seen => self.samples.len(),
-            Part::HeldBack => 0,
-            Part::Both => self.samples.len() - self.samples.len() / HELD_BACK,
+            Part::Training => self.samples.len(),
+            Part::Validation => 0,
+            Part::Both => self.samples.len() - self.samples.len() / VALIDATION_SAMPLES,
         }
     }
 
     /// All samples.
-    pub fn rows(&self) -> impl Iterator<Item = Moment<'_>> {
-        let seen = self.seen();
+    pub fn rows(&self) -> impl Iterator<Item = TrainingSample<'_>> {
+        let training = self.training_count();
         let rows = self.measured.chunks_exact(self.segments).zip(&self.starts).enumerate();
-        rows.map(move |(row, (measured, starts))| Moment { is_held_back: row >= seen, starts: *starts, measured })
+        rows.map(move |(row, (measured, starts))| TrainingSample {
+            is_validation: row >= training,
+            starts: *starts,
+            measured,
+        })
     }
 
     /// An error of this session.
@@ -178,7 +156,7 @@ impl Training {
         Error::Tuning { path: self.path.clone(), source }
     }
 
-    /// Whether the truth hangs together, and moves.
+    /// Checks that the truth is consistent and moves.
     pub fn check_truth(&self) -> Result<(), TuningError> {
         if self.misfit_percent > MISFIT_PERCENT {
             return Err(TuningError::TruthMisfit { percent: self.misfit_percent });
@@ -187,14 +165,14 @@ impl Training {
         if range_deg < STILL_DEG { Err(TuningError::Still { range_deg, least_deg: STILL_DEG }) } else { Ok(()) }
     }
 
-    /// Whether there is enough truth in each part of it.
+    /// Checks that there is enough truth in each part of it.
     pub fn check_count(&self, errors: &SessionErrors) -> Result<(), TuningError> {
         let parts: &[(&'static str, &Errors)] = match self.part {
-            Part::Seen => &[("it", &errors.training)],
-            Part::HeldBack => &[("it", &errors.held_back)],
+            Part::Training => &[("it", &errors.training)],
+            Part::Validation => &[("it", &errors.validation)],
             Part::Both => &[
                 ("the part before the last fifth", &errors.training),
-                ("the last fifth, which is held back,", &errors.held_back),
+                ("the last fifth, which is for validation,", &errors.validation),
             ],
         };
         let found = parts.iter().map(|(part, errors)| (*part, errors.tips.count()));
@@ -204,7 +182,7 @@ impl Training {
         }
     }
 
-    /// From the smallest to the largest true heading of one segment's end.
+    /// Range of the true heading of one segment's end, degrees.
     fn heading_range_deg(&self, segment: usize) -> f64 {
         let headings = self.rows().filter_map(|moment| moment.measured[segment].truth?.heading_rad);
         let [lo, hi] = headings.fold([f64::INFINITY, f64::NEG_INFINITY], |[lo, hi], h| [lo.min(h), hi.max(h)]);

@@ -1,4 +1,4 @@
-//! What can be typed of a board and its line.
+//! Arguments for a board and its line.
 
 use std::path::PathBuf;
 
@@ -6,7 +6,7 @@ use clap::Args;
 use proprio_link::Baud;
 use telemetry::REGULATORS;
 
-/// Which board.
+/// Selection of a board.
 #[derive(Debug, Args)]
 pub struct LinkArgs {
     /// Serial port [default: that of the one Due that is plugged in]
@@ -21,7 +21,7 @@ pub struct LinkArgs {
     /// Firmware of the emulated Due [default: where cargo leaves it]
     #[arg(long, value_name = "ELF", requires = "emulated")]
     pub firmware: Option<PathBuf>,
-    /// What the simulated arm does until the firmware drives it: 1 free swings, 2 pushes, 3 an obstacle
+    /// Scenario of the simulated arm until the firmware drives it: 1 free swings, 2 pushes, 3 an obstacle
     #[arg(long, value_name = "1|2|3", requires = "emulated", default_value_t = 1, value_parser = clap::value_parser!(u8).range(1..=3))]
     pub scenario: u8,
     /// Seed of the simulated arm's motion and noise
@@ -33,14 +33,14 @@ pub struct LinkArgs {
 }
 
 #[derive(Debug, Args)]
-pub struct Flash {
+pub struct FlashArgs {
     /// Table of the arm
     #[arg(long, value_name = "TABLE.toml")]
     pub table: PathBuf,
     /// The board's programming port [default: that of the one Due that is plugged in]
     #[arg(long, value_name = "PORT")]
     pub port: Option<String>,
-    /// Print the commands, and run none that builds or writes
+    /// Print the commands without building or flashing
     #[arg(long)]
     pub dry_run: bool,
     /// Folder of the firmware's source, which is this project's
@@ -49,14 +49,14 @@ pub struct Flash {
 }
 
 #[derive(Debug, Args)]
-pub struct Ports {
+pub struct PortsArgs {
     /// Print the list as JSON
     #[arg(long)]
     pub json: bool,
 }
 
 #[derive(Debug, Args)]
-pub struct Status {
+pub struct StatusArgs {
     #[command(flatten)]
     pub link: LinkArgs,
     /// Print it as JSON
@@ -65,7 +65,7 @@ pub struct Status {
 }
 
 #[derive(Debug, Args)]
-pub struct Record {
+pub struct RecordArgs {
     #[command(flatten)]
     pub link: LinkArgs,
     /// Recording to write
@@ -77,17 +77,17 @@ pub struct Record {
 }
 
 #[derive(Debug, Args)]
-pub struct Drive {
+pub struct DriveArgs {
     /// Profile: pressures over time, columns time_s and pressure1_kpa to pressure6_kpa
     #[arg(value_name = "PROFILE.csv", required_unless_present = "kpa", conflicts_with = "kpa")]
     pub profile: Option<PathBuf>,
     /// Pressures to hold instead: module 1 right, left, module 2 right, left, module 3 right, left
     #[arg(long, value_name = "KPA,KPA,KPA,KPA,KPA,KPA", value_parser = pressures_kpa, allow_negative_numbers = true)]
     pub kpa: Option<[f64; REGULATORS]>,
-    /// How long to hold them, s [default: until Ctrl-C]
+    /// Time to hold them, s [default: until Ctrl-C]
     #[arg(long, value_name = "S", requires = "kpa", allow_negative_numbers = true)]
     pub seconds: Option<f64>,
-    /// The fastest that a pressure changes, kPa/s
+    /// Largest rate of change of a pressure, kPa/s
     #[arg(long, value_name = "KPA/S", default_value_t = 100.0, allow_negative_numbers = true)]
     pub ramp: f64,
     /// Recording to write meanwhile
@@ -104,36 +104,36 @@ fn pressures_kpa(text: &str) -> Result<[f64; REGULATORS], String> {
 }
 
 #[derive(Debug, Args)]
-pub struct Monitor {
-    /// Session to show instead of a board; takes a table
+pub struct MonitorArgs {
+    /// Session to show instead of a board; needs a table
     #[arg(conflicts_with_all = ["port", "emulated", "allow_control", "plain"])]
     pub session: Option<PathBuf>,
     #[command(flatten)]
     pub link: LinkArgs,
-    /// Port of 127.0.0.1 that the page is on; 0: any that is free
+    /// Port of the page on 127.0.0.1; 0: any free one
     #[arg(long, value_name = "PORT", default_value_t = 8642)]
     pub listen: u16,
-    /// Folder that recordings are written to and sessions opened from
+    /// Folder of recordings and sessions
     #[arg(long, value_name = "FOLDER", default_value = ".")]
     pub folder: PathBuf,
-    /// Let who has the token that is printed drive the board
+    /// Allow control from the page (prints an access token)
     #[arg(long)]
     pub allow_control: bool,
-    /// Print one line a second instead
+    /// Print one line per second instead
     #[arg(long, conflicts_with_all = ["listen", "folder", "allow_control"])]
     pub plain: bool,
 }
 
 #[derive(Debug, Args)]
-pub struct Convert {
+pub struct ConvertArgs {
     /// Session: CSV, recording or raw bytes (.bin)
     pub input: PathBuf,
-    /// What to make of it: .csv, .mcap or .bin
+    /// File to write: .csv, .mcap or .bin
     pub output: PathBuf,
 }
 
 #[derive(Debug, Args)]
-pub struct Recover {
+pub struct RecoverArgs {
     /// Recording that was cut
     pub input: PathBuf,
     /// Recording to write

@@ -1,15 +1,15 @@
 //! `proprio align`.
 
-use proprio_calibration::align::{AlignmentReport, Sensors, Written, align};
-use proprio_session::{LAST_LINE, NamedTable, OutputFile};
+use proprio_calibration::align::{AlignmentReport, ComparedSensors, Written, align};
+use proprio_session::{LAST_LINE, LoadedTable, OutputFile};
 
-use crate::args::Align;
+use crate::args::AlignArgs;
 use crate::error::Error;
 use crate::progress_bar::Bar;
 use crate::terminal;
 
-pub fn run(args: &Align) -> Result<(), Error> {
-    let arm = NamedTable::load(&args.arm)?;
+pub fn run(args: &AlignArgs) -> Result<(), Error> {
+    let arm = LoadedTable::load(&args.arm)?;
     let mut file = OutputFile::create(&args.output, &[&args.session, &args.camera, &args.arm])?;
     let alignment = align(&args.session, &args.camera, &arm, &mut Bar::new())?;
     for (path, ends_with_line) in [&args.session, &args.camera].into_iter().zip(alignment.report.end_with_line) {
@@ -25,8 +25,8 @@ pub fn run(args: &Align) -> Result<(), Error> {
 
 fn text(report: &AlignmentReport, Written { rows, with_truth }: Written) -> String {
     let sensors = match report.sensors {
-        Sensors::Imus => "IMUs",
-        Sensors::Bend => "bend sensors",
+        ComparedSensors::Imus => "IMUs",
+        ComparedSensors::Bend => "bend sensors",
     };
     let AlignmentReport { offset_s, offset_error_ms, middle_s, skew_ppm, skew_error_ppm, .. } = report;
     let AlignmentReport { residual_ms, correlation, matched, .. } = report;

@@ -4,16 +4,16 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use proprio_calibration::calibrate::{CalibrationOptions, HysteresisMode, MapMode, calibrate};
-use proprio_session::{NamedTable, OutputFile};
+use proprio_session::{LoadedTable, OutputFile};
 
-use crate::args::{Calibrate, HysteresisName, MapName};
+use crate::args::{CalibrateArgs, HysteresisName, MapName};
 use crate::error::Error;
 use crate::progress_bar::Bar;
 use crate::terminal;
 use crate::text_tables;
 
-pub fn run(args: &Calibrate) -> Result<(), Error> {
-    let arm = NamedTable::load(&args.arm)?;
+pub fn run(args: &CalibrateArgs) -> Result<(), Error> {
+    let arm = LoadedTable::load(&args.arm)?;
     let inputs: Vec<&Path> = args.sessions.iter().chain([&args.arm]).map(PathBuf::as_path).collect();
     let mut file = OutputFile::create(&args.output, &inputs)?;
     let options = CalibrationOptions { maps: args.map.into(), hysteresis: args.hysteresis.into() };

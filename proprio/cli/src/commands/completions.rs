@@ -2,11 +2,11 @@
 
 use clap::CommandFactory;
 
-use crate::args::{Cli, Completions};
+use crate::args::{Cli, CompletionsArgs};
 use crate::error::Error;
 use crate::terminal;
 
-pub fn run(args: &Completions) -> Result<(), Error> {
+pub fn run(args: &CompletionsArgs) -> Result<(), Error> {
     let mut script = Vec::new();
     clap_complete::generate(args.shell, &mut Cli::command(), "proprio", &mut script);
     terminal::print(&String::from_utf8_lossy(&script))

@@ -2,12 +2,12 @@
 
 use proprio_session::convert::convert;
 
-use crate::args::Convert;
+use crate::args::ConvertArgs;
 use crate::error::Error;
 use crate::progress_bar::Bar;
 use crate::terminal;
 
-pub fn run(args: &Convert) -> Result<(), Error> {
+pub fn run(args: &ConvertArgs) -> Result<(), Error> {
     for left_out in convert(&args.input, &args.output, &mut Bar::new())? {
         terminal::warn(&format_args!("{}: {left_out}", args.output.display()));
     }

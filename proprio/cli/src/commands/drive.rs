@@ -6,22 +6,22 @@ use std::time::{Duration, Instant};
 use board_core::FULL_SCALE_PA;
 use proprio_link::drive::{DriveError, Driver, PERIOD, Profile, Ramp};
 use proprio_link::status::Status;
-use proprio_link::{FileRecorder, Subscription, What};
+use proprio_link::{EventKind, FileRecorder, Subscription};
 use proprio_session::check_seconds;
 use telemetry::{Message, REGULATORS};
 
 use super::link;
-use crate::args::Drive;
+use crate::args::DriveArgs;
 use crate::error::Error;
 use crate::interrupt::ShutdownGuard;
 use crate::status_line::{StatusLine, time};
 use crate::terminal;
 
-/// The longest step of the ramp: after a pause of this program the pressures do not jump.
+/// Longest step of the ramp: after a pause of this program the pressures do not jump.
 const LONGEST_STEP: Duration = PERIOD.saturating_mul(2);
 
-pub fn run(args: &Drive) -> Result<(), Error> {
-    // All that can be wrong is said before the board is touched.
+pub fn run(args: &DriveArgs) -> Result<(), Error> {
+    // Check all arguments before the board is driven.
     let profile = profile(args)?;
     if args.ramp.is_nan() || args.ramp <= 0.0 {
         return Err(Error::Ramp(args.ramp));
@@ -35,13 +35,13 @@ pub fn run(args: &Drive) -> Result<(), Error> {
     let (table, link, events) = link::open(&args.link)?;
     let shutdown = ShutdownGuard::new();
     let status = Status::of(&link, &link.subscribe(), table.is_some())?;
-    // Nothing is written of a board that is not armed; an armed one stays vented until the first set-points.
+    // The recording begins only with an armed board, which stays vented until the first set-points.
     let mut driver = Driver::arm(&link, &status)?;
     let recorder = args.output.as_deref().map(|path| link::recorder(path, &link, table.as_ref()));
     let mut drive = Session { recorder: recorder.transpose()?, events, screen: StatusLine::new(), board_kpa: None };
     drive.catch_up()?;
     let driven = drive.follow(&mut driver, &profile, Ramp::new(args.ramp * 1e3), &shutdown);
-    // However it ended: vented first.
+    // Vent first, also after an error.
     let vented = driver.vent();
     drop(link);
     let driven = drive.finish(driven)?;
@@ -51,7 +51,7 @@ pub fn run(args: &Drive) -> Result<(), Error> {
     Ok(())
 }
 
-fn profile(args: &Drive) -> Result<Profile, Error> {
+fn profile(args: &DriveArgs) -> Result<Profile, Error> {
     args.seconds.map_or(Ok(()), check_seconds)?;
     match (&args.profile, args.kpa) {
         (Some(path), _) => Ok(Profile::read(path)?),
@@ -78,23 +78,23 @@ fn check_new(path: &Path) -> Result<(), Error> {
     if path.is_file() { Err(proprio_session::Error::Exists(path.to_owned()).into()) } else { Ok(()) }
 }
 
-/// A drive under way.
+/// A running drive.
 struct Session {
     recorder: Option<FileRecorder>,
     events: Subscription,
     screen: StatusLine,
-    /// The board's set-points, as it said last.
+    /// The board's last reported set-points.
     board_kpa: Option<String>,
 }
 
-/// How a drive ended.
+/// Result of a drive.
 struct Driven {
     passed: Duration,
     is_whole: bool,
 }
 
 impl Session {
-    /// Takes what came until the board was known: it belongs into the recording, and is judged already.
+    /// Takes the events until the board's status was known: they are recorded, and were checked already.
     fn catch_up(&mut self) -> Result<(), Error> {
         if let Some(recorder) = &mut self.recorder {
             return Ok(recorder.remaining_events(&self.events)?);
@@ -103,7 +103,7 @@ impl Session {
         Ok(())
     }
 
-    /// Follows the profile, and goes down to nothing at its end.
+    /// Follows the profile, and ramps down to 0 at its end.
     fn follow(
         &mut self,
         driver: &mut Driver,
@@ -122,42 +122,42 @@ impl Session {
             let step = (now - last).min(LONGEST_STEP);
             last = now;
             let pressures_pa = ramp.step(profile.at(passed.as_secs_f64()), step.as_secs_f64());
-            let asked = driver.set(pressures_pa).map_err(DriveError::from)?;
+            let requested = driver.set(pressures_pa).map_err(DriveError::from)?;
             if let Some(recorder) = &mut self.recorder {
-                recorder.set_points(&asked)?;
+                recorder.set_points(&requested)?;
             }
             self.show(passed, profile.end_s(), pressures_pa);
-            self.listen(driver, now + PERIOD)?;
+            self.receive(driver, now + PERIOD)?;
         }
     }
 
-    /// Takes what the board says until the next set-points are due.
-    fn listen(&mut self, driver: &Driver, until: Instant) -> Result<(), Error> {
+    /// Handles the board's messages until the next set-points are due.
+    fn receive(&mut self, driver: &Driver, until: Instant) -> Result<(), Error> {
         loop {
             let Some(event) = self.events.next(until.saturating_duration_since(Instant::now())) else { return Ok(()) };
             if let Some(recorder) = &mut self.recorder {
                 recorder.event(&event)?;
             }
-            match event.what {
-                What::Message(Message::Health(health)) => {
+            match event.kind {
+                EventKind::Message(Message::Health(health)) => {
                     self.board_kpa = Some(kpa(health.pressures_pa));
                     driver.check(&health)?;
                 }
-                What::Lost(reason) | What::Ended(reason) => return Err(DriveError::Lost(reason).into()),
-                What::Restarted => return Err(DriveError::Restarted.into()),
-                what => self.screen.warn_of(&what),
+                EventKind::Lost(reason) | EventKind::Ended(reason) => return Err(DriveError::Lost(reason).into()),
+                EventKind::Restarted => return Err(DriveError::Restarted.into()),
+                kind => self.screen.warn_of(&kind),
             }
         }
     }
 
-    fn show(&self, passed: Duration, end_s: f64, asked_pa: [u32; REGULATORS]) {
+    fn show(&self, passed: Duration, end_s: f64, requested_pa: [u32; REGULATORS]) {
         let end =
             if end_s.is_finite() { format!(" of {}", time(Duration::from_secs_f64(end_s))) } else { String::new() };
         let board = self.board_kpa.as_deref().unwrap_or("–");
-        self.screen.show(format!("{}{end}  asked {}  board {board} kPa", time(passed), kpa(asked_pa)));
+        self.screen.show(format!("{}{end}  requested {}  board {board} kPa", time(passed), kpa(requested_pa)));
     }
 
-    /// Takes the line off the screen, and completes the recording, also of a drive that failed.
+    /// Clears the status line and completes the recording, also of a drive that failed.
     fn finish(self, driven: Result<Driven, Error>) -> Result<Driven, Error> {
         drop(self.screen);
         if let Some(mut recorder) = self.recorder {
@@ -169,7 +169,7 @@ impl Session {
             match (written, &driven) {
                 (Ok(samples), _) => terminal::eprint_line(&format_args!("{}: {samples} samples", path.display())),
                 (Err(error), Ok(_)) => return Err(error.into()),
-                // The first error is the one to tell.
+                // The first error is the one to report.
                 (Err(_), Err(_)) => {}
             }
         }

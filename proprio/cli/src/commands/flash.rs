@@ -1,21 +1,21 @@
 //! `proprio flash`.
 
 use estimator_core::Q;
-use proprio_link::{Baud, Kind, Link, LinkError, PortSource, find_due, list};
-use proprio_session::NamedTable;
+use proprio_link::{Baud, Link, LinkError, PortKind, PortSource, find_due, list};
+use proprio_session::LoadedTable;
 use telemetry::TICK_HZ;
 
-use crate::args::Flash;
+use crate::args::FlashArgs;
 use crate::error::Error;
 use crate::flash::{FlashError, Flashing, verify};
 use crate::interrupt::{ShutdownGuard, end};
 use crate::terminal;
 
-/// What bossac writes.
+/// File that bossac flashes.
 const IMAGE: &str = "firmware.bin";
 
-pub fn run(args: &Flash) -> Result<(), Error> {
-    let checksum = NamedTable::load(&args.table)?.bake::<Q>(TICK_HZ)?.checksum();
+pub fn run(args: &FlashArgs) -> Result<(), Error> {
+    let checksum = LoadedTable::load(&args.table)?.compile::<Q>(TICK_HZ)?.checksum();
     let port = args.port.clone().map_or_else(programming_port, Ok).map_err(FlashError::Port)?;
     if args.dry_run {
         let image = std::env::temp_dir().join(IMAGE);
@@ -32,8 +32,8 @@ pub fn run(args: &Flash) -> Result<(), Error> {
     ))
 }
 
-/// Builds and writes. Ctrl-C goes to the command that runs, and ends this one after it, with nothing left behind.
-fn flash(args: &Flash, port: &str) -> Result<(), FlashError> {
+/// Builds and flashes. Ctrl-C goes to the running command and ends this one after it, without temporary files.
+fn flash(args: &FlashArgs, port: &str) -> Result<(), FlashError> {
     let folder = tempfile::tempdir().map_err(FlashError::Temporary)?;
     let flashing = Flashing::plan(&args.source, &args.table, port, &folder.path().join(IMAGE))?;
     flashing.check()?;
@@ -50,8 +50,8 @@ fn flash(args: &Flash, port: &str) -> Result<(), FlashError> {
     Ok(())
 }
 
-/// The native port flashes otherwise, and the firmware does not talk on it.
+/// The programming port of the Due: the native port needs another procedure, and the firmware does not use it.
 fn programming_port() -> Result<String, LinkError> {
-    let ports: Vec<_> = list()?.into_iter().filter(|port| port.kind == Kind::DueProgramming).collect();
+    let ports: Vec<_> = list()?.into_iter().filter(|port| port.kind == PortKind::DueProgramming).collect();
     Ok(find_due(&ports)?.name.clone())
 }

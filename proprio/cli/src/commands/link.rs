@@ -1,19 +1,19 @@
-//! From the arguments to a link and its recording.
+//! A link and its recording from the arguments.
 
 use std::path::Path;
 
 use estimator_core::Q;
 use proprio_link::{FileRecorder, Link, PortSource, Source, Subscription, VirtualDue};
-use proprio_session::{HostClock, NamedTable};
+use proprio_session::{HostClock, LoadedTable};
 use telemetry::TICK_HZ;
 
 use crate::args::LinkArgs;
 use crate::error::Error;
 
-/// The table that was given, a link to the board that was, and all that it will say.
-pub fn open(args: &LinkArgs) -> Result<(Option<NamedTable<'_>>, Link, Subscription), Error> {
-    let table = args.table.as_deref().map(NamedTable::load).transpose()?;
-    let checksum = table.as_ref().map(|table| Ok::<_, Error>(table.bake::<Q>(TICK_HZ)?.checksum())).transpose()?;
+/// The given table, a link to the given board, and a subscription to its events.
+pub fn open(args: &LinkArgs) -> Result<(Option<LoadedTable<'_>>, Link, Subscription), Error> {
+    let table = args.table.as_deref().map(LoadedTable::load).transpose()?;
+    let checksum = table.as_ref().map(|table| Ok::<_, Error>(table.compile::<Q>(TICK_HZ)?.checksum())).transpose()?;
     let source: Box<dyn Source> = if args.emulated {
         Box::new(VirtualDue { firmware: args.firmware.clone(), scenario: args.scenario, seed: args.seed })
     } else {
@@ -24,7 +24,7 @@ pub fn open(args: &LinkArgs) -> Result<(Option<NamedTable<'_>>, Link, Subscripti
 }
 
 /// Begins a recording of the link in a new file, with the table attached.
-pub fn recorder(path: &Path, link: &Link, table: Option<&NamedTable>) -> Result<FileRecorder, Error> {
-    let toml = table.map(NamedTable::toml).transpose()?;
+pub fn recorder(path: &Path, link: &Link, table: Option<&LoadedTable>) -> Result<FileRecorder, Error> {
+    let toml = table.map(LoadedTable::toml).transpose()?;
     Ok(FileRecorder::create(path, link, HostClock::new(), toml.as_deref())?)
 }

@@ -2,9 +2,9 @@
 
 use std::time::{Duration, Instant};
 
-use proprio_link::{Link, LinkError, Subscription, What};
+use proprio_link::{EventKind, Link, LinkError, Subscription};
 use proprio_monitor::{Monitor, Options, Plain, Token};
-use proprio_session::{HostClock, NamedTable, SessionReader};
+use proprio_session::{HostClock, LoadedTable, SessionReader};
 
 use super::link;
 use crate::error::Error;
@@ -12,12 +12,12 @@ use crate::help::Help;
 use crate::interrupt::ShutdownGuard;
 use crate::{args, terminal};
 
-/// Longest time from one look at Ctrl-C to the next.
-const LOOK: Duration = Duration::from_millis(50);
-/// Time from one line of `--plain` to the next.
+/// Longest time between two checks for Ctrl-C.
+const CHECK_PERIOD: Duration = Duration::from_millis(50);
+/// Period of the lines of `--plain`.
 const LINE: Duration = Duration::from_secs(1);
 
-pub fn run(args: &args::Monitor) -> Result<(), Error> {
+pub fn run(args: &args::MonitorArgs) -> Result<(), Error> {
     if args.session.is_some() {
         return show(args);
     }
@@ -26,11 +26,11 @@ pub fn run(args: &args::Monitor) -> Result<(), Error> {
     if args.plain {
         return plain(&link, &events, &shutdown);
     }
-    let told = link.subscribe();
+    let warnings = link.subscribe();
     let monitor = start(args, Some((link, events)), table)?;
-    // Nothing follows an end, but what came until then can still be looked at.
+    // After the end of the line the page still shows the data until then.
     while !shutdown.is_requested() {
-        if let Some(warning) = told.next(LOOK).and_then(|event| event.what.warning()) {
+        if let Some(warning) = warnings.next(CHECK_PERIOD).and_then(|event| event.kind.warning()) {
             terminal::warn(&warning);
         }
     }
@@ -41,27 +41,27 @@ pub fn run(args: &args::Monitor) -> Result<(), Error> {
 }
 
 /// A session without a board.
-fn show(args: &args::Monitor) -> Result<(), Error> {
+fn show(args: &args::MonitorArgs) -> Result<(), Error> {
     let table = args.link.table.as_deref().ok_or(Error::SessionWithoutTable)?;
-    let table = NamedTable::load(table)?;
+    let table = LoadedTable::load(table)?;
     if let Some(session) = &args.session {
-        // What is wrong with it is better said here than on the page.
-        SessionReader::open(session, &table.needs()?)?;
+        // An error of the session is reported here, before the page is opened.
+        SessionReader::open(session, &table.required_columns()?)?;
     }
     let shutdown = ShutdownGuard::new();
     let monitor = start(args, None, Some(table))?;
     while !shutdown.is_requested() {
-        std::thread::sleep(LOOK);
+        std::thread::sleep(CHECK_PERIOD);
     }
     drop(monitor);
     Ok(())
 }
 
-/// Starts the server, and prints where it is.
+/// Starts the server and prints its address.
 fn start(
-    args: &args::Monitor,
+    args: &args::MonitorArgs,
     live: Option<(Link, Subscription)>,
-    table: Option<NamedTable>,
+    table: Option<LoadedTable>,
 ) -> Result<Monitor, Error> {
     let token = args.allow_control.then(Token::new).transpose().map_err(proprio_monitor::Error::Random)?;
     let address = |port: u16| match &token {
@@ -85,9 +85,9 @@ fn plain(link: &Link, events: &Subscription, shutdown: &ShutdownGuard) -> Result
     let (mut plain, clock) = (Plain::new(), HostClock::new());
     let mut due = Instant::now() + LINE;
     while !shutdown.is_requested() {
-        if let Some(event) = events.next(due.saturating_duration_since(Instant::now()).min(LOOK)) {
+        if let Some(event) = events.next(due.saturating_duration_since(Instant::now()).min(CHECK_PERIOD)) {
             plain.take(&event);
-            if let What::Ended(reason) = event.what {
+            if let EventKind::Ended(reason) = event.kind {
                 return Err(LinkError::Ended(reason).into());
             }
         }

@@ -1,11 +1,11 @@
 //! `proprio ports`.
 
-use crate::args::Ports;
+use crate::args::PortsArgs;
 use crate::error::Error;
 use crate::terminal;
 use crate::text_tables;
 
-pub fn run(args: &Ports) -> Result<(), Error> {
+pub fn run(args: &PortsArgs) -> Result<(), Error> {
     let ports = proprio_link::list()?;
     terminal::print(&if args.json { terminal::json(&ports) } else { text_tables::ports(&ports) })
 }

@@ -2,20 +2,20 @@
 
 use std::time::{Duration, Instant};
 
-use proprio_link::{FileRecorder, Link, LinkError, Subscription, What};
+use proprio_link::{EventKind, FileRecorder, Link, LinkError, Subscription};
 use proprio_session::check_seconds;
 use telemetry::Counts;
 
 use super::link;
-use crate::args::Record;
+use crate::args::RecordArgs;
 use crate::error::Error;
 use crate::interrupt::ShutdownGuard;
 use crate::status_line::{StatusLine, time};
 
-/// Time from one status line to the next.
-const LOOK: Duration = Duration::from_millis(500);
+/// Period of the status line.
+const STATUS_PERIOD: Duration = Duration::from_millis(500);
 
-pub fn run(args: &Record) -> Result<(), Error> {
+pub fn run(args: &RecordArgs) -> Result<(), Error> {
     args.seconds.map_or(Ok(()), check_seconds)?;
     let (table, link, events) = link::open(&args.link)?;
     let shutdown = ShutdownGuard::new();
@@ -27,45 +27,45 @@ pub fn run(args: &Record) -> Result<(), Error> {
     session.finish(link, &events)
 }
 
-/// A recording under way, and what is shown of it.
+/// A running recording, and its status line.
 struct Session {
     recorder: FileRecorder,
     screen: StatusLine,
     start: Instant,
-    looked: Instant,
-    samples_then: u64,
-    /// The line is gone for good, and why.
+    shown: Instant,
+    samples_shown: u64,
+    /// Reason of the end of a line that is gone for good.
     ended: Option<String>,
 }
 
 impl Session {
     fn new(recorder: FileRecorder) -> Self {
         let now = Instant::now();
-        Self { recorder, screen: StatusLine::new(), start: now, looked: now, samples_then: 0, ended: None }
+        Self { recorder, screen: StatusLine::new(), start: now, shown: now, samples_shown: 0, ended: None }
     }
 
-    /// Takes one event, or waits a little for one.
+    /// Takes one event, or waits up to 50 ms for one.
     fn step(&mut self, link: &Link, events: &Subscription) -> Result<(), Error> {
         match events.next(Duration::from_millis(50)) {
             Some(event) => {
                 self.recorder.event(&event)?;
-                match event.what {
-                    What::Ended(reason) => self.ended = Some(reason),
-                    what => self.screen.warn_of(&what),
+                match event.kind {
+                    EventKind::Ended(reason) => self.ended = Some(reason),
+                    kind => self.screen.warn_of(&kind),
                 }
             }
             None => self.recorder.flush_if_due()?,
         }
-        let since = self.looked.elapsed();
-        if since >= LOOK {
-            let rate_hz = (self.recorder.samples() - self.samples_then) as f64 / since.as_secs_f64();
-            (self.looked, self.samples_then) = (Instant::now(), self.recorder.samples());
+        let since = self.shown.elapsed();
+        if since >= STATUS_PERIOD {
+            let rate_hz = (self.recorder.samples() - self.samples_shown) as f64 / since.as_secs_f64();
+            (self.shown, self.samples_shown) = (Instant::now(), self.recorder.samples());
             self.screen.show(self.line(link.state().counts, events, rate_hz));
         }
         Ok(())
     }
 
-    /// What was recorded so far.
+    /// Summary of the recording so far.
     fn line(&self, counts: Counts, events: &Subscription, rate_hz: f64) -> String {
         let samples = self.recorder.samples();
         let dropped = match events.dropped() {
@@ -80,10 +80,10 @@ impl Session {
         )
     }
 
-    /// Takes what has come until now, and completes the file.
+    /// Takes the events that have come, and completes the file.
     fn finish(mut self, link: Link, events: &Subscription) -> Result<(), Error> {
         let counts = link.state().counts;
-        // Nothing comes any more.
+        // No more events come.
         drop(link);
         self.recorder.remaining_events(events)?;
         let rate_hz = self.recorder.samples() as f64 / self.start.elapsed().as_secs_f64();

@@ -5,28 +5,28 @@ use std::path::{Path, PathBuf};
 use estimator_core::{FusedOps, Q, saturations};
 use proprio_analysis::agreement::Comparison;
 use proprio_analysis::estimates::EstimateWriter;
-use proprio_analysis::figures::{AllFigures, ByMethod, SessionFigures};
-use proprio_analysis::metrics::Score;
-use proprio_analysis::replay::{Extent, replay};
+use proprio_analysis::metrics::ErrorMetrics;
+use proprio_analysis::replay::{SessionSummary, replay};
+use proprio_analysis::session_metrics::{AllMetrics, ByMethod, SessionMetrics};
 use proprio_analysis::{Outcome, smooth};
-use proprio_session::{LAST_LINE, NamedTable, OutputFile, Row};
+use proprio_session::{LAST_LINE, LoadedTable, OutputFile, Row};
 
-use crate::args::Replay;
+use crate::args::ReplayArgs;
 use crate::error::Error;
 use crate::progress_bar::Bar;
 use crate::terminal;
 use crate::text_tables;
 
-pub fn run(args: &Replay) -> Result<(), Error> {
+pub fn run(args: &ReplayArgs) -> Result<(), Error> {
     if args.out.is_some() && args.sessions.len() != 1 {
         return Err(Error::OneSession(args.sessions.len()));
     }
-    let table = NamedTable::load(&args.table)?;
+    let table = LoadedTable::load(&args.table)?;
     let inputs: Vec<&Path> = args.sessions.iter().map(PathBuf::as_path).chain([table.path]).collect();
     let out = args.out.as_deref().map(|out| OutputFile::create(out, &inputs)).transpose()?;
     let mut out = out.map(|file| EstimateWriter::new(file, &table.file, args.smooth)).transpose()?;
-    let figures = if args.float {
-        // The board's fixed point says nothing of floats.
+    let metrics = if args.float {
+        // The board's fixed-point estimates differ from those of floats.
         replay_all::<f64>(args, &table, out.as_mut(), None)?
     } else {
         replay_all::<Q>(args, &table, out.as_mut(), Some(Comparison::add))?
@@ -37,64 +37,64 @@ pub fn run(args: &Replay) -> Result<(), Error> {
             "fixed point saturated {times} times: a reading or the table is out of range; compare with --float"
         )),
     }
-    let text = if args.json { terminal::json(&figures) } else { text_tables::replay(&figures) };
+    let text = if args.json { terminal::json(&metrics) } else { text_tables::replay(&metrics) };
     // The file gets its name last, so that a command that fails leaves none.
     terminal::print(&text)?;
     Ok(out.map_or(Ok(()), EstimateWriter::finish)?)
 }
 
-/// Whether the replay is what the board has estimated.
-fn tell(path: &Path, recorded: &Comparison, firmware: Option<&str>) {
+/// Reports the agreement of the board's estimates with the replay.
+fn report_agreement(path: &Path, recorded: &Comparison, firmware: Option<&str>) {
     let line = format!("{}: {recorded}", path.display());
     if recorded.is_exact() {
         terminal::eprint_line(&line);
     } else {
-        // Another release may estimate in another way, to the last bits.
+        // Another release may differ in the last bits.
         terminal::warn(&format_args!("{line}; the board ran firmware {}", firmware.unwrap_or("of an unknown version")));
     }
 }
 
-/// Compares what the board has estimated of a row.
+/// Compares the board's output of a row.
 type Compare<S> = fn(&mut Comparison, &Row, &Outcome<S>);
 
 fn replay_all<S: FusedOps>(
-    args: &Replay,
-    table: &NamedTable,
+    args: &ReplayArgs,
+    table: &LoadedTable,
     mut out: Option<&mut EstimateWriter>,
     compare: Option<Compare<S>>,
-) -> Result<AllFigures, Error> {
+) -> Result<AllMetrics, Error> {
     let length_mm = table.file.length_mm();
-    let mut all = Score::new(length_mm);
+    let mut all = ErrorMetrics::new(length_mm);
     let mut each = Vec::new();
     let progress = &mut Bar::new();
     for path in &args.sessions {
-        let mut score = Score::new(length_mm);
+        let mut errors = ErrorMetrics::new(length_mm);
         let mut comparison = Comparison::default();
         let visit = |row: &Row, outcome: &Outcome<S>| {
-            score.add(row, outcome);
+            errors.add(row, outcome);
             if let Some(compare) = compare {
                 compare(&mut comparison, row, outcome);
             }
             Ok(out.as_mut().map_or(Ok(()), |out| out.write(outcome))?)
         };
-        let extent = if args.smooth {
+        let summary = if args.smooth {
             smooth::replay(path, table, progress, visit)
         } else {
             replay(path, table, progress, visit)
         };
-        let Extent { samples, seconds, ends_with_line, recording } = extent?;
+        let SessionSummary { samples, seconds, ends_with_line, recording } = summary?;
         if !ends_with_line {
             terminal::warn(&format_args!("{}: {LAST_LINE}", path.display()));
         }
         let recorded = recording.filter(|_| compare.is_some()).map(|recording| {
             comparison.table_matches = recording.table_matches;
             let comparison = comparison.of(recording.recorded_by);
-            tell(path, &comparison, recording.firmware.as_deref());
+            report_agreement(path, &comparison, recording.firmware.as_deref());
             comparison
         });
-        all.append(&score);
-        let figures = ByMethod::from(&score);
-        each.push(SessionFigures { path: path.display().to_string(), samples, seconds, figures, recorded });
+        all.append(&errors);
+        let metrics = ByMethod::from(&errors);
+        each.push(SessionMetrics { path: path.display().to_string(), samples, seconds, metrics, recorded });
     }
-    Ok(AllFigures { sessions: each, all: ByMethod::from(&all), length_mm })
+    Ok(AllMetrics { sessions: each, all: ByMethod::from(&all), length_mm })
 }

@@ -4,16 +4,16 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use estimator_core::saturations;
-use proprio_analysis::report::Gathering;
-use proprio_session::{LAST_LINE, NamedTable, OutputFile};
+use proprio_analysis::report::ReportBuilder;
+use proprio_session::{LAST_LINE, LoadedTable, OutputFile};
 
-use crate::args::Report;
+use crate::args::ReportArgs;
 use crate::error::Error;
 use crate::progress_bar::Bar;
 use crate::terminal;
 
-pub fn run(args: &Report) -> Result<(), Error> {
-    let table = NamedTable::load(&args.table)?;
+pub fn run(args: &ReportArgs) -> Result<(), Error> {
+    let table = LoadedTable::load(&args.table)?;
     let inputs: Vec<&Path> = args.sessions.iter().map(PathBuf::as_path).chain([table.path]).collect();
     let outputs = [Some(&args.output), args.json.as_ref(), args.csv.as_ref()].into_iter().flatten();
     let outputs: Vec<PathBuf> =
@@ -27,9 +27,9 @@ pub fn run(args: &Report) -> Result<(), Error> {
     let csv = args.csv.as_ref().map(create).transpose()?;
 
     let mut progress = Bar::new();
-    let mut gathering = Gathering::new(&table);
+    let mut builder = ReportBuilder::new(&table);
     for path in &args.sessions {
-        if !gathering.add(path, &mut progress)?.ends_with_line {
+        if !builder.add(path, &mut progress)?.ends_with_line {
             terminal::warn(&format_args!("{}: {LAST_LINE}", path.display()));
         }
     }
@@ -40,7 +40,7 @@ pub fn run(args: &Report) -> Result<(), Error> {
             "fixed point saturated {times} times: a reading or the table is out of range; compare with replay --float"
         )),
     }
-    let report = gathering.finish()?;
+    let report = builder.finish()?;
     let mut files = vec![written(page, &report.html())?];
     if let Some(json) = json {
         files.push(written(json, &report.json())?);

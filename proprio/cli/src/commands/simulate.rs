@@ -7,11 +7,11 @@ use proprio_session::{OutputFile, Progress};
 use proprio_simulation::{CameraWriter, ImuColumns, SessionWriter, Simulation};
 use rig_twin::{Camera, Motion, Scenario, Setup};
 
-use crate::args::{ImuName, MotionName, ScenarioName, Simulate};
+use crate::args::{ImuName, MotionName, ScenarioName, SimulateArgs};
 use crate::error::Error;
 use crate::progress_bar::Bar;
 
-pub fn run(args: &Simulate) -> Result<(), Error> {
+pub fn run(args: &SimulateArgs) -> Result<(), Error> {
     let setup =
         Setup { arm_seed: args.arm_seed, scenario: args.scenario.into(), motion: args.motion.into(), seed: args.seed };
     let mut simulation = Simulation::of(&setup, args.seconds, args.rate)?;
@@ -68,9 +68,9 @@ impl From<MotionName> for Motion {
 impl From<ScenarioName> for Scenario {
     fn from(name: ScenarioName) -> Self {
         match name {
-            ScenarioName::One => Self::One,
-            ScenarioName::Two => Self::Two,
-            ScenarioName::Three => Self::Three,
+            ScenarioName::One => Self::FreeSwing,
+            ScenarioName::Two => Self::Push,
+            ScenarioName::Three => Self::Obstacle,
             ScenarioName::Sweep => Self::Sweep,
         }
     }

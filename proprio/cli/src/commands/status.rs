@@ -10,13 +10,13 @@ use crate::error::Error;
 use crate::terminal;
 use crate::{args, text_tables};
 
-pub fn run(args: &args::Status) -> Result<(), Error> {
+pub fn run(args: &args::StatusArgs) -> Result<(), Error> {
     let (table, link, events) = link::open(&args.link)?;
     let status = Status::of(&link, &events, table.is_some())?;
     terminal::print(&if args.json { terminal::json(&status) } else { screen(&status) })
 }
 
-/// Everything on one screen.
+/// The status on one screen.
 fn screen(status: &Status) -> String {
     let Status { hello, health, rates, received, .. } = status;
     let table = match status.table_matches {
@@ -47,7 +47,7 @@ fn screen(status: &Status) -> String {
             format!(
                 "{:.1} %, estimate {} µs and IMUs {} µs after the tick at most",
                 f64::from(health.load_permille) / 10.0,
-                health.longest_tick_us,
+                health.max_estimate_latency_us,
                 health.longest_imu_read_us
             ),
         ),
@@ -77,27 +77,27 @@ fn up(tick: u32) -> String {
     format!("up for {:.1} s", f64::from(tick) / telemetry::TICK_HZ)
 }
 
-/// How far the tip may be off.
+/// Uncertainty of the tip.
 fn tip(shape: Option<&KnownShape>) -> String {
     match shape.and_then(|shape| shape.tip) {
         Some(Ellipse { major_mm, minor_mm }) => {
             format!("95 % within an ellipse of {major_mm:.1} mm by {minor_mm:.1} mm about the estimate")
         }
-        None => "the board does not say how far it may be off".to_owned(),
+        None => "the board has sent no uncertainty".to_owned(),
     }
 }
 
-/// Which segments something touches.
+/// Segments in contact.
 fn contact(shape: Option<&KnownShape>) -> String {
     let touched = (1..).zip(shape.iter().flat_map(|shape| shape.touched)).filter(|(_, touched)| *touched);
     let numbers: Vec<String> = touched.map(|(number, _): (u32, _)| number.to_string()).collect();
     if numbers.is_empty() { "none".to_owned() } else { format!("segment {}", numbers.join(", ")) }
 }
 
-/// All that are well in one word, each other one by its name, state and how often it was missed.
+/// Number of the sensors that are ok; name, state and missed readings of each other one.
 fn sensors(sensors: &[SensorHealth], name: impl Fn(usize) -> String) -> String {
     let ok = sensors.iter().filter(|sensor| sensor.state == SensorState::Ok).count();
     let others = sensors.iter().enumerate().filter(|(_, sensor)| sensor.state != SensorState::Ok);
-    let others = others.map(|(i, sensor)| format!("{} {:?} ({} missed)", name(i), sensor.state, sensor.missed));
+    let others = others.map(|(i, sensor)| format!("{} {} ({} missed)", name(i), sensor.state, sensor.missed));
     [format!("{ok} of {} ok", sensors.len())].into_iter().chain(others).collect::<Vec<_>>().join(", ")
 }

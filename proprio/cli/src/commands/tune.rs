@@ -3,19 +3,19 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use calibration_tables::{Stopped, TuningKeys};
+use calibration_tables::{StopReason, TuningToml};
 use proprio_calibration::tune::{Tuner, Tuning};
-use proprio_session::{LAST_LINE, NamedTable, OutputFile};
+use proprio_session::{LAST_LINE, LoadedTable, OutputFile};
 
-use crate::args::Tune;
+use crate::args::TuneArgs;
 use crate::error::Error;
 use crate::interrupt::ShutdownGuard;
 use crate::progress_bar::Bar;
 use crate::terminal;
 use crate::text_tables;
 
-pub fn run(args: &Tune) -> Result<(), Error> {
-    let table = NamedTable::load(&args.table)?;
+pub fn run(args: &TuneArgs) -> Result<(), Error> {
+    let table = LoadedTable::load(&args.table)?;
     let inputs: Vec<&Path> = args.sessions.iter().map(PathBuf::as_path).chain([table.path]).collect();
     let mut file = OutputFile::create(&args.output, &inputs)?;
     let mut progress = Bar::new();
@@ -33,18 +33,23 @@ pub fn run(args: &Tune) -> Result<(), Error> {
     Ok(file.finish()?)
 }
 
-/// What is not as it should be, although the table is written.
-fn warnings(record: &TuningKeys) -> impl Iterator<Item = String> {
-    let TuningKeys { iterations, kept, stopped, .. } = *record;
-    let early = match stopped {
-        Stopped::Converged => None,
-        Stopped::Interrupted => Some(format!("interrupted after {iterations} iterations, before the RMSE converged")),
+/// Warnings about a tuning whose table is written.
+fn warnings(record: &TuningToml) -> impl Iterator<Item = String> {
+    let TuningToml { iterations, best_iteration, stop_reason, .. } = *record;
+    let early = match stop_reason {
+        StopReason::Converged => None,
+        StopReason::Interrupted => {
+            Some(format!("interrupted after {iterations} iterations, before the RMSE converged"))
+        }
     };
-    let noise = match kept {
-        _ if kept == iterations => None,
-        0 => Some("what is held back only gets worse: the filters stay as they were; take longer sessions".to_owned()),
+    let noise = match best_iteration {
+        _ if best_iteration == iterations => None,
+        0 => Some(
+            "the validation error did not improve: the filters are unchanged; use longer training sessions".to_owned(),
+        ),
         _ => Some(format!(
-            "what is held back gets worse in the end: the table has iteration {kept}, the best for it; take longer sessions"
+            "the validation error rises at the end: the table has iteration {best_iteration}, the best by it; use longer training \
+             sessions"
         )),
     };
     early.into_iter().chain(noise)

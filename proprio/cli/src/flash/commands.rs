@@ -1,4 +1,4 @@
-//! Which commands flash a board, as in docs/FLASHING.md, and their running.
+//! Commands that flash a board, as in docs/how-to/flashing.md.
 
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
@@ -10,7 +10,7 @@ use super::FlashError;
 const TARGET: &str = "thumbv7m-none-eabi";
 const CHIP: &str = "ATSAM3X8E";
 
-/// Names the folders of libraries, where a program finds them by that.
+/// Environment variable with the folders of libraries.
 const LIBRARY_PATH: Option<&str> = if cfg!(target_os = "macos") {
     Some("DYLD_LIBRARY_PATH")
 } else if cfg!(unix) {
@@ -21,18 +21,18 @@ const LIBRARY_PATH: Option<&str> = if cfg!(target_os = "macos") {
 
 /// A command.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Step {
-    /// A variable that it is given.
+pub struct FlashCommand {
+    /// Environment variable of the command.
     variable: Option<(&'static str, String)>,
     program: String,
     arguments: Vec<String>,
 }
 
-/// All that flashes a board.
+/// The commands that flash a board.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Flashing {
     source: PathBuf,
-    steps: Vec<Step>,
+    steps: Vec<FlashCommand>,
 }
 
 impl Flashing {
@@ -40,7 +40,7 @@ impl Flashing {
     /// over `port`, for which `image` is written.
     ///
     /// # Errors
-    /// [`FlashError::NoSource`], and what is wrong with `probe-rs list` or the toolchain.
+    /// [`FlashError::NoSource`], and errors of `probe-rs list` and the toolchain.
     pub fn plan(source: &Path, table: &Path, port: &str, image: &Path) -> Result<Self, FlashError> {
         if !source.join("firmware/Cargo.toml").is_file() {
             return Err(FlashError::NoSource(source.to_owned()));
@@ -48,26 +48,26 @@ impl Flashing {
         let source = absolute(source);
         // Cargo takes a relative path from the folder that it runs in.
         let target = env::var("CARGO_TARGET_DIR").unwrap_or_else(|_| "target".to_owned());
-        let elf = format!("{target}/{TARGET}/release/firmware");
-        let build = Step {
+        let elf = format!("{target}/{TARGET}/firmware/firmware");
+        let build = FlashCommand {
             variable: Some(("PROPRIO_TABLE", text(&absolute(table)))),
-            ..Step::new("cargo", &["build", "--release", "-p", "firmware", "--target", TARGET])
+            ..FlashCommand::new("cargo", &["build", "--profile", "firmware", "-p", "firmware", "--target", TARGET])
         };
         let mut steps = vec![build];
         if is_probe_found()? {
-            steps.push(Step::new("probe-rs", &["download", "--chip", CHIP, "--verify", &elf]));
-            steps.push(Step::new("probe-rs", &["reset", "--chip", CHIP]));
+            steps.push(FlashCommand::new("probe-rs", &["download", "--chip", CHIP, "--verify", &elf]));
+            steps.push(FlashCommand::new("probe-rs", &["reset", "--chip", CHIP]));
         } else {
             let image = text(image);
-            // bossac puts the folder in front by itself.
+            // bossac adds the folder itself.
             let port = port.strip_prefix("/dev/").unwrap_or(port);
             steps.push(objcopy(&source, &elf, &image)?);
-            steps.push(Step::new("bossac", &["-a", "-p", port, "-U0", "-e", "-w", "-v", "-b", "-R", &image]));
+            steps.push(FlashCommand::new("bossac", &["-a", "-p", port, "-U0", "-e", "-w", "-v", "-b", "-R", &image]));
         }
         Ok(Self { source, steps })
     }
 
-    /// Makes sure that all programs are there, before the first one runs.
+    /// Checks that all programs exist, before the first one runs.
     ///
     /// # Errors
     /// [`FlashError::Missing`] and [`FlashError::NoObjcopy`].
@@ -84,15 +84,15 @@ impl Flashing {
 
     /// The commands, in their order.
     #[must_use]
-    pub fn steps(&self) -> &[Step] {
+    pub fn steps(&self) -> &[FlashCommand] {
         &self.steps
     }
 
-    /// Runs one of the commands; all that it says goes to standard error.
+    /// Runs one of the commands; its output goes to standard error.
     ///
     /// # Errors
     /// [`FlashError::Start`] and [`FlashError::Failed`].
-    pub fn run(&self, step: &Step) -> Result<(), FlashError> {
+    pub fn run(&self, step: &FlashCommand) -> Result<(), FlashError> {
         let mut command = Command::new(&step.program);
         command.args(&step.arguments).envs(step.variable.clone()).current_dir(&self.source);
         command.stdin(Stdio::null()).stdout(io::stderr());
@@ -104,7 +104,7 @@ impl Flashing {
     }
 }
 
-/// As it is typed into a shell.
+/// In the syntax of a shell.
 impl fmt::Display for Flashing {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "cd {}", quoted(&text(&self.source)))?;
@@ -112,15 +112,15 @@ impl fmt::Display for Flashing {
     }
 }
 
-impl Step {
+impl FlashCommand {
     fn new(program: &str, arguments: &[&str]) -> Self {
         let arguments = arguments.iter().map(|argument| (*argument).to_owned()).collect();
         Self { variable: None, program: program.to_owned(), arguments }
     }
 }
 
-/// As it is typed into a shell.
-impl fmt::Display for Step {
+/// In the syntax of a shell.
+impl fmt::Display for FlashCommand {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if let Some((name, value)) = &self.variable {
             write!(f, "{name}={} ", quoted(value))?;
@@ -155,7 +155,7 @@ fn start(program: &str, source: io::Error) -> FlashError {
     }
 }
 
-/// What a program prints, in `folder`.
+/// Output of a program that runs in `folder`.
 fn output(program: &str, arguments: &[&str], folder: &Path) -> Result<String, FlashError> {
     let mut command = Command::new(program);
     command.args(arguments).current_dir(folder).stdin(Stdio::null()).stderr(Stdio::inherit());
@@ -163,11 +163,11 @@ fn output(program: &str, arguments: &[&str], folder: &Path) -> Result<String, Fl
     if output.status.success() {
         return Ok(String::from_utf8_lossy(&output.stdout).into_owned());
     }
-    let command = Step::new(program, arguments).to_string();
+    let command = FlashCommand::new(program, arguments).to_string();
     Err(FlashError::Failed { program: program.to_owned(), command, status: output.status })
 }
 
-/// Whether probe-rs is there, and sees a probe: it lists each in a line that begins with its number in brackets.
+/// True where probe-rs is installed and finds a probe: it lists each in a line that begins with its number in brackets.
 fn is_probe_found() -> Result<bool, FlashError> {
     match output("probe-rs", &["list"], Path::new(".")) {
         Ok(list) => Ok(list.lines().any(|line| line.trim_start().starts_with('['))),
@@ -176,14 +176,14 @@ fn is_probe_found() -> Result<bool, FlashError> {
     }
 }
 
-/// That of the pinned toolchain, which is the one of the source's folder.
-fn objcopy(source: &Path, elf: &str, image: &str) -> Result<Step, FlashError> {
+/// The objcopy of the pinned toolchain, which is that of the source's folder.
+fn objcopy(source: &Path, elf: &str, image: &str) -> Result<FlashCommand, FlashError> {
     let printed = |what| output("rustc", &["--print", what], source).map(|line| line.trim().to_owned());
     let (sysroot, host) = (printed("sysroot")?, printed("host-tuple")?);
     let program = format!("{sysroot}/lib/rustlib/{host}/bin/rust-objcopy{}", env::consts::EXE_SUFFIX);
-    // It looks for the toolchain's LLVM in another folder than it is in.
+    // By default it does not search the folder of the toolchain's LLVM.
     let variable = LIBRARY_PATH.map(|name| (name, format!("{sysroot}/lib")));
-    Ok(Step { variable, ..Step::new(&program, &["-O", "binary", elf, image]) })
+    Ok(FlashCommand { variable, ..FlashCommand::new(&program, &["-O", "binary", elf, image]) })
 }
 
 fn is_on_path(program: &str) -> bool {

@@ -1,15 +1,15 @@
-//! The firmware with an arm's table, onto a board: built, written, and heard.
+//! Flashing: builds the firmware with an arm's table, writes it onto a board and verifies it.
 //!
-//! | file | what it is for |
+//! | file | purpose |
 //! |---|---|
-//! | `commands.rs` | which commands do it, and their running |
-//! | `verify.rs` | that the board has it: by its `Hello` |
-//! | `error.rs` | why a board is not flashed |
+//! | `commands.rs` | the commands |
+//! | `verify.rs` | verification by the board's `Hello` |
+//! | `error.rs` | errors |
 
 mod commands;
 mod error;
 mod verify;
 
-pub use commands::{Flashing, Step};
+pub use commands::{FlashCommand, Flashing};
 pub use error::FlashError;
 pub use verify::verify;

@@ -1,34 +1,34 @@
-//! That the board has the firmware: by what it says of itself.
+//! Verifies the flashed firmware by the `Hello` that the board sends.
 
 use std::time::{Duration, Instant};
 
-use proprio_link::{Link, LinkError, Mismatch, Subscription, What};
+use proprio_link::{EventKind, Link, LinkError, Mismatch, Subscription};
 use telemetry::{Hello, Message};
 
 use super::FlashError;
 
-/// How long a board may be silent, s: it says `Hello` each second.
-const PATIENCE_S: u64 = 10;
+/// Longest silence of a board, s: it sends `Hello` each second.
+const TIMEOUT_S: u64 = 10;
 
-/// Waits for the `Hello` of the board, on a link that knows the table which was flashed.
+/// Waits for the `Hello` of the board, on a link that compares its table with the flashed one.
 ///
 /// # Errors
 /// [`FlashError::Silent`], [`FlashError::Unheard`], and [`FlashError::OtherTable`] or [`FlashError::Other`] where table,
 /// version or messages are not those that were flashed.
 pub fn verify(link: &Link, events: &Subscription) -> Result<Hello, FlashError> {
     let start = Instant::now();
-    while start.elapsed().as_secs() < PATIENCE_S {
-        match events.next(Duration::from_millis(50)).map(|event| event.what) {
-            // Told before the Hello that shows it.
-            Some(What::Mismatch(Mismatch::Table { arm, board, given })) => {
+    while start.elapsed().as_secs() < TIMEOUT_S {
+        match events.next(Duration::from_millis(50)).map(|event| event.kind) {
+            // This event comes before the `Hello` that shows the mismatch.
+            Some(EventKind::Mismatch(Mismatch::Table { arm, board, given })) => {
                 return Err(FlashError::OtherTable { arm, board, given });
             }
-            Some(What::Mismatch(mismatch)) => return Err(FlashError::Other(mismatch)),
-            Some(What::Message(Message::Hello(hello))) => return Ok(hello),
-            Some(What::Ended(reason)) => return Err(FlashError::Unheard(LinkError::Ended(reason))),
+            Some(EventKind::Mismatch(mismatch)) => return Err(FlashError::Other(mismatch)),
+            Some(EventKind::Message(Message::Hello(hello))) => return Ok(hello),
+            Some(EventKind::Ended(reason)) => return Err(FlashError::Unheard(LinkError::Ended(reason))),
             _ => {}
         }
     }
     let port = link.state().port.unwrap_or_else(|| "the line".to_owned());
-    Err(FlashError::Silent { port, seconds: PATIENCE_S })
+    Err(FlashError::Silent { port, seconds: TIMEOUT_S })
 }

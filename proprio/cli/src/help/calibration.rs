@@ -10,7 +10,7 @@ impl Help for CalibrationError {
     fn help(&self) -> String {
         match self {
             Self::NoSensors => {
-                "write bend = [] in each segment of the arm description: it is a table then, for imu_o".to_owned()
+                "write bend = [] in each segment of the arm description, which makes it a table for imu_o".to_owned()
             }
             Self::SensorBAlone { .. } => "a segment's only sensor is called a: rename the column".to_owned(),
             Self::TruthMisfit { .. } => {
@@ -70,7 +70,7 @@ impl Help for AlignmentError {
                 "check that both are of the same run, that they overlap by a minute, and the order of the markers"
             }
             Self::Mirrored { .. } => {
-                "headings are clockwise positive, seen from above; see docs/CALIBRATION.md for the camera's axes"
+                "headings are clockwise positive, seen from above; see docs/tutorials/your-own-arm.md for the camera's axes"
             }
             Self::Ambiguous { .. } => {
                 "the motion repeats itself: move the arm unevenly, or record both from start to end"

@@ -15,12 +15,12 @@ impl Help for FlashError {
             Self::NoObjcopy(_) => {
                 "let rustup install the pinned toolchain: `rustup toolchain install` in the source's folder"
             }
-            Self::Failed { program, .. } => look(program),
-            Self::Temporary(_) => "make room, or let TMPDIR name a folder that can be written to",
-            Self::Silent { .. } => "press RESET, then `proprio status`; docs/FLASHING.md, Trouble",
-            Self::OtherTable { .. } => "see that the probe and the port are of one board, and flash again",
+            Self::Failed { program, .. } => check(program),
+            Self::Temporary(_) => "free disk space, or set TMPDIR to a folder that can be written to",
+            Self::Silent { .. } => "press RESET, then `proprio status`; docs/how-to/troubleshooting.md",
+            Self::OtherTable { .. } => "check that the probe and the port are of one board, and flash again",
             Self::Other(_) => {
-                "give this release's source with --source, and see that the probe and the port are of one board"
+                "give this release's source with --source, and check that the probe and the port are of one board"
             }
         };
         help.to_owned()
@@ -38,13 +38,13 @@ fn install(program: &str) -> &'static str {
     }
 }
 
-fn look(program: &str) -> &'static str {
+fn check(program: &str) -> &'static str {
     match program {
         "bossac" => {
-            "close what has the port open; docs/FLASHING.md, Trouble, explains each of its errors. The flash may be \
-             erased, which flashing again mends"
+            "close what has the port open; docs/how-to/troubleshooting.md explains each of its errors. The flash may be \
+             erased; flash again"
         }
-        "probe-rs" => "check the probe's cable and the board's supply; docs/FLASHING.md, Trouble",
+        "probe-rs" => "check the probe's cable and the board's supply; docs/how-to/troubleshooting.md",
         _ => "its message above has the reason; `rustup target add thumbv7m-none-eabi` if the target is missing",
     }
 }

@@ -17,15 +17,15 @@ impl Help for LinkError {
             Self::Open { source, .. } => open_remedy(source),
             Self::NoVirtualDue => "build it: cargo virtual-due --version",
             Self::NoFirmware(_) => {
-                "build it: cargo build --release -p firmware --target thumbv7m-none-eabi, or name one with --firmware"
+                "build it: cargo build --profile firmware -p firmware --target thumbv7m-none-eabi, or name one with --firmware"
             }
-            Self::Start { .. } => "build it again, or let PROPRIO_VIRTUAL_DUE name it",
+            Self::Start { .. } => "build it again, or set PROPRIO_VIRTUAL_DUE to its path",
             Self::Thread(_) => "close other programs",
             Self::Ended(_) => "see the messages of the board or its program",
             Self::Silent { .. } => {
-                "check that the firmware is on the board (docs/FLASHING.md) and that this is its programming port"
+                "check that the firmware is on the board (docs/how-to/flashing.md) and that this is its programming port"
             }
-            Self::Request(RequestError::Refused(_)) => "do what the board asks for first",
+            Self::Request(RequestError::Refused(_)) => "remove the reason that the board gives, and try again",
             Self::Request(_) => "try again; `proprio status` shows the state of the board",
         };
         help.to_owned()
@@ -48,10 +48,12 @@ impl Help for DriveError {
     fn help(&self) -> String {
         let help = match self {
             Self::OtherTable(_) => "put this table onto the board with `proprio flash --table`, or give the board's",
-            Self::Crashed(_) => "air off until it is understood; a second `proprio drive` takes it for understood",
+            Self::Crashed(_) => {
+                "turn the air off and find the cause; running `proprio drive` again acknowledges the crash"
+            }
             Self::Blind => "`proprio status` shows the state of each",
             Self::HeldBack { .. } => {
-                "see whether sensors are lost (`proprio status`); after three crashes a power cycle ends the safe mode"
+                "check for lost sensors (`proprio status`); after three crashes a power cycle ends the safe mode"
             }
             Self::Restarted => "`proprio status` shows the reason of the restart",
             Self::Lost(_) => "check the cable",

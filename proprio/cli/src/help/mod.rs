@@ -1,10 +1,11 @@
-//! Remedies: what to do about each error of the libraries.
+//! Remedies of the libraries' errors.
 
 mod calibration;
 mod flash;
 mod link;
 mod program;
 mod session;
+mod table;
 
 /// An error with a remedy.
 pub trait Help {

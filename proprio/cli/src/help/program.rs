@@ -14,7 +14,7 @@ impl Help for Error {
             Self::Drive(error) => return error.help(),
             Self::Flash(error) => return error.help(),
             Self::OutputTwice(_) => "give the output another name",
-            Self::Stdout(_) => "write to a place that has room, or use --out",
+            Self::Stdout(_) => "write to a disk with free space, or use --out",
             Self::SessionWithoutTable => "give the arm's table with --table",
             Self::OneSession(_) => "replay the sessions one by one",
             Self::Simulation(_) | Self::Seconds(_) | Self::Pressure(_) | Self::Ramp(_) => "give a value in this range",
@@ -27,7 +27,7 @@ impl Help for proprio_session::Error {
     fn help(&self) -> String {
         let help = match self {
             Self::Session(error) => return error.problem.help(),
-            Self::Table { source, .. } => source.remedy(),
+            Self::Table { source, .. } => return source.help(),
             Self::Output { .. } => "choose a folder that exists, can be written to and has room",
             Self::Overwrite(_) | Self::Exists(_) => "give the output another name",
             Self::OutputKind(_) => "give the output one of these endings",
@@ -66,7 +66,7 @@ impl Help for proprio_monitor::Error {
             Self::File(error) => error.help(),
             Self::Link(error) => error.help(),
             Self::Listen { .. } => "give another with --listen; is a monitor running already?".to_owned(),
-            Self::Random(_) => "watch without --allow-control".to_owned(),
+            Self::Random(_) => "run the monitor without --allow-control".to_owned(),
         }
     }
 }

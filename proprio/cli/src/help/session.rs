@@ -1,11 +1,11 @@
 //! Remedies of errors of sessions.
 
-use proprio_session::Problem;
+use proprio_session::SessionProblem;
 use proprio_session::recording::ReadError;
 
 use super::Help;
 
-impl Help for Problem {
+impl Help for SessionProblem {
     fn help(&self) -> String {
         let help = match self {
             Self::Read(_) | Self::Recording(ReadError::Read(_)) => "check the name and that you may read it",
@@ -13,7 +13,7 @@ impl Help for Problem {
             Self::NoHeader | Self::NoSamples | Self::NothingWhole => "record the session again, or take another",
             Self::NotText => "save it as CSV in UTF-8",
             Self::MissingColumn(_) => {
-                "take the arm or table of this session, or add the column; names are as in docs/FORMATS.md, between commas"
+                "take the arm or table of this session, or add the column; names are as in docs/reference/files.md, between commas"
             }
             Self::DuplicateColumn(_) => "remove or rename one of them",
             Self::OtherArm { .. } | Self::RecordedSegments(_) => {
@@ -34,16 +34,16 @@ impl Help for Problem {
             Self::Truth(_) => "correct the value, or leave all cells of this truth empty",
             Self::NotAFile => "save it as a file first",
             Self::Tare(_) => "write the number, or remove the column",
-            Self::Recording(ReadError::Cut) => "save what is whole of it with `proprio recover`",
+            Self::Recording(ReadError::Cut) => "recover its complete part with `proprio recover`",
             Self::Recording(ReadError::OtherForm(_) | ReadError::OtherProtocol(_)) => {
                 "read it with the proprio of that version"
             }
             Self::Recording(ReadError::Compressed(_)) => "decompress it (`mcap decompress`)",
             Self::Recording(ReadError::Damaged(_)) => {
-                "save what is whole of it with `proprio recover`, or take another"
+                "recover its complete part with `proprio recover`, or take another"
             }
             Self::TooManySegments(_) => "keep it as CSV",
-            Self::NoTruth => "give a session with the camera's truth, as docs/FORMATS.md has it",
+            Self::NoTruth => "give a session with the camera's truth (docs/reference/files.md)",
             Self::Heading(_) => "write headings from 0 up to a full turn: 360 in _deg, 2π in _rad",
             Self::Backwards { .. } => "sort the rows by time; two sessions in one file must be split",
             Self::PartialQuaternion | Self::NotUnit(_) => {

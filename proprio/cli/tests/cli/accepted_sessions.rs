@@ -126,7 +126,7 @@ fn points_in_metres_give_the_same_figures() {
     same_figures(&other, 1e-9);
 }
 
-/// Headings have five decimals, so that each is up to 5e-6° beside its quaternion: six of them move the tip, half a
+/// Headings have five decimals, so that each differs by up to 5e-6° from its quaternion: six of them move the tip, half a
 /// metre away, by less than 3e-4 mm. The anchored methods may step at its threshold a sample apart.
 #[test]
 fn quaternions_give_the_figures_of_their_headings() {

@@ -29,9 +29,9 @@ fn clocks_are_found_to_2_ms_and_10_ppm_at_100_hz() {
     }
 }
 
-/// An error that says less than there is would be worse than none.
+/// An estimated error must not be too small.
 #[test]
-fn the_residual_tells_a_clock_that_wanders_from_a_steady_one() {
+fn the_residual_separates_a_wandering_clock_from_a_steady_one() {
     let steady = Recording::short().align().numbers("residual")[0];
     let mut recording = Recording::short();
     // A triangle of ±25 ms: 14.4 ms RMS.
@@ -58,8 +58,8 @@ fn a_camera_that_saw_a_part_is_aligned_and_the_other_rows_stay_empty() {
         }
     }
     let with_truth = csv.rows.iter().filter(|cells| cells.iter().all(|cell| !cell.is_empty())).count();
-    let said = format!("{with_truth} of 9000 rows");
-    assert!(aligned.run.stdout.contains(&said), "{said}: {}", aligned.run.stdout);
+    let expected = format!("{with_truth} of 9000 rows");
+    assert!(aligned.run.stdout.contains(&expected), "{expected}: {}", aligned.run.stdout);
 }
 
 #[test]
@@ -197,7 +197,7 @@ fn a_marker_that_was_hidden_leaves_its_own_cells_empty() {
     assert!(empty("truth4_x_mm") < 5, "{}", empty("truth4_x_mm"));
 }
 
-/// Bend sensors lag and overshoot: the offset is as good as they are, and the residual says so.
+/// Bend sensors lag and overshoot, which limits the offset and shows in the residual.
 #[test]
 fn bend_sensors_do_where_no_imu_was_read() {
     let mut recording = Recording::long();

@@ -19,7 +19,7 @@ fn error_of_cell(mut session: Csv, column: &str, value: &str) -> String {
     error.strip_prefix(&place).unwrap_or_else(|| panic!("expected {place}, found {error}")).to_owned()
 }
 
-/// The error must say what it found.
+/// The error must contain the value.
 fn refuses(column: &str, value: &str) {
     let error = error_of_cell(session(), column, value);
     assert!(error.contains(value), "{error}");

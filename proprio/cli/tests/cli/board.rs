@@ -1,6 +1,6 @@
-//! A board that is none: the firmware's own estimator and frames, over what the twin's sensors read.
+//! A synthetic board: the firmware's estimator and frames, over the readings of the twin's sensors.
 
-use board_core::Arm;
+use board_core::BoardEstimator;
 use calibration_tables::ArmFile;
 use estimator_core::Q;
 use proprio_simulation::Simulation;
@@ -17,7 +17,7 @@ const IMUS_UP: u32 = 80;
 
 /// A board, from its boot on, frame by frame.
 pub struct SyntheticBoard {
-    arm: Arm,
+    estimator: BoardEstimator,
     encoder: Encoder,
     simulation: Simulation,
     boot: u32,
@@ -29,17 +29,18 @@ impl SyntheticBoard {
     /// The boot number of a board that then runs for some seconds.
     pub fn new(boot: u32, seconds: f64) -> Self {
         let file = ArmFile::load(table().as_ref()).expect("the reference table");
-        let baked = Box::leak(Box::new(file.bake::<Q>(TICK_HZ).expect("it bakes")));
-        let checksum = baked.checksum();
-        let mut arm = Arm::new(Box::leak(Box::new(baked.config())));
-        arm.start();
-        let simulation = Simulation::new(Scenario::One, 77 + u64::from(boot), seconds, TICK_HZ).expect("a valid run");
-        Self { arm, encoder: Encoder::new(), simulation, boot, tick: 0, table: checksum }
+        let compiled = Box::leak(Box::new(file.compile::<Q>(TICK_HZ).expect("it is a table")));
+        let checksum = compiled.checksum();
+        let mut estimator = BoardEstimator::new(Box::leak(Box::new(compiled.config())));
+        estimator.start();
+        let simulation =
+            Simulation::new(Scenario::FreeSwing, 77 + u64::from(boot), seconds, TICK_HZ).expect("a valid run");
+        Self { estimator, encoder: Encoder::new(), simulation, boot, tick: 0, table: checksum }
     }
 
     /// The arm is tared before the next sample.
     pub fn tare(&mut self) {
-        self.arm.tare();
+        self.estimator.tare();
     }
 
     /// The frames of the next tick, with the estimate that is in them.
@@ -48,21 +49,27 @@ impl SyntheticBoard {
         let tick = self.tick;
         self.tick += 1;
         let imu = if tick < IMUS_UP { [None; SEGMENTS] } else { read.quaternions };
-        if self.arm.is_due(tick, imu.iter().all(Option::is_some)) {
-            self.arm.tare();
+        if self.estimator.needs_first_tare(tick, imu.iter().all(Option::is_some)) {
+            self.estimator.tare();
         }
         let mut bend = read.counts;
         if tick % 50 == 7 {
             bend[(tick / 50) as usize % BEND_SENSORS] = None;
         }
-        let sample = Sample { tick, time_us: u64::from(tick) * 10_000 + 137, tare: self.arm.tares(), bend, imu };
-        let estimate = self.arm.step(&sample);
-        let contact = self.arm.contact(tick);
+        let sample = Sample {
+            tick,
+            time_us: u64::from(tick) * 10_000 + 137,
+            tare_epoch: self.estimator.tare_epoch(),
+            bend,
+            imu,
+        };
+        let estimate = self.estimator.update(&sample);
+        let contact = self.estimator.contact_event(tick);
         let mut messages = Vec::new();
         messages.extend(tick.is_multiple_of(100).then(|| Message::Hello(self.hello())));
         messages.extend([Message::Sample(sample), Message::Estimate(estimate)]);
         messages.extend(contact.map(Message::Event));
-        messages.extend(tick.is_multiple_of(25).then(|| Message::Uncertainty(self.arm.uncertainty(tick))));
+        messages.extend(tick.is_multiple_of(25).then(|| Message::Uncertainty(self.estimator.uncertainty(tick))));
         messages.extend(tick.is_multiple_of(20).then(|| Message::Health(health(tick))));
         let mut buffer = [0; MAX_FRAME];
         let frame = |message: &Message| self.encoder.encode(message, &mut buffer).expect("it fits").to_vec();
@@ -85,7 +92,7 @@ impl SyntheticBoard {
         }
     }
 
-    /// All that it says.
+    /// All bytes that it sends.
     pub fn bytes(self) -> Vec<u8> {
         self.flat_map(|(frames, _)| frames.concat()).collect()
     }
@@ -105,7 +112,7 @@ fn health(tick: u32) -> Health {
         tick,
         bend: [ok; BEND_SENSORS],
         imu: [ok; SEGMENTS],
-        longest_tick_us: 3000,
+        max_estimate_latency_us: 3000,
         longest_imu_read_us: 2000,
         load_permille: 100,
         overruns: 0,

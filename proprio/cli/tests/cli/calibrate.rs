@@ -29,7 +29,7 @@ fn every_sensors_rmse_is_printed_and_is_that_of_the_table() {
     }
 }
 
-/// The RMSE is what the map of the table leaves of the sweep's truth, computed anew from the CSV.
+/// The RMSE is that of the table's map against the sweep's truth, computed independently from the CSV.
 #[test]
 fn the_rmse_is_that_of_the_maps_on_the_sweep() {
     let (sweep, table) = (sweep(), Calibration::of(&sweep()).table());
@@ -84,7 +84,7 @@ fn the_same_sweep_gives_the_same_bytes() {
 }
 
 #[test]
-fn a_table_can_be_calibrated_anew() {
+fn a_table_can_be_calibrated_again() {
     let folder = Folder::with("sweep.csv", sweep().to_string());
     folder.done(&["calibrate", "sweep.csv", "--arm", arm(), "-o", "of-arm.toml"]);
     folder.done(&["calibrate", "sweep.csv", "--arm", table(), "-o", "of-table.toml"]);
@@ -193,7 +193,7 @@ fn what_changes_between_two_sweeps_widens_the_offset() {
     assert_eq!(offset_deg(&sweep()).to_bits(), 0.5_f64.to_bits());
     assert!((0.7..10.0).contains(&offset_deg(&other)), "{}", offset_deg(&other));
     let of_one = Calibration::of(&sweep()).table().drift.expect("calibrate writes it");
-    assert_eq!(of_one, calibration_tables::DriftKeys::kalman());
+    assert_eq!(of_one, calibration_tables::DriftToml::kalman());
 }
 
 #[test]

@@ -19,7 +19,7 @@ fn warnings(edit: impl FnOnce(&mut Csv)) -> Vec<String> {
     let warning = |line: &str| {
         line.strip_prefix("warning: sweep.csv: ").unwrap_or_else(|| panic!("no warning: {stderr}")).to_owned()
     };
-    // The twin's modules bend their two segments alike, whatever else is wrong.
+    // The two segments of the twin's modules are always coupled.
     stderr.lines().map(warning).filter(|warning| !warning.contains("bend alike")).collect()
 }
 
@@ -77,7 +77,7 @@ fn a_sensor_that_is_saturated_at_its_lower_end_is_named() {
     assert!(error.starts_with(": bend4b is saturated"), "{error}");
 }
 
-/// The two segments of a module bend alike, so that either may be named beside the sensor itself.
+/// The two segments of a module are coupled, so that either may be named with the sensor.
 #[test]
 fn sensors_swapped_between_modules_are_named() {
     let error = refused(|session| session.swap("bend1a_adc", "bend5a_adc"));
@@ -98,7 +98,7 @@ fn a_sensor_that_follows_nothing_is_named() {
 }
 
 #[test]
-fn a_sensor_that_cannot_tell_left_from_right_is_named() {
+fn a_sensor_with_the_same_reading_left_and_right_is_named() {
     let error = refused(|session| {
         let theta = theta_3(session);
         session.map("bend3a_adc", |row, _| format!("{:.0}", 2000.0 + 1500.0 * (theta[row] / 60.0).powi(2)));

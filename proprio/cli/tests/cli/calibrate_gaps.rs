@@ -105,7 +105,7 @@ fn the_sweeps_own_replay_is_as_good_as_its_residuals() {
 }
 
 #[test]
-fn the_reference_table_knows_the_sweep_of_another_day() {
+fn the_reference_table_fits_the_sweep_of_another_day() {
     let found = super::common::figure(&report(sweep()), "bend", "theta_rmse_deg");
     // Twice the paper's mean residual of one sensor.
     assert!(found < 2.0 * 4.72, "{found}°");

@@ -9,7 +9,7 @@ use std::{fmt, fs};
 use serde_json::Value;
 use tempfile::TempDir;
 
-/// What a run of the tool printed.
+/// Output of a run of the tool.
 #[derive(Debug)]
 pub struct Run {
     pub code: Option<i32>,
@@ -147,7 +147,7 @@ impl Csv {
         self.rows.iter().map(|row| number(&row[column])).collect()
     }
 
-    /// Makes every cell of a column anew, from its row's number and its text.
+    /// Replaces every cell of a column by a function of its row's number and its text.
     pub fn map(&mut self, name: &str, mut cell: impl FnMut(usize, &str) -> String) {
         let column = self.column(name);
         for (i, row) in self.rows.iter_mut().enumerate() {
@@ -155,7 +155,7 @@ impl Csv {
         }
     }
 
-    /// Makes the truth of an arm of six segments what `estimates` say by fusion, from a row on.
+    /// Sets the truth of an arm of six segments to the fused `estimates`, from a row on.
     pub fn follow(&mut self, estimates: &Self, from: usize) {
         let mut heading = vec![0.0; self.rows.len()];
         for i in 1..=6 {
@@ -227,7 +227,7 @@ pub fn table() -> &'static str {
     text(TABLE.get_or_init(|| tables().join("planar-6.toml")))
 }
 
-/// What `simulate` writes with these arguments.
+/// The session that `simulate` writes with these arguments.
 pub fn simulate(args: &str) -> Csv {
     let folder = Folder::new();
     let mut all = vec!["simulate", "-o", "session.csv"];
@@ -261,7 +261,7 @@ pub fn estimates(session: impl fmt::Display) -> Csv {
     folder.csv("est.csv")
 }
 
-/// What `replay --json` says of one session.
+/// Report of `replay --json` for one session.
 pub fn report(session: impl fmt::Display) -> Value {
     let folder = Folder::with("session.csv", session.to_string());
     json(&folder.done(&["replay", "session.csv", "--table", table(), "--json"]))

@@ -1,4 +1,4 @@
-//! `proprio convert`: what is kept to the bit, and what is said to be left out.
+//! `proprio convert`: values that are kept to the bit, and notes about those that are left out.
 
 use super::board::SyntheticBoard;
 use super::common::{Folder, Run, estimates, quaternion_session, session, table};
@@ -61,7 +61,7 @@ fn truth_goes_with_the_samples_and_the_figures_stay_the_same() {
 }
 
 #[test]
-fn headings_become_quaternions_and_that_is_said() {
+fn headings_become_quaternions_with_a_note() {
     let folder = Folder::with("a.csv", session().to_string());
     let run = convert(&folder, "a.csv", "a.mcap");
     assert!(run.stderr.contains("headings became quaternions"), "{}", run.stderr);
@@ -86,7 +86,7 @@ fn columns_that_are_none_of_a_sessions_are_named() {
 }
 
 #[test]
-fn a_session_says_where_the_arm_was_tared() {
+fn a_session_keeps_the_tares_of_the_arm() {
     let mut tared = quaternion_session();
     tared.push("tare", "0");
     for row in 75..150 {

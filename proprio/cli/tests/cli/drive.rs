@@ -1,4 +1,4 @@
-//! What `proprio drive` refuses before it looks for a board.
+//! Arguments that `proprio drive` refuses before it looks for a board.
 
 use super::common::Folder;
 
@@ -33,7 +33,7 @@ fn a_profile_lacks_no_regulator_and_has_rows() {
     assert_eq!(refused(&five), "profile.csv, line 1: column pressure4_kpa is missing");
     let twice = HEADER.replace("pressure4", "pressure3") + "0,0,0,0,0,0,0\n";
     assert_eq!(refused(&twice), "profile.csv, line 1: column pressure3_kpa is there twice");
-    assert_eq!(refused(HEADER), "profile.csv: has no pressures, expected a row a moment below the header");
+    assert_eq!(refused(HEADER), "profile.csv: has no pressures, expected a row for each point below the header");
     assert_eq!(refused(""), "profile.csv: is empty, expected a header line");
 }
 

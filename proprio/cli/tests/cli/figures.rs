@@ -160,10 +160,10 @@ fn the_table_for_people_has_the_figures_of_the_json() {
         .filter(|cells| cells.first() == Some(&"session.csv"))
         .collect();
     let figures = ["tip_rmse_mm", "tip_rmse_percent", "tip_p75_mm", "theta_rmse_deg"];
-    let (honesty, rows) = rows.split_last().expect("there are tables");
+    let (consistency, rows) = rows.split_last().expect("there are tables");
     assert_eq!(rows.len(), figures.len(), "{}", run.stdout);
     let nees = report["all"]["uncertainty"]["tip_nees"].as_f64().expect("a number");
-    assert_eq!(honesty[1], format!("{nees:.2}"));
+    assert_eq!(consistency[1], format!("{nees:.2}"));
     for (row, name) in rows.iter().zip(figures) {
         assert_eq!(row[1..3], ["150", "14.9"]);
         for (cell, method) in row[3..].iter().zip(["bend", "imu_o", "imu_c", "fusion"]) {

@@ -6,8 +6,8 @@ use std::path::Path;
 
 use super::common::{Folder, Run, error_of, table};
 
-const BUILD: &str = "cargo build --release -p firmware --target thumbv7m-none-eabi";
-const ELF: &str = "target/thumbv7m-none-eabi/release/firmware";
+const BUILD: &str = "cargo build --profile firmware -p firmware --target thumbv7m-none-eabi";
+const ELF: &str = "target/thumbv7m-none-eabi/firmware/firmware";
 const PROBE: &str = "echo 'The following debug probes were found:'; echo '[0]: J-Link -- 1366:0101:1 (J-Link)'";
 
 /// A folder with a source and programs. The one that runs is written, with the table that it is given, into `called`.
@@ -21,7 +21,7 @@ impl Bench {
         fs::create_dir_all(bench.0.path("sysroot/lib/rustlib/host/bin")).expect("there is room");
         fs::create_dir_all(&programs).expect("there is room");
         bench.0.write("source/firmware/Cargo.toml", "");
-        // What the scripts need, and nothing else of this machine.
+        // The scripts need a shell, and no other program of this machine.
         symlink("/bin/sh", programs.join("sh")).expect("there is room");
         let sysroot = bench.0.path("sysroot");
         let rustc = format!("case $2 in sysroot) echo {};; host-tuple) echo host;; esac", sysroot.display());
@@ -60,7 +60,7 @@ impl Bench {
         self.0.path("source").display().to_string()
     }
 
-    /// Where rust-objcopy finds the toolchain's LLVM.
+    /// Environment variable with which rust-objcopy finds the toolchain's LLVM.
     fn libraries(&self) -> String {
         let name = if cfg!(target_os = "macos") { "DYLD_LIBRARY_PATH" } else { "LD_LIBRARY_PATH" };
         format!("{name}={}/lib", self.0.path("sysroot").display())
@@ -77,7 +77,7 @@ impl Bench {
     }
 }
 
-/// The last line but one, without its `error: `: programs may have said something before.
+/// The last line but one, without its `error: `: programs may have printed lines before.
 fn error(run: &Run) -> String {
     assert_eq!(run.code, Some(2), "{}", run.stderr);
     let begin = run.stderr.find("error: ").unwrap_or_else(|| panic!("no error: {}", run.stderr));
@@ -143,7 +143,7 @@ fn what_a_dry_run_prints_is_what_runs_and_then_the_board_is_listened_to() {
     assert_eq!(*bossac, format!("{source}  bossac -a -p no-such-port -U0 -e -w -v -b -R {image}"));
     assert!(!Path::new(image).exists(), "the image is gone");
     assert_eq!(bench.left_over(), 0);
-    assert!(error(&run).contains("flashed, but not heard: /dev/no-such-port: cannot be opened"), "{}", run.stderr);
+    assert!(error(&run).contains("flashed, but not verified: /dev/no-such-port: cannot be opened"), "{}", run.stderr);
 }
 
 #[test]
@@ -189,7 +189,7 @@ fn a_table_that_cannot_be_used_is_refused_before_anything_runs() {
 #[test]
 fn an_interrupt_ends_it_after_the_command_that_runs_and_leaves_nothing() {
     let bench = Bench::new();
-    // As Ctrl-C in a terminal, which both hear.
+    // As Ctrl-C in a terminal, which both receive.
     bench.logged("bin/cargo", "kill -INT $PPID; /bin/sleep 1");
     let run = bench.flash(&["--source", "source"]);
     assert_eq!((run.code, run.stdout.as_str()), (Some(130), ""), "{}", run.stderr);

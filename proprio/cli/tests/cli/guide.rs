@@ -1,4 +1,4 @@
-//! The rehearsal of `docs/CALIBRATION.md`, as a reader types it, and what the guide says that it prints.
+//! The rehearsal of `docs/tutorials/first-run.md`, as a reader types it, and its output in the guide.
 
 use std::fs;
 use std::path::Path;
@@ -13,8 +13,8 @@ fn blocks<'g>(section: &'g str, language: &str) -> Vec<&'g str> {
 }
 
 #[test]
-fn the_rehearsal_runs_and_prints_what_the_guide_says() {
-    let guide = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/CALIBRATION.md");
+fn the_rehearsal_runs_and_prints_the_output_in_the_guide() {
+    let guide = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/tutorials/first-run.md");
     let guide = fs::read_to_string(guide).expect("the guide is committed");
     let (_, section) = guide.split_once("\n## Rehearsal\n").expect("the guide has a rehearsal");
 

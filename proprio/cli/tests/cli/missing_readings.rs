@@ -1,4 +1,4 @@
-//! Empty cells: what is not known stays empty, and everything else is said all the same.
+//! Empty cells: unknown estimates stay empty, and all others are written.
 
 use super::common::{Csv, estimates, session};
 
@@ -14,7 +14,7 @@ fn without(names: &[&str], row: usize) -> Csv {
     estimates(session)
 }
 
-/// Segments of which a method says nothing in a row, in its angles and its points.
+/// Segments without an estimate by a method in a row, for its angles and its points.
 fn unknown(estimates: &Csv, row: usize, method: &str) -> (Vec<usize>, Vec<usize>) {
     let empty = |quantity: &str| {
         let empty = |i: &usize| estimates.cell(row, &format!("{method}{i}_{quantity}")).is_empty();
@@ -103,7 +103,7 @@ fn a_row_without_readings_keeps_the_fused_shape() {
 }
 
 #[test]
-fn nothing_is_said_before_the_first_reading() {
+fn there_is_no_estimate_before_the_first_reading() {
     let mut session = session();
     for name in session.names.clone().iter().filter(|name| name.starts_with("bend") || name.starts_with("imu")) {
         session.map(name, |row, cell| if row < 3 { String::new() } else { cell.to_owned() });

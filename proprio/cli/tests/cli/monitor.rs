@@ -12,7 +12,7 @@ const SESSION: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../host-tests/ses
 fn a_session_without_a_table_is_refused() {
     let folder = Folder::with("session.csv", "time_s\n");
     let error = folder.refused(&["monitor", "session.csv"]);
-    assert_eq!(error, "a session is shown by what the estimator makes of it, and that takes a table");
+    assert_eq!(error, "a session is shown with the estimates of a replay, which needs a table");
 }
 
 #[test]
@@ -39,7 +39,7 @@ fn what_makes_no_sense_together_is_refused() {
 }
 
 #[test]
-fn the_page_of_a_session_is_where_the_command_says() {
+fn the_page_of_a_session_is_at_the_printed_address() {
     let folder = Folder::new();
     let mut command = folder.command(&["monitor", SESSION, "--table", table(), "--listen", "0"]);
     let mut monitor = command.stdout(Stdio::piped()).spawn().expect("the tool starts");

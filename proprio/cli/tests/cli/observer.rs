@@ -1,4 +1,4 @@
-//! The drift observer beside the anchor, and the correction of hysteresis.
+//! The drift observer compared with the anchor, and the correction of hysteresis.
 
 use std::fs;
 

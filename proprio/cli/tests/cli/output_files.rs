@@ -199,7 +199,7 @@ fn an_interrupt_leaves_nothing_behind() {
 }
 
 #[test]
-fn estimates_are_written_although_nobody_reads_the_figures() {
+fn estimates_are_written_although_standard_output_is_closed() {
     let (reader, writer) = std::io::pipe().expect("the system has pipes");
     drop(reader);
     let folder = with_session();

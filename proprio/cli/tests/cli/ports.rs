@@ -28,9 +28,9 @@ fn the_speed_that_erases_the_board_is_refused() {
 }
 
 #[test]
-fn without_the_emulator_it_is_said_how_to_build_it() {
+fn without_the_emulator_the_error_names_the_command_that_builds_it() {
     let folder = Folder::new();
-    // Away from the emulator that may stand beside the tool.
+    // Away from an emulator in the folder of the tool.
     let tool = folder.path("proprio");
     std::fs::copy(env!("CARGO_BIN_EXE_proprio"), &tool).expect("there is room");
     let mut command = std::process::Command::new(tool);

@@ -30,7 +30,7 @@ fn ticks(board: SyntheticBoard) -> Vec<Vec<u8>> {
     board.map(|(frames, _)| frames.concat()).collect()
 }
 
-/// What `replay --json` says of the recorded estimates, and the line that it says on stderr.
+/// Report of `replay --json` about the recorded estimates, and its line on stderr.
 pub fn recorded(folder: &Folder, name: &str) -> (Value, String) {
     let run = folder.done(&["replay", name, "--table", table(), "--json"]);
     (json(&run)["sessions"][0]["recorded"].clone(), run.stderr)
@@ -53,7 +53,7 @@ fn replayed_with(change: impl Fn(&mut Message)) -> (Value, String) {
 }
 
 #[test]
-fn a_replay_gives_the_recorded_estimates_bit_for_bit_and_says_so() {
+fn a_replay_gives_the_recorded_estimates_bit_for_bit_and_reports_it() {
     let (recorded, stderr) = replayed(record(ticks(SyntheticBoard::new(1, 20.0))));
     assert_eq!(
         (&recorded["estimates"], &recorded["equal"], &recorded["not_compared"]),
@@ -68,7 +68,7 @@ fn a_replay_gives_the_recorded_estimates_bit_for_bit_and_says_so() {
 }
 
 #[test]
-fn the_estimator_starts_anew_where_the_boards_did() {
+fn the_estimator_restarts_where_the_board_did() {
     let mut board = SyntheticBoard::new(1, 10.0);
     let mut pieces = Vec::new();
     for tick in 0..1000 {
@@ -112,7 +112,7 @@ fn the_first_estimate_that_differs_is_named() {
 }
 
 #[test]
-fn an_uncertainty_that_differs_by_a_bit_is_said() {
+fn an_uncertainty_that_differs_by_a_bit_is_reported() {
     let (recorded, stderr) = replayed_with(|message| {
         if let Message::Uncertainty(uncertainty) = message
             && uncertainty.tick == 300
@@ -127,7 +127,7 @@ fn an_uncertainty_that_differs_by_a_bit_is_said() {
 }
 
 #[test]
-fn a_contact_that_was_none_is_said() {
+fn a_recorded_contact_that_the_replay_lacks_is_reported() {
     let (recorded, stderr) = replayed_with(|message| {
         // In an event's place, which costs nothing else.
         if let Message::Health(health) = message
@@ -191,7 +191,7 @@ fn a_lost_estimate_costs_nothing_else() {
 }
 
 #[test]
-fn another_table_is_said_to_be_why_estimates_differ() {
+fn another_table_is_reported_as_the_cause_of_different_estimates() {
     let folder = Folder::with("session.mcap", record(ticks(SyntheticBoard::new(1, 5.0))));
     let other = std::fs::read_to_string(table()).expect("the reference table").replacen(
         "length_mm = 80.0",
@@ -205,7 +205,7 @@ fn another_table_is_said_to_be_why_estimates_differ() {
 }
 
 #[test]
-fn a_replay_in_floats_says_nothing_of_the_boards_estimates() {
+fn a_replay_in_floats_is_not_compared_with_the_boards_estimates() {
     let folder = Folder::with("session.mcap", record(ticks(SyntheticBoard::new(1, 2.0))));
     let run = folder.done(&["replay", "session.mcap", "--table", table(), "--json", "--float"]);
     assert_eq!(json(&run)["sessions"][0].get("recorded"), None);
@@ -253,7 +253,7 @@ fn a_recording_of_a_longer_arm_is_refused() {
 }
 
 #[test]
-fn calibrate_asks_for_the_truth_that_a_recording_lacks() {
+fn calibrate_refuses_a_recording_without_truth() {
     let folder = Folder::with("session.mcap", record(ticks(SyntheticBoard::new(1, 12.0))));
     let error = folder.refused(&["calibrate", "session.mcap", "--arm", super::common::arm(), "-o", "table.toml"]);
     assert!(error.contains("has no truth"), "{error}");
@@ -269,7 +269,7 @@ fn a_cut_recording_is_refused_with_the_way_to_save_it() {
     assert!(run.stderr.contains("proprio recover"), "{}", run.stderr);
 }
 
-/// Wherever a file is cut, all but its last chunk is saved, and replays bit for bit.
+/// All but the last chunk of a file that is cut at any byte is recovered, and replays bit for bit.
 #[test]
 fn a_recording_that_is_cut_at_any_byte_loses_no_more_than_its_last_second() {
     let recording = record(ticks(SyntheticBoard::new(1, 20.0)));
@@ -278,13 +278,13 @@ fn a_recording_that_is_cut_at_any_byte_loses_no_more_than_its_last_second() {
         let cut = 4096 + random.next_u32() as usize % (recording.len() - 4096);
         let folder = Folder::with("cut.mcap", &recording[..cut]);
         let run = folder.done(&["recover", "cut.mcap", "-o", "whole.mcap"]);
-        assert!(run.stderr.contains("saved of a file that was cut"), "{}", run.stderr);
+        assert!(run.stderr.contains("recovered from a file that was cut"), "{}", run.stderr);
         let (recorded, stderr) = recorded(&folder, "whole.mcap");
         assert_eq!(recorded["first_difference"], Value::Null, "cut at {cut}: {stderr}");
         assert_eq!(recorded["equal"], recorded["estimates"], "cut at {cut}: {stderr}");
         let saved = recorded["equal"].as_u64().expect("a count");
         let at_best = 2000 * cut as u64 / recording.len() as u64;
-        assert!(saved + 200 > at_best, "cut at {cut}: {saved} saved of about {at_best}");
+        assert!(saved + 200 > at_best, "cut at {cut}: {saved} recovered of about {at_best}");
     }
 }
 
@@ -305,12 +305,12 @@ fn a_flipped_bit_costs_what_follows_and_is_never_read() {
 }
 
 #[test]
-fn a_recording_of_a_board_of_another_protocol_is_refused_and_says_so() {
+fn a_recording_of_another_protocol_version_is_refused_with_both_versions() {
     // COBS( 1 | CRC-32 ): a frame of version 1 without anything in it.
     let frame = [[6, 1].as_slice(), &0xa505_df1b_u32.to_le_bytes(), &[0]].concat();
     let folder = Folder::with("old.mcap", record([frame]));
     let error = folder.refused(&["replay", "old.mcap", "--table", table()]);
-    assert!(error.contains("its board spoke protocol version 1, and this proprio reads version 2"), "{error}");
+    assert!(error.contains("its board used protocol version 1, and this proprio reads version 2"), "{error}");
 }
 
 #[test]

@@ -111,7 +111,7 @@ fn a_recording_ends_after_its_time_and_replaces_no_other() {
 }
 
 #[test]
-fn a_board_that_says_nothing_has_no_status() {
+fn a_silent_board_has_no_status() {
     let folder = Folder::new();
     let (_board, port) = TTYPort::pair().expect("the system has pseudo-terminals");
     let name = port.name().expect("it has a name");

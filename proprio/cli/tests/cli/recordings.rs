@@ -4,11 +4,11 @@ use std::sync::OnceLock;
 
 use super::common::{Csv, Folder, Run, arm};
 
-/// What the twin's camera shows when its rig's clock shows 0, and by how much it is faster.
+/// Time of the twin's camera at time 0 of the rig's clock, s, and the share by which it is faster.
 const TWIN_AHEAD_S: f64 = 1_760_000_000.0;
 const TWIN_FAST: f64 = 80e-6;
 
-/// A session without truth and the camera's file beside it.
+/// A session without truth and its camera's file.
 #[derive(Clone)]
 pub struct Recording {
     pub session: Csv,
@@ -16,7 +16,7 @@ pub struct Recording {
 }
 
 impl Recording {
-    /// What `simulate --camera` writes with these arguments.
+    /// The files that `simulate --camera` writes with these arguments.
     pub fn simulate(args: &str) -> Self {
         let folder = Folder::new();
         let mut all = vec!["simulate", "-o", "session.csv", "--camera", "camera.csv"];
@@ -109,7 +109,7 @@ impl Aligned {
         found.split([' ', ',']).filter_map(|word| word.parse().ok()).collect()
     }
 
-    /// How far the offset is from that of a clock as of [`Recording::with_clock`], ms.
+    /// Error of the offset for a clock as of [`Recording::with_clock`], ms.
     pub fn offset_error_ms(&self, offset_s: f64, ppm: f64) -> f64 {
         let [found_s, _, at_s] = self.numbers("offset")[..] else { panic!("{}", self.run.stdout) };
         (found_s - offset_s - at_s * ppm * 1e-6) * 1e3

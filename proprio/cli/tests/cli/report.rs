@@ -1,4 +1,4 @@
-//! The page of `report`: whole, self-contained, with every figure, whatever the sessions lack, and no file where it fails.
+//! The page of `report`: complete, self-contained, with every figure for all kinds of sessions, and no file where it fails.
 
 use super::common::{Csv, Folder, arm, json, session, table};
 
@@ -126,7 +126,7 @@ fn the_head_names_table_checksum_sessions_samples_and_version() {
     let page = page_of(&two_sessions(), &["one.csv", "two.csv"], table());
     let header = between(&page, "<header>", "</header>")[0];
     let file = calibration_tables::ArmFile::load(table().as_ref()).expect("the reference table");
-    let checksum = file.bake::<estimator_core::Q>(10.0).expect("a table").checksum();
+    let checksum = file.compile::<estimator_core::Q>(10.0).expect("a table").checksum();
     for expected in [
         table(),
         &format!("{checksum:08x}"),

@@ -1,6 +1,6 @@
 //! A board that restarted inside a recording: headings have a new zero from there on, and nothing is worse for it.
 
-use calibration_tables::{ArmFile, SegmentKeys};
+use calibration_tables::{ArmFile, SegmentToml};
 
 use super::common::{Calibration, Csv, Folder, anchored, arm, figure, json, simulate, sweep};
 use super::recordings::Recording;
@@ -60,7 +60,7 @@ fn a_sweep_in_which_the_board_restarted_gives_the_same_maps() {
 }
 
 /// A board that restarts vents the arm, which is straight again when it tares. Errors of two such runs are between those of
-/// each by itself, but for the maps, which are those of both.
+/// each alone, but for the maps, which are those of both.
 #[test]
 fn sweeps_one_after_the_other_with_a_restart_between_have_the_errors_of_both() {
     let other = simulate("--scenario sweep --seconds 600 --seed 42");
@@ -73,7 +73,7 @@ fn sweeps_one_after_the_other_with_a_restart_between_have_the_errors_of_both() {
     }));
     let both = calibrated_with_anchor(&restarted(both, &[6000]));
     for (i, found) in both.segments.iter().enumerate() {
-        let variances = |segment: &SegmentKeys| {
+        let variances = |segment: &SegmentToml| {
             let (orient, coord) = (segment.orient.as_ref().expect("stated"), segment.coord.as_ref().expect("stated"));
             [orient.r_imu, orient.r_bend, coord.r_imu, coord.r_bend]
         };
@@ -85,7 +85,7 @@ fn sweeps_one_after_the_other_with_a_restart_between_have_the_errors_of_both() {
     }
 }
 
-/// A sensor's memory starts where a run starts, wherever the arm is.
+/// A sensor's memory starts where a run starts, at any pose of the arm.
 #[test]
 fn the_hysteresis_of_a_sweep_in_which_the_board_restarted_is_corrected_as_well() {
     let bend = |session: &Csv| {

@@ -1,4 +1,4 @@
-//! `replay --smooth`: the estimates by all readings of a session, beside those that a board makes.
+//! `replay --smooth`: the estimates from all readings of a session, compared with those of a board.
 
 use std::sync::OnceLock;
 
@@ -94,7 +94,7 @@ fn the_tare_and_the_end_of_a_session_are_those_of_fusion() {
 
 /// As a board that was tared again in between: the pieces know nothing of each other.
 #[test]
-fn each_piece_of_a_session_that_starts_anew_is_smoothed_by_itself() {
+fn each_run_of_the_estimator_in_a_session_is_smoothed_separately() {
     let (first, second) =
         (simulate("--scenario 1 --seconds 120 --seed 53"), simulate("--scenario 2 --seconds 250 --seed 54"));
     let mut both = first.clone();

@@ -42,7 +42,7 @@ fn a_closed_pipe_is_no_failure() {
 }
 
 #[test]
-fn an_error_that_nobody_can_read_still_has_status_2() {
+fn an_error_with_a_closed_stderr_still_has_status_2() {
     let (reader, writer) = std::io::pipe().expect("the system has pipes");
     drop(reader);
     let folder = Folder::new();
@@ -60,7 +60,7 @@ fn an_error_on_a_full_standard_error_still_has_status_2() {
 }
 
 #[test]
-fn a_good_replay_says_nothing_on_stderr() {
+fn a_good_replay_prints_nothing_on_stderr() {
     let run = with_session().done(&["replay", "session.csv", "--table", table()]);
     assert_eq!(run.stderr, "");
 }
@@ -77,7 +77,7 @@ fn an_error_has_no_escape_codes_where_stderr_is_no_terminal() {
     assert!(run.stderr.starts_with("error: ") && !run.stderr.contains('\u{1b}'), "{:?}", run.stderr);
 }
 
-/// Colours are forced and forbidden at once: forbidden wins, as <https://no-color.org> asks.
+/// Colours are forced and forbidden at once: forbidden wins, as <https://no-color.org> requires.
 #[test]
 fn no_color_wins_over_forced_colours() {
     let folder = Folder::new();

@@ -1,9 +1,9 @@
-//! `tune` on good sessions: what the table becomes, what is told of it, and how a run ends.
+//! `tune` on good sessions: the tuned table, its report, and the end of a run.
 
 use std::path::Path;
 use std::sync::OnceLock;
 
-use calibration_tables::{ArmFile, NoiseKeys, Stopped, TuningKeys};
+use calibration_tables::{ArmFile, NoiseToml, StopReason, TuningToml};
 
 use super::common::{Csv, Folder, Run, figure, json, simulate, table};
 
@@ -24,7 +24,7 @@ fn with_anchor() -> ArmFile {
 pub fn spoiled() -> String {
     let mut file = with_anchor();
     for segment in &mut file.segments {
-        let noise = NoiseKeys { q: 2e-3, r_imu: 1e-3, r_bend: 1e-3, h_imu: 0.98, h_bend: 1.03 };
+        let noise = NoiseToml { q: 2e-3, r_imu: 1e-3, r_bend: 1e-3, h_imu: 0.98, h_bend: 1.03 };
         (segment.orient, segment.coord) = (Some(noise.clone()), Some(noise));
     }
     file.to_toml()
@@ -54,20 +54,21 @@ impl Tuned {
         load(self.folder.path("tuned.toml"))
     }
 
-    fn record(&self) -> TuningKeys {
+    fn record(&self) -> TuningToml {
         self.file().tuning.expect("a tuned table has a record")
     }
 }
 
 #[test]
 fn a_spoiled_tables_errors_fall_and_those_held_back_as_well() {
-    let TuningKeys { before, after, held_back_before, held_back_after, stopped, .. } = Tuned::new(&spoiled()).record();
-    for (before, after) in [(before, after), (held_back_before, held_back_after)] {
+    let TuningToml { before, after, validation_before, validation_after, stop_reason, .. } =
+        Tuned::new(&spoiled()).record();
+    for (before, after) in [(before, after), (validation_before, validation_after)] {
         assert!(after.position_rmse_mm < 0.7 * before.position_rmse_mm, "{before:?} {after:?}");
         assert!(after.tip_rmse_mm < 0.7 * before.tip_rmse_mm, "{before:?} {after:?}");
         assert!(after.heading_rmse_deg < 0.9 * before.heading_rmse_deg, "{before:?} {after:?}");
     }
-    assert_eq!(stopped, Stopped::Converged);
+    assert_eq!(stop_reason, StopReason::Converged);
 }
 
 /// Checks that the record's tip RMSE of the two parts comes together to what `replay --float` finds with both tables.
@@ -76,7 +77,7 @@ pub fn assert_record_is_what_replay_finds(folder: &Folder, session: &Csv) {
     let rows = session.rows.len() as f64;
     let held_back = (rows / 5.0).floor();
     for (name, seen, held) in
-        [("table.toml", record.before, record.held_back_before), ("tuned.toml", record.after, record.held_back_after)]
+        [("table.toml", record.before, record.validation_before), ("tuned.toml", record.after, record.validation_after)]
     {
         let squares = (rows - held_back) * seen.tip_rmse_mm.powi(2) + held_back * held.tip_rmse_mm.powi(2);
         let expected = (squares / rows).sqrt();
@@ -116,7 +117,7 @@ fn the_record_names_the_sessions_in_their_order() {
 fn the_figures_and_the_time_of_an_iteration_are_printed() {
     let tuned = Tuned::new(&spoiled());
     let (record, stdout) = (tuned.record(), &tuned.run.stdout);
-    let parts = [record.before, record.after, record.held_back_before, record.held_back_after];
+    let parts = [record.before, record.after, record.validation_before, record.validation_after];
     let line = |name: &str| {
         let line = stdout.lines().find(|line| line.trim_start().starts_with(name));
         line.unwrap_or_else(|| panic!("no line {name}: {stdout}")).to_owned()
@@ -157,7 +158,7 @@ fn a_table_with_the_anchor_and_without_filters_gets_some() {
     file.segments.iter_mut().for_each(|segment| (segment.orient, segment.coord) = (None, None));
     let tuned = Tuned::new(&file.to_toml());
     assert!(tuned.file().segments.iter().all(|segment| segment.orient.is_some() && segment.coord.is_some()));
-    assert!(tuned.record().held_back_after.tip_rmse_mm < tuned.record().held_back_before.tip_rmse_mm);
+    assert!(tuned.record().validation_after.tip_rmse_mm < tuned.record().validation_before.tip_rmse_mm);
 }
 
 #[test]
@@ -168,7 +169,7 @@ fn a_calibration_of_a_tuned_table_forgets_the_tuning() {
     assert_eq!(load(tuned.folder.path("anew.toml")).tuning, None);
 }
 
-/// Truth that the old filters meet to a thousandth of a degree while it is held back: whatever descent finds is worse there.
+/// Truth that the old filters meet to a thousandth of a degree in the validation part: any other filters are worse there.
 #[test]
 fn filters_that_are_worse_on_what_is_held_back_are_not_kept() {
     let mut session = training();
@@ -182,9 +183,9 @@ fn filters_that_are_worse_on_what_is_held_back_are_not_kept() {
     let run = folder.done(&TUNE);
     let (before, after) = (load(folder.path("table.toml")), load(folder.path("tuned.toml")));
     let record = after.tuning.expect("a record");
-    assert!(record.kept == 0 && record.iterations > 0, "{record:?}");
+    assert!(record.best_iteration == 0 && record.iterations > 0, "{record:?}");
     assert_eq!(before.segments, after.segments);
-    assert!(run.stderr.starts_with("warning: ") && run.stderr.contains("held back"), "{}", run.stderr);
+    assert!(run.stderr.starts_with("warning: ") && run.stderr.contains("validation error"), "{}", run.stderr);
     assert_eq!(run.stderr.lines().count(), 1, "{}", run.stderr);
 }
 

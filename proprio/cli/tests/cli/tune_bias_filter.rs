@@ -1,13 +1,13 @@
 //! `tune` of the bias filter's parameters and of the variances.
 
-use calibration_tables::{ArmFile, DriftKeys, DriftTuningKeys, Stopped, TuningKeys, UncertaintyKeys};
+use calibration_tables::{ArmFile, DriftToml, DriftTuningToml, StopReason, TuningToml, UncertaintyToml};
 use serde::de::IgnoredAny;
 
 use super::common::{Csv, Folder, figure, json, simulate, table};
 use super::tune::{TUNE, assert_record_is_what_replay_finds, load, training};
 
 /// The reference table with this bias filter and these error sources.
-pub fn with_bias_filter(drift: DriftKeys, uncertainty: Option<UncertaintyKeys>) -> String {
+pub fn with_bias_filter(drift: DriftToml, uncertainty: Option<UncertaintyToml>) -> String {
     let mut file = load(table());
     (file.drift, file.uncertainty) = (Some(drift), uncertainty);
     file.to_toml()
@@ -15,19 +15,19 @@ pub fn with_bias_filter(drift: DriftKeys, uncertainty: Option<UncertaintyKeys>) 
 
 /// Rates a tenth of those that the search finds: the bias filter hardly learns. From 0.001°/s the tip's error grows up to
 /// 0.01°/s, and falls only beyond that; a search that keeps within a decade does not get there.
-fn timid() -> DriftKeys {
-    DriftKeys { rate_deg_per_s: 0.02, rate_random_walk_deg_per_s_sqrt_s: 1e-5, ..DriftKeys::kalman() }
+fn timid() -> DriftToml {
+    DriftToml { rate_deg_per_s: 0.02, rate_random_walk_deg_per_s_sqrt_s: 1e-5, ..DriftToml::kalman() }
 }
 
 /// Deviations for which the errors are too large, or too small, by this factor.
-fn deviations(factor: f64) -> UncertaintyKeys {
+fn deviations(factor: f64) -> UncertaintyToml {
     let [theta_deg, bias_share, bend_deg, contact_deg, heading_deg, end_mm] =
         [0.1, 0.1, 3.0, 0.5, 0.6, 0.5].map(|key| key * factor);
-    UncertaintyKeys { theta_deg, bias_share, retired: IgnoredAny, bend_deg, contact_deg, heading_deg, end_mm }
+    UncertaintyToml { theta_deg, bias_share, retired: IgnoredAny, bend_deg, contact_deg, heading_deg, end_mm }
 }
 
 /// A folder with the table before and after, and its record.
-fn tuned(session: &Csv, table: String) -> (Folder, ArmFile, TuningKeys) {
+fn tuned(session: &Csv, table: String) -> (Folder, ArmFile, TuningToml) {
     let folder = Folder::with("session.csv", session.to_string());
     folder.write("table.toml", table);
     folder.done(&TUNE);
@@ -42,7 +42,7 @@ fn a_bias_filter_that_hardly_learns_becomes_a_better_one_for_other_runs_of_its_k
     let (folder, file, record) = tuned(&session, with_bias_filter(timid(), None));
     let drift = file.drift.expect("it has a bias filter");
     let tuned = record.drift.expect("it was tuned");
-    let DriftTuningKeys { rate_deg_per_s, rate_random_walk_deg_per_s_sqrt_s, offset_deg, runs, .. } = tuned;
+    let DriftTuningToml { rate_deg_per_s, rate_random_walk_deg_per_s_sqrt_s, offset_deg, runs, .. } = tuned;
     let before = timid();
     for (found, before, after) in [
         (rate_deg_per_s, before.rate_deg_per_s, drift.rate_deg_per_s),
@@ -85,7 +85,7 @@ fn nothing_but_the_bias_filter_and_the_record_changes() {
     (before.drift, before.uncertainty) = (Some(timid()), None);
     before.segments = ArmFile::parse(&super::tune::spoiled()).expect("a valid table").segments;
     let (folder, mut after, record) = tuned(&training(), before.to_toml());
-    assert_eq!((record.iterations, record.kept, record.stopped), (0, 0, Stopped::Converged));
+    assert_eq!((record.iterations, record.best_iteration, record.stop_reason), (0, 0, StopReason::Converged));
     assert_ne!(before.drift, after.drift);
     before = load(folder.path("table.toml"));
     for file in [&mut before, &mut after] {
@@ -104,9 +104,9 @@ fn the_bias_filter_before_and_after_is_printed() {
     assert!(stdout.contains("runs of the estimator") && stdout.contains("variances are "), "{stdout}");
 }
 
-/// On what is held back, the truth is what the table from before estimates: anything better before it is worse there.
+/// In the validation part the truth is the estimate of the original table: a filter that is better before it is worse there.
 #[test]
-fn a_bias_filter_that_is_worse_on_what_is_held_back_is_not_kept() {
+fn a_bias_filter_with_a_worse_validation_error_is_not_kept() {
     let mut session = simulate("--scenario 1 --seconds 300 --seed 55");
     let before = with_bias_filter(timid(), None);
     let folder = Folder::with("session.csv", session.to_string());
@@ -121,17 +121,17 @@ fn a_bias_filter_that_is_worse_on_what_is_held_back_is_not_kept() {
 #[test]
 fn a_table_with_the_anchor_has_no_more_than_its_filters_tuned() {
     let (folder, file, record) = tuned(&training(), super::tune::spoiled());
-    assert_eq!((record.drift, record.variances, file.drift, file.uncertainty), (None, None, None, None));
+    assert_eq!((record.drift, record.covariance_inflation, file.drift, file.uncertainty), (None, None, None, None));
     assert!(!folder.read("tuned.toml").contains("drift"));
 }
 
-/// `replay` on the part that is not held back finds the factor.
+/// `replay` on the training part gives the factor.
 #[test]
 fn variances_that_are_too_small_grow_by_one_factor_to_what_the_errors_are() {
     let small = deviations(0.1);
     let mut session = training();
-    let (folder, mut file, record) = tuned(&session, with_bias_filter(DriftKeys::kalman(), Some(small.clone())));
-    let factor = record.variances.expect("the table says what errors come from");
+    let (folder, mut file, record) = tuned(&session, with_bias_filter(DriftToml::kalman(), Some(small.clone())));
+    let factor = record.covariance_inflation.expect("the table has error sources");
     let grown = file.uncertainty.replace(small.clone()).expect("it still does");
     assert!(factor > 1.0, "{factor}");
     for (before, after, by) in [
@@ -156,15 +156,15 @@ fn variances_that_are_too_small_grow_by_one_factor_to_what_the_errors_are() {
 #[test]
 fn variances_that_are_too_large_stay_as_they_are() {
     let large = deviations(2.0);
-    let (_, file, record) = tuned(&training(), with_bias_filter(DriftKeys::kalman(), Some(large.clone())));
-    assert_eq!((file.uncertainty, record.variances), (Some(large), Some(1.0)));
+    let (_, file, record) = tuned(&training(), with_bias_filter(DriftToml::kalman(), Some(large.clone())));
+    assert_eq!((file.uncertainty, record.covariance_inflation), (Some(large), Some(1.0)));
 }
 
 #[test]
 fn variances_grow_no_further_than_a_table_may_say() {
-    let small = UncertaintyKeys { contact_deg: 8.9, ..deviations(0.1) };
+    let small = UncertaintyToml { contact_deg: 8.9, ..deviations(0.1) };
     let end_mm = small.end_mm;
-    let (_, file, _) = tuned(&training(), with_bias_filter(DriftKeys::kalman(), Some(small)));
+    let (_, file, _) = tuned(&training(), with_bias_filter(DriftToml::kalman(), Some(small)));
     assert!(file.uncertainty.is_some_and(|keys| keys.contact_deg <= 9.0 && keys.end_mm > 1.1 * end_mm));
 }
 

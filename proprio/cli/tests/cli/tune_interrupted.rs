@@ -5,7 +5,7 @@ use std::process::{Command, Stdio};
 use std::thread::sleep;
 use std::time::Duration;
 
-use calibration_tables::{ArmFile, DriftKeys, Stopped};
+use calibration_tables::{ArmFile, DriftToml, StopReason};
 
 use super::common::{Folder, Run, simulate};
 use super::tune::{TUNE, spoiled};
@@ -36,7 +36,7 @@ fn run_until_heeded(folder: &Folder) -> Run {
 }
 
 #[test]
-fn an_interrupted_tuning_leaves_the_best_table_so_far_and_says_so() {
+fn an_interrupted_tuning_writes_the_best_table_so_far_and_reports_it() {
     let folder = Folder::with("session.csv", simulate("--scenario 1 --seconds 600 --seed 54").to_string());
     folder.write("table.toml", spoiled());
     let run = run_until_heeded(&folder);
@@ -46,8 +46,8 @@ fn an_interrupted_tuning_leaves_the_best_table_so_far_and_says_so() {
 
     let table = ArmFile::load(&folder.path("tuned.toml")).expect("a valid table");
     let record = table.tuning.expect("a tuned table has a record");
-    assert_eq!(record.stopped, Stopped::Interrupted);
-    assert_eq!(record.kept, record.iterations);
+    assert_eq!(record.stop_reason, StopReason::Interrupted);
+    assert_eq!(record.best_iteration, record.iterations);
     assert!(record.after.position_rmse_mm <= record.before.position_rmse_mm, "{record:?}");
     assert!(folder.run(&["replay", "session.csv", "--table", "tuned.toml"]).code == Some(0));
     let entries = std::fs::read_dir(folder.path("")).expect("the folder is there").count();
@@ -58,10 +58,10 @@ fn an_interrupted_tuning_leaves_the_best_table_so_far_and_says_so() {
 #[test]
 fn an_interrupted_search_for_the_bias_filter_ends_the_tuning_with_a_table() {
     let folder = Folder::with("session.csv", simulate("--scenario 1 --seconds 600 --seed 54").to_string());
-    folder.write("table.toml", with_bias_filter(DriftKeys::kalman(), None));
+    folder.write("table.toml", with_bias_filter(DriftToml::kalman(), None));
     let run = run_until_heeded(&folder);
     assert_eq!(run.code, Some(0), "{}", run.stderr);
     let record = ArmFile::load(&folder.path("tuned.toml")).expect("a valid table").tuning.expect("a record");
-    assert_eq!((record.stopped, record.iterations, record.kept), (Stopped::Interrupted, 0, 0));
+    assert_eq!((record.stop_reason, record.iterations, record.best_iteration), (StopReason::Interrupted, 0, 0));
     assert!(record.drift.is_some_and(|drift| drift.runs > 0), "it was in the search");
 }

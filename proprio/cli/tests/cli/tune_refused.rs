@@ -1,4 +1,4 @@
-//! What filters cannot be tuned on: each refused by the name of the file, with what was expected, and no table written.
+//! Sessions and tables that cannot be tuned: each is refused with the file's name and the expected value, without a table.
 
 use calibration_tables::ArmFile;
 
@@ -68,7 +68,7 @@ fn a_tip_that_the_camera_never_saw_is_refused() {
 #[test]
 fn a_tip_that_the_camera_lost_in_what_is_held_back_is_refused() {
     let error = refused(|session| blind(session, 6..=6, 730));
-    assert!(error.starts_with("session.csv: the last fifth, which is held back, has 10 samples"), "{error}");
+    assert!(error.starts_with("session.csv: the last fifth, which is for validation, has 10 samples"), "{error}");
     assert!(error.contains("expected at least 50"), "{error}");
 }
 
@@ -77,7 +77,7 @@ fn a_session_that_is_too_short_to_hold_a_part_back_is_refused() {
     let folder = Folder::with("session.csv", session().to_string());
     folder.write("table.toml", spoiled());
     let error = folder.refused(&TUNE);
-    assert!(error.starts_with("session.csv: the last fifth, which is held back, has 30 samples"), "{error}");
+    assert!(error.starts_with("session.csv: the last fifth, which is for validation, has 30 samples"), "{error}");
 }
 
 #[test]

@@ -12,7 +12,7 @@ fn here(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../host-tests").join(name)
 }
 
-/// What `replay --json` reports of the recorded estimates, and what it prints on stderr.
+/// Report of `replay --json` about the recorded estimates, and its output on stderr.
 fn replayed(recording: &str, table: &str) -> (Value, String) {
     let (recording, table) = (here("recordings").join(recording), here("tables").join(table));
     let run = Folder::new().done(&["replay", text(&recording), "--table", text(&table), "--json"]);
@@ -42,7 +42,7 @@ fn estimates_behind_a_full_window_and_contacts_are_reproduced_bit_for_bit() {
 }
 
 #[test]
-fn estimates_of_the_drift_observer_are_not_compared_and_replay_says_so_in_one_sentence() {
+fn estimates_of_the_drift_observer_are_not_compared_and_replay_reports_that_in_one_sentence() {
     let (recorded, stderr) = replayed("version-0.1-observer.mcap", "version-0.1.toml");
     assert_eq!((&recorded["estimates"], &recorded["not_compared"]), (&240.into(), &240.into()));
     assert_eq!((&recorded["first_difference"], &recorded["table_matches"]), (&Value::Null, &Value::Null));
@@ -60,14 +60,14 @@ fn an_observer_recording_replayed_with_an_anchor_table_differs() {
 }
 
 #[test]
-fn tables_load_and_bake() {
+fn tables_load_and_compile() {
     let load = |name: &str| ArmFile::load(&here("tables").join(name)).unwrap_or_else(|error| panic!("{name}: {error}"));
     let (observer, anchor) = (load("version-0.1.toml"), load("version-0.1-anchor.toml"));
     assert!(observer.bias_filter().is_some() && anchor.bias_filter().is_none());
     assert!(anchor.segments.iter().all(|segment| segment.hysteresis.len() == 3));
     for (file, runs_bias_filter) in [(observer, true), (anchor, false)] {
-        let baked = file.bake::<Q>(100.0).expect("it is a table");
-        let config = baked.config();
+        let compiled = file.compile::<Q>(100.0).expect("it is a table");
+        let config = compiled.config();
         assert_eq!(config.bias_filter.is_some(), runs_bias_filter);
         assert_eq!(config.segments.iter().map(|segment| segment.coupled_to.is_some()).filter(|is| *is).count(), 3);
         assert!(config.contact.is_some() && config.uncertainty.is_some());

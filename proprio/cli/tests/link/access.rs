@@ -10,7 +10,7 @@ use super::line::Line;
 fn only_this_machine_s_own_names_are_answered() {
     let page = Page::of(&Line::new(), None);
     for host in [page.host(), format!("localhost:{}", page.port())] {
-        assert_eq!(page.ask("GET", "/", &[("Host", &host)], "").status, 200, "{host}");
+        assert_eq!(page.request("GET", "/", &[("Host", &host)], "").status, 200, "{host}");
     }
     let strangers = [
         "example.com".to_owned(),
@@ -20,12 +20,12 @@ fn only_this_machine_s_own_names_are_answered() {
     ];
     for host in strangers {
         for path in ["/", "/status", "/history", "/sessions"] {
-            let answer = page.ask("GET", path, &[("Host", &host)], "");
+            let answer = page.request("GET", path, &[("Host", &host)], "");
             assert_eq!(answer.status, 403, "{host}{path}");
             assert!(answer.text().contains("answers to no other name"), "{}", answer.text());
         }
     }
-    assert_eq!(page.ask("GET", "/", &[("Host", &page.host()), ("Host", "example.com")], "").status, 403);
+    assert_eq!(page.request("GET", "/", &[("Host", &page.host()), ("Host", "example.com")], "").status, 403);
 }
 
 #[test]
@@ -37,7 +37,7 @@ fn another_page_s_websocket_and_posts_are_refused() {
         assert_eq!(page.socket(Some(origin)).err(), Some(403), "{origin}");
         for path in ["/record", "/mark", "/control", "/sessions?name=a.csv"] {
             let headers = [("Host", &*page.host()), ("Origin", origin), ("Content-Type", "application/json")];
-            assert_eq!(page.ask("POST", path, &headers, r#"{"on":true}"#).status, 403, "{origin}{path}");
+            assert_eq!(page.request("POST", path, &headers, r#"{"on":true}"#).status, 403, "{origin}{path}");
         }
     }
     assert_eq!(page.socket(None).err(), Some(403));
@@ -58,7 +58,7 @@ fn a_board_that_is_watched_cannot_be_driven() {
 }
 
 #[test]
-fn who_has_the_token_drives_the_board_and_nobody_else() {
+fn the_token_is_needed_to_drive_the_board() {
     let line = Line::new();
     let token = Token::new().expect("the system has random numbers");
     let page = Page::of(&line, Some(token.clone()));
@@ -67,7 +67,7 @@ fn who_has_the_token_drives_the_board_and_nobody_else() {
     let control = |token: &str, command: &str| {
         let (host, origin, token) = (page.host(), page.origin(), format!("Bearer {token}"));
         let headers = [("Host", &*host), ("Origin", &*origin), ("Authorization", &*token)];
-        page.ask("POST", "/control", &headers, command).status
+        page.request("POST", "/control", &headers, command).status
     };
     let right = token.to_string();
     let wrong = if right.starts_with('0') { right.replacen('0', "1", 1) } else { format!("0{}", &right[1..]) };
@@ -88,7 +88,7 @@ fn who_has_the_token_drives_the_board_and_nobody_else() {
 }
 
 #[test]
-fn the_board_s_refusal_is_told() {
+fn the_board_s_refusal_is_returned() {
     let line = Line::new();
     let token = Token::new().expect("the system has random numbers");
     let page = Page::of(&line, Some(token.clone()));
@@ -97,7 +97,7 @@ fn the_board_s_refusal_is_told() {
     line.board().refuses = true;
     let (host, origin, token) = (page.host(), page.origin(), format!("Bearer {token}"));
     let headers = [("Host", &*host), ("Origin", &*origin), ("Authorization", &*token)];
-    let answer = page.ask("POST", "/control", &headers, r#""arm""#);
+    let answer = page.request("POST", "/control", &headers, r#""arm""#);
     assert_eq!(answer.status, 409);
     assert!(answer.text().contains("not armed"), "{}", answer.text());
 }

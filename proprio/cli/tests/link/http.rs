@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use proprio_link::Link;
 use proprio_monitor::{Monitor, Options, Token};
-use proprio_session::NamedTable;
+use proprio_session::LoadedTable;
 use serde_json::Value;
 use tempfile::TempDir;
 use tungstenite::client::IntoClientRequest;
@@ -20,7 +20,7 @@ pub struct Page {
     pub folder: TempDir,
 }
 
-/// What a server answers.
+/// Answer of a server.
 #[derive(Debug)]
 pub struct Answer {
     pub status: u16,
@@ -57,7 +57,7 @@ impl Page {
         Self::with_table(line, token, None)
     }
 
-    pub fn with_table(line: &Line, token: Option<Token>, table: Option<NamedTable>) -> Self {
+    pub fn with_table(line: &Line, token: Option<Token>, table: Option<LoadedTable>) -> Self {
         let live = Link::start(Box::new(line.clone()), None).expect("memory opens");
         let folder = tempfile::tempdir().expect("there is room for a temporary folder");
         let options = Options {
@@ -84,7 +84,7 @@ impl Page {
     }
 
     /// Sends a request as it is written here.
-    pub fn ask(&self, method: &str, path: &str, headers: &[(&str, &str)], body: &str) -> Answer {
+    pub fn request(&self, method: &str, path: &str, headers: &[(&str, &str)], body: &str) -> Answer {
         let mut stream = TcpStream::connect(self.monitor.address()).expect("it listens");
         stream.set_read_timeout(Some(PATIENCE)).expect("a timeout");
         let headers: Vec<String> = headers.iter().map(|(name, value)| format!("{name}: {value}\r\n")).collect();
@@ -102,13 +102,13 @@ impl Page {
     }
 
     pub fn get(&self, path: &str) -> Answer {
-        self.ask("GET", path, &[("Host", &self.host())], "")
+        self.request("GET", path, &[("Host", &self.host())], "")
     }
 
-    /// As the page itself asks.
+    /// A POST with the headers of the page itself.
     pub fn post(&self, path: &str, body: &str) -> Answer {
         let (host, origin) = (self.host(), self.origin());
-        self.ask("POST", path, &[("Host", &host), ("Origin", &origin), ("Content-Type", "application/json")], body)
+        self.request("POST", path, &[("Host", &host), ("Origin", &origin), ("Content-Type", "application/json")], body)
     }
 
     /// The WebSocket, from a page of this origin; or the status with which it is refused.
@@ -128,7 +128,7 @@ impl Page {
         }
     }
 
-    /// Waits until the status says so.
+    /// Waits for a status that satisfies `is_so`.
     pub fn wait_for_status(&self, is_so: impl Fn(&Value) -> bool) -> Value {
         let end = std::time::Instant::now() + PATIENCE;
         loop {
@@ -149,7 +149,7 @@ impl Socket {
     /// The next message of this type.
     pub fn next(&mut self, kind: &str) -> Value {
         loop {
-            if let Message::Text(text) = self.0.read().expect("it goes on") {
+            if let Message::Text(text) = self.0.read().expect("the feed is open") {
                 let message: Value = serde_json::from_str(&text).expect("it is JSON");
                 if message["type"] == kind {
                     return message;
@@ -158,7 +158,7 @@ impl Socket {
         }
     }
 
-    pub fn say(&mut self, text: &str) {
+    pub fn send(&mut self, text: &str) {
         self.0.send(Message::from(text)).expect("it listens");
     }
 }

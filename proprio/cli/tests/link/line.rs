@@ -5,7 +5,7 @@ use std::io;
 use std::sync::{Arc, Mutex, MutexGuard};
 use std::time::{Duration, Instant};
 
-use proprio_link::{Event, LinkError, Source, Subscription, Transport, What};
+use proprio_link::{Event, EventKind, LinkError, Source, Subscription, Transport};
 use telemetry::{
     Command, Decoder, Encoder, Hello, MAX_FRAME, Message, PROTOCOL_VERSION, Request, ResetCause, SCHEMA, Sample, Text,
 };
@@ -17,15 +17,15 @@ pub const PATIENCE: Duration = Duration::from_secs(20);
 pub struct Board {
     encoder: Encoder,
     requests: Decoder<Request>,
-    link: board_core::Link,
+    server: board_core::CommandServer,
     /// Answers that are lost on their way.
     pub answers_lost: usize,
-    /// Whether a command is refused.
+    /// Commands are refused.
     pub refuses: bool,
-    /// What was done, in order.
+    /// Executed commands, in order.
     pub done: Vec<Command>,
-    /// Every request that came, done or not.
-    pub asked: Vec<Request>,
+    /// All received requests, executed or not.
+    pub received: Vec<Request>,
     to_host: VecDeque<u8>,
     /// The cable is out.
     pub unplugged: bool,
@@ -33,25 +33,25 @@ pub struct Board {
 }
 
 impl Board {
-    pub fn say(&mut self, message: &Message) {
+    pub fn send(&mut self, message: &Message) {
         let mut buffer = [0; MAX_FRAME];
         let frame = self.encoder.encode(message, &mut buffer).expect("it fits");
         self.to_host.extend(frame);
     }
 
-    /// Numbers start anew, and no request is remembered.
+    /// Restarts the board: frames are numbered from 0, and no request is stored.
     pub fn restart(&mut self, boot: u32) {
-        (self.encoder, self.link) = (Encoder::new(), board_core::Link::new());
+        (self.encoder, self.server) = (Encoder::new(), board_core::CommandServer::new());
         self.to_host.push_back(0);
-        self.say(&Message::Hello(hello(boot)));
+        self.send(&Message::Hello(hello(boot)));
     }
 
-    fn hear(&mut self, byte: u8) {
+    fn receive(&mut self, byte: u8) {
         let Some(Ok(request)) = self.requests.push(byte) else { return };
-        self.asked.push(request);
+        self.received.push(request);
         let tick = (self.began.elapsed().as_millis() / 10) as u32;
         let (done, refuses) = (&mut self.done, self.refuses);
-        let reply = self.link.answer(&request, tick, |command| {
+        let reply = self.server.answer(&request, tick, |command| {
             if refuses && command != Command::Ping {
                 return Err(telemetry::Refusal::Disarmed);
             }
@@ -62,7 +62,7 @@ impl Board {
         if self.answers_lost > 0 {
             self.answers_lost -= 1;
         } else {
-            self.say(&Message::Reply(reply));
+            self.send(&Message::Reply(reply));
         }
     }
 }
@@ -79,11 +79,11 @@ impl Line {
         let board = Board {
             encoder: Encoder::new(),
             requests: Decoder::new(),
-            link: board_core::Link::new(),
+            server: board_core::CommandServer::new(),
             answers_lost: 0,
             refuses: false,
             done: Vec::new(),
-            asked: Vec::new(),
+            received: Vec::new(),
             to_host: VecDeque::new(),
             unplugged: false,
             began: Instant::now(),
@@ -105,7 +105,7 @@ impl Source for Line {
         Ok((format!("line {}", self.opened), Box::new(self.clone())))
     }
 
-    fn comes_back(&self) -> bool {
+    fn can_reconnect(&self) -> bool {
         true
     }
 }
@@ -126,7 +126,7 @@ impl Transport for Line {
     fn write(&mut self, bytes: &[u8]) -> io::Result<()> {
         let mut board = self.board();
         for byte in bytes {
-            board.hear(*byte);
+            board.receive(*byte);
         }
         Ok(())
     }
@@ -151,7 +151,7 @@ pub fn text<const N: usize>(text: &str) -> Text<N> {
     Text::try_from(text).expect("it is short")
 }
 
-/// All of its content tells its tick.
+/// A sample whose readings depend on its tick.
 pub fn sample(tick: u32) -> Sample {
     let time_us = u64::from(tick) * 10_000;
     let counts = |i: u32| Some(((tick * 7 + i) % 4096) as u16);
@@ -159,17 +159,17 @@ pub fn sample(tick: u32) -> Sample {
     Sample {
         tick,
         time_us,
-        tare: 0,
+        tare_epoch: 0,
         bend: [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11].map(counts),
         imu: [0, 1, 2, 3, 4, 5].map(quaternion),
     }
 }
 
 /// The first event that `pick` wants.
-pub fn wait_for<T>(events: &Subscription, mut pick: impl FnMut(&What) -> Option<T>) -> T {
+pub fn wait_for<T>(events: &Subscription, mut pick: impl FnMut(&EventKind) -> Option<T>) -> T {
     let end = Instant::now() + PATIENCE;
     while Instant::now() < end {
-        if let Some(found) = events.next(Duration::from_millis(50)).and_then(|Event { what, .. }| pick(&what)) {
+        if let Some(found) = events.next(Duration::from_millis(50)).and_then(|Event { kind, .. }| pick(&kind)) {
             return found;
         }
     }

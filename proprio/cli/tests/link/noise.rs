@@ -1,6 +1,6 @@
-//! What noise on the line does: nothing but losses, and those are counted.
+//! Noise on the line causes losses alone, which are counted.
 
-use proprio_link::{Intake, Taken};
+use proprio_link::{Received, StreamDecoder};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 use telemetry::{Encoder, MAX_FRAME, Message};
@@ -10,7 +10,7 @@ use super::line::{hello, sample};
 const SAMPLES: u32 = 400;
 const SEEDS: u64 = 200;
 
-/// A Hello, and samples with a Hello now and then; each frame by itself.
+/// A Hello, and samples with a Hello now and then, frame by frame.
 fn frames() -> (Vec<Message>, Vec<Vec<u8>>) {
     let mut messages = vec![Message::Hello(hello(1))];
     for tick in 0..SAMPLES {
@@ -35,22 +35,22 @@ fn encoded(messages: Vec<Message>) -> (Vec<Message>, Vec<Vec<u8>>) {
     (messages, frames)
 }
 
-struct Heard {
+struct Decoded {
     messages: Vec<Message>,
-    intake: Intake,
+    decoder: StreamDecoder,
 }
 
-fn hear(bytes: &[u8]) -> Heard {
-    let (mut intake, mut messages) = (Intake::new(None), Vec::new());
-    intake.open();
+fn decode(bytes: &[u8]) -> Decoded {
+    let (mut decoder, mut messages) = (StreamDecoder::new(None), Vec::new());
+    decoder.open();
     for byte in bytes {
-        intake.push(*byte, |taken| match taken {
-            Taken::Message(message) => messages.push(message),
-            Taken::Undecoded(_) => {}
+        decoder.push(*byte, |part| match part {
+            Received::Message(message) => messages.push(message),
+            Received::Undecoded(_) => {}
             other => panic!("one run of one board: {other:?}"),
         });
     }
-    Heard { messages, intake }
+    Decoded { messages, decoder }
 }
 
 fn below(random: &mut ChaCha8Rng, end: usize) -> usize {
@@ -83,11 +83,11 @@ fn disturb(frames: &[Vec<u8>], random: &mut ChaCha8Rng, kinds: usize) -> Vec<u8>
 fn no_frame_is_accepted_that_was_not_sent() {
     let (messages, frames) = frames();
     for seed in 0..SEEDS {
-        let heard = hear(&disturb(&frames, &mut ChaCha8Rng::seed_from_u64(seed), 3));
-        for message in &heard.messages {
+        let decoded = decode(&disturb(&frames, &mut ChaCha8Rng::seed_from_u64(seed), 3));
+        for message in &decoded.messages {
             assert!(messages.contains(message), "seed {seed}: {message:?}");
         }
-        assert!(heard.messages.len() > messages.len() / 2, "seed {seed}: most is heard");
+        assert!(decoded.messages.len() > messages.len() / 2, "seed {seed}: most is decoded");
     }
 }
 
@@ -95,10 +95,10 @@ fn no_frame_is_accepted_that_was_not_sent() {
 fn what_flips_and_cuts_destroy_is_counted_to_the_frame() {
     let (messages, frames) = frames();
     for seed in 0..SEEDS {
-        let heard = hear(&disturb(&frames, &mut ChaCha8Rng::seed_from_u64(seed), 2));
-        let lost = messages.len() - heard.messages.len();
-        assert_eq!(heard.intake.counts().lost as usize, lost, "seed {seed}");
-        assert_eq!(heard.intake.restarts(), 0);
+        let decoded = decode(&disturb(&frames, &mut ChaCha8Rng::seed_from_u64(seed), 2));
+        let lost = messages.len() - decoded.messages.len();
+        assert_eq!(decoded.decoder.counts().lost as usize, lost, "seed {seed}");
+        assert_eq!(decoded.decoder.restarts(), 0);
     }
 }
 
@@ -106,14 +106,14 @@ fn what_flips_and_cuts_destroy_is_counted_to_the_frame() {
 fn pieces_that_come_twice_are_no_loss_and_hide_none() {
     let (messages, frames) = distinct_frames();
     for seed in 0..SEEDS {
-        let heard = hear(&disturb(&frames, &mut ChaCha8Rng::seed_from_u64(seed), 3));
-        let lost = messages.iter().filter(|message| !heard.messages.contains(message)).count();
-        assert_eq!(heard.intake.counts().lost as usize, lost, "seed {seed}");
+        let decoded = decode(&disturb(&frames, &mut ChaCha8Rng::seed_from_u64(seed), 3));
+        let lost = messages.iter().filter(|message| !decoded.messages.contains(message)).count();
+        assert_eq!(decoded.decoder.counts().lost as usize, lost, "seed {seed}");
     }
 }
 
 #[test]
-fn a_restart_is_told_and_is_no_loss() {
+fn a_restart_is_reported_and_is_no_loss() {
     let (_, frames) = frames();
     let mut encoder = Encoder::new();
     let mut buffer = [0; MAX_FRAME];
@@ -124,36 +124,36 @@ fn a_restart_is_told_and_is_no_loss() {
     for message in [Message::Hello(hello(2)), Message::Sample(sample(0)), Message::Sample(sample(1))] {
         bytes.extend(encoder.encode(&message, &mut buffer).expect("it fits"));
     }
-    let (mut intake, mut restarts) = (Intake::new(None), 0);
-    intake.open();
+    let (mut decoder, mut restarts) = (StreamDecoder::new(None), 0);
+    decoder.open();
     for byte in bytes {
-        intake.push(byte, |taken| restarts += u32::from(taken == Taken::Restarted));
+        decoder.push(byte, |part| restarts += u32::from(part == Received::Restarted));
     }
-    assert_eq!((restarts, intake.restarts(), intake.counts().lost, intake.counts().damaged), (1, 1, 0, 1));
+    assert_eq!((restarts, decoder.restarts(), decoder.counts().lost, decoder.counts().damaged), (1, 1, 0, 1));
 }
 
 /// After a power cut boots are numbered from 1 again.
 #[test]
-fn a_restart_is_told_by_its_ticks_where_the_boot_has_the_same_number() {
+fn a_restart_with_the_same_boot_number_is_detected_by_its_ticks() {
     let (_, frames) = frames();
     let mut encoder = Encoder::new();
     let mut buffer = [0; MAX_FRAME];
-    let mut intake = Intake::new(None);
+    let mut decoder = StreamDecoder::new(None);
     let mut restarts = 0;
-    intake.open();
+    decoder.open();
     let first = frames[..200].concat();
-    intake.open();
-    let mut take = |intake: &mut Intake, bytes: &[u8]| {
+    decoder.open();
+    let mut take = |decoder: &mut StreamDecoder, bytes: &[u8]| {
         for byte in bytes {
-            intake.push(*byte, |taken| restarts += u32::from(taken == Taken::Restarted));
+            decoder.push(*byte, |part| restarts += u32::from(part == Received::Restarted));
         }
     };
-    take(&mut intake, &first);
+    take(&mut decoder, &first);
     for message in [Message::Hello(hello(1)), Message::Sample(sample(0)), Message::Hello(hello(1))] {
         let frame = encoder.encode(&message, &mut buffer).expect("it fits").to_vec();
-        take(&mut intake, &frame);
+        take(&mut decoder, &frame);
     }
-    assert_eq!((restarts, intake.counts().lost), (1, 0));
+    assert_eq!((restarts, decoder.counts().lost), (1, 0));
 }
 
 /// The board ran when the line was opened, and was restarted by that: what is between the two runs is no loss.
@@ -167,10 +167,10 @@ fn losses_count_from_the_first_hello_on() {
         let _ = encoder.encode(&Message::Sample(sample(9)), &mut buffer);
     }
     let late = encoder.encode(&Message::Sample(sample(9)), &mut buffer).expect("it fits").to_vec();
-    let mut intake = Intake::new(None);
-    intake.open();
+    let mut decoder = StreamDecoder::new(None);
+    decoder.open();
     for byte in [late, frames[..50].concat()].concat() {
-        intake.push(byte, |_| {});
+        decoder.push(byte, |_| {});
     }
-    assert_eq!(intake.counts().lost, 0);
+    assert_eq!(decoder.counts().lost, 0);
 }

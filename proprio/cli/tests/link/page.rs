@@ -1,10 +1,10 @@
-//! What the live page is told, and recorded from it.
+//! Data of the live page, and recordings from it.
 
 use std::path::Path;
 
-use proprio_link::{Event, Link, What};
+use proprio_link::{Event, EventKind, Link};
 use proprio_monitor::Plain;
-use proprio_session::{HostClock, NamedTable};
+use proprio_session::{HostClock, LoadedTable};
 use proprio_simulation::Simulation;
 use rig_twin::Scenario;
 use telemetry::{
@@ -33,7 +33,7 @@ pub fn health(tick: u32, imu_3: SensorState) -> Health {
         tick,
         bend: [sensor(SensorState::Ok); BEND_SENSORS],
         imu,
-        longest_tick_us: 5000,
+        max_estimate_latency_us: 5000,
         longest_imu_read_us: 2000,
         load_permille: 123,
         overruns: 0,
@@ -47,11 +47,11 @@ pub fn health(tick: u32, imu_3: SensorState) -> Health {
     }
 }
 
-pub fn say(line: &Line, ticks: std::ops::Range<u32>) {
+pub fn send_ticks(line: &Line, ticks: std::ops::Range<u32>) {
     for tick in ticks {
         let mut board = line.board();
-        board.say(&Message::Sample(sample(tick)));
-        board.say(&Message::Estimate(estimate(tick)));
+        board.send(&Message::Sample(sample(tick)));
+        board.send(&Message::Estimate(estimate(tick)));
     }
 }
 
@@ -86,7 +86,7 @@ fn samples_and_estimates_come_as_rows_with_named_columns() {
     line.board().restart(1);
     let mut socket = page.socket(Some(&page.origin())).expect("its own page");
     let arm = socket.next("arm");
-    say(&line, 0..1);
+    send_ticks(&line, 0..1);
     let rows = socket.next("rows");
     let value = |name: &str| {
         let columns = arm["columns"].as_array().expect("names");
@@ -97,24 +97,24 @@ fn samples_and_estimates_come_as_rows_with_named_columns() {
     assert!((number("theta3_deg") - 0.2_f64.to_degrees()).abs() < 1e-3);
     assert!((number("x6_mm") - 50.0).abs() < 1e-3 && (number("y6_mm") - 100.0).abs() < 1e-3);
     assert_eq!(value("bend2b_adc"), 3.0);
-    // Without a table there is no estimator beside the board's, and there is no camera.
+    // Without a table there is no replica of the estimator, and there is no camera.
     assert!(value("drift1_deg").is_null() && value("truth1_x_mm").is_null());
     assert!(rows["newest_us"].as_u64().is_some());
 }
 
 #[test]
-fn the_state_of_every_sensor_and_the_board_s_load_are_told() {
+fn the_status_has_the_state_of_every_sensor_and_the_board_s_load() {
     let line = Line::new();
     let page = Page::of(&line, None);
     line.board().restart(1);
-    line.board().say(&Message::Health(health(0, SensorState::Off)));
+    line.board().send(&Message::Health(health(0, SensorState::NoResponse)));
     let status = page.wait_for_status(|status| status["sensors"][14]["state"] == "Off");
     assert_eq!(status["sensors"].as_array().map(Vec::len), Some(BEND_SENSORS + SEGMENTS));
     assert_eq!(status["sensors"][14]["reason"], "does not answer, or reads at a rail");
     assert_eq!((&status["sensors"][0]["state"], &status["health"]["load_percent"]), (&"Ok".into(), &12.3.into()));
 
-    // An event tells it before the next Health does.
-    line.board().say(&Message::Event(telemetry::Event::Bend(4, SensorState::Stuck)));
+    // An event has the state before the next Health.
+    line.board().send(&Message::Event(telemetry::Event::Bend(4, SensorState::Stuck)));
     page.wait_for_status(|status| status["sensors"][4]["state"] == "Stuck");
 }
 
@@ -123,7 +123,7 @@ fn a_page_that_is_opened_later_gets_what_came_before() {
     let line = Line::new();
     let page = Page::of(&line, None);
     line.board().restart(1);
-    say(&line, 0..500);
+    send_ticks(&line, 0..500);
     page.wait_for_status(|_| page.get("/history").about()["rows"] == 500);
     let history = page.get("/history");
     let about = history.about();
@@ -135,14 +135,14 @@ fn a_page_that_is_opened_later_gets_what_came_before() {
 }
 
 #[test]
-fn the_time_goes_on_over_a_restart_of_the_board() {
+fn the_time_continues_over_a_restart_of_the_board() {
     let line = Line::new();
     let page = Page::of(&line, None);
     line.board().restart(1);
     let mut socket = page.socket(Some(&page.origin())).expect("its own page");
-    say(&line, 100..103);
+    send_ticks(&line, 100..103);
     line.board().restart(2);
-    say(&line, 0..3);
+    send_ticks(&line, 0..3);
     let mut times = Vec::new();
     while times.len() < 6 {
         let rows = socket.next("rows");
@@ -159,11 +159,11 @@ fn the_time_from_sample_to_screen_is_measured_from_what_pages_report() {
     let page = Page::of(&line, None);
     line.board().restart(1);
     let mut socket = page.socket(Some(&page.origin())).expect("its own page");
-    say(&line, 0..1);
+    send_ticks(&line, 0..1);
     let newest_us = socket.next("rows")["newest_us"].as_u64().expect("a time");
     std::thread::sleep(std::time::Duration::from_millis(120));
-    socket.say(&format!(r#"{{"shown_us":{newest_us}}}"#));
-    socket.say("nonsense");
+    socket.send(&format!(r#"{{"shown_us":{newest_us}}}"#));
+    socket.send("nonsense");
     let status = page.wait_for_status(|status| !status["latency"].is_null());
     let latency_ms = status["latency"]["p50_ms"].as_f64().expect("a number");
     assert!(latency_ms >= 120.0 && status["latency"]["reports"] == 1, "{status}");
@@ -180,7 +180,7 @@ fn what_is_recorded_from_the_page_is_all_that_came_even_if_no_page_keeps_up() {
     assert_eq!(begun.status, 200, "{}", begun.text());
     assert_eq!(page.post("/mark", r#"{"text":"push"}"#).status, 200);
     for round in 0..20 {
-        say(&line, round * 1000..round * 1000 + 1000);
+        send_ticks(&line, round * 1000..round * 1000 + 1000);
         let frames = u64::from(round + 1) * 2000;
         page.wait_for_status(|status| status["frames"].as_u64() >= Some(frames));
     }
@@ -211,7 +211,7 @@ fn a_recording_is_completed_when_the_monitor_ends() {
     let page = Page::of(&line, None);
     line.board().restart(1);
     page.post("/record", r#"{"on":true}"#);
-    say(&line, 0..50);
+    send_ticks(&line, 0..50);
     page.wait_for_status(|status| status["recording"]["samples"] == 50);
     let file = page.monitor.finish().expect("it can be written").expect("it was recorded");
     let recording = std::fs::read(file).expect("it is there");
@@ -226,17 +226,17 @@ fn a_line_for_a_terminal_has_the_shape_the_rates_and_what_is_wrong() {
     let (mut plain, clock) = (Plain::new(), HostClock::new());
     assert!(plain.line(clock.now(), &link.state()).starts_with("no estimate yet  "));
     line.board().restart(1);
-    line.board().say(&Message::Health(health(0, SensorState::Off)));
-    say(&line, 0..1);
-    wait_for(&events, |what| {
-        plain.take(&Event { at: clock.now(), what: what.clone() });
-        matches!(what, What::Message(Message::Estimate(_))).then_some(())
+    line.board().send(&Message::Health(health(0, SensorState::NoResponse)));
+    send_ticks(&line, 0..1);
+    wait_for(&events, |kind| {
+        plain.take(&Event { at: clock.now(), gaps: 0, kind: kind.clone() });
+        matches!(kind, EventKind::Message(Message::Estimate(_))).then_some(())
     });
-    let said = plain.line(clock.now(), &link.state());
-    assert!(said.starts_with("θ +0.0 +5.7 +11.5 +17.2 +22.9 +28.6°  tip 50.0 100.0 mm  "), "{said}");
-    assert!(said.ends_with(" samples/s  0 lost  0 damaged  load 12.3 %  IMU 3 Off"), "{said}");
+    let shown = plain.line(clock.now(), &link.state());
+    assert!(shown.starts_with("θ +0.0 +5.7 +11.5 +17.2 +22.9 +28.6°  tip 50.0 100.0 mm  "), "{shown}");
+    assert!(shown.ends_with(" samples/s  0 lost  0 damaged  load 12.3 %  IMU 3 Off"), "{shown}");
     line.board().unplugged = true;
-    wait_for(&events, |what| matches!(what, What::Lost(_)).then_some(()));
+    wait_for(&events, |what| matches!(what, EventKind::Lost(_)).then_some(()));
     assert!(plain.line(clock.now(), &link.state()).starts_with("the line is gone"));
 }
 
@@ -244,15 +244,15 @@ fn a_line_for_a_terminal_has_the_shape_the_rates_and_what_is_wrong() {
 fn drift_and_innovations_of_a_live_board_are_those_of_its_recording() {
     let line = Line::new();
     let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../calibration-tables/planar-6.toml"));
-    let page = Page::with_table(&line, None, Some(NamedTable::load(path).expect("the reference table")));
+    let page = Page::with_table(&line, None, Some(LoadedTable::load(path).expect("the reference table")));
     line.board().restart(1);
     let columns = page.socket(Some(&page.origin())).expect("its own page").next("arm")["columns"].clone();
     page.post("/record", r#"{"on":true}"#);
-    let simulation = Simulation::new(Scenario::Two, 7, 10.0, 100.0).expect("a valid run");
+    let simulation = Simulation::new(Scenario::Push, 7, 10.0, 100.0).expect("a valid run");
     for (tick, read) in (0..).zip(simulation) {
         let time_us = u64::from(tick) * 10_000;
-        let said = Sample { tick, time_us, tare: 0, bend: read.counts, imu: read.quaternions };
-        line.board().say(&Message::Sample(said));
+        let said = Sample { tick, time_us, tare_epoch: 0, bend: read.counts, imu: read.quaternions };
+        line.board().send(&Message::Sample(said));
     }
     page.wait_for_status(|status| status["recording"]["samples"] == 1000);
     page.wait_for_status(|_| page.get("/history").about()["rows"] == 999);

@@ -1,13 +1,13 @@
 //! A cable that comes and goes.
 
-use proprio_link::{Link, LinkError, RequestError, What};
+use proprio_link::{EventKind, Link, LinkError, RequestError};
 use telemetry::{Command, Message};
 
 use super::line::{Line, hello, sample, wait_for};
 
-fn opened(what: &What) -> Option<String> {
+fn opened(what: &EventKind) -> Option<String> {
     match what {
-        What::Opened(name) => Some(name.clone()),
+        EventKind::Opened(name) => Some(name.clone()),
         _ => None,
     }
 }
@@ -18,12 +18,14 @@ fn a_line_that_comes_back_is_opened_again_under_its_new_name() {
     let (link, events) = Link::start(Box::new(line.clone()), None).expect("memory opens");
     assert_eq!(wait_for(&events, opened), "line 1");
     line.board().restart(1);
-    (0..50).for_each(|tick| line.board().say(&Message::Sample(sample(tick))));
-    wait_for(&events, |what| matches!(what, What::Message(Message::Sample(last)) if last.tick == 49).then_some(()));
+    (0..50).for_each(|tick| line.board().send(&Message::Sample(sample(tick))));
+    wait_for(&events, |what| {
+        matches!(what, EventKind::Message(Message::Sample(last)) if last.tick == 49).then_some(())
+    });
 
     line.board().unplugged = true;
     let reason = wait_for(&events, |what| match what {
-        What::Lost(reason) => Some(reason.clone()),
+        EventKind::Lost(reason) => Some(reason.clone()),
         _ => None,
     });
     assert!(reason.starts_with("line 1: "), "{reason}");
@@ -34,8 +36,8 @@ fn a_line_that_comes_back_is_opened_again_under_its_new_name() {
     line.board().restart(2);
     line.board().unplugged = false;
     assert_eq!(wait_for(&events, opened), "line 2");
-    wait_for(&events, |what| matches!(what, What::Restarted).then_some(()));
-    link.request(Command::Tare).expect("it is greeted and answers");
+    wait_for(&events, |what| matches!(what, EventKind::Restarted).then_some(()));
+    link.request(Command::Tare).expect("it is is_connected and answers");
     let state = link.state();
     assert_eq!((state.port.as_deref(), state.reopened, state.restarts), (Some("line 2"), 1, 1));
     // The frames of both openings, and none of between.
@@ -50,17 +52,19 @@ fn a_board_that_lost_its_power_with_the_cable_has_restarted_however_short_it_ran
     let line = Line::new();
     let (link, events) = Link::start(Box::new(line.clone()), None).expect("memory opens");
     line.board().restart(1);
-    (0..20).for_each(|tick| line.board().say(&Message::Sample(sample(tick))));
-    wait_for(&events, |what| matches!(what, What::Message(Message::Sample(last)) if last.tick == 19).then_some(()));
+    (0..20).for_each(|tick| line.board().send(&Message::Sample(sample(tick))));
+    wait_for(&events, |what| {
+        matches!(what, EventKind::Message(Message::Sample(last)) if last.tick == 19).then_some(())
+    });
     line.board().unplugged = true;
-    wait_for(&events, |what| matches!(what, What::Lost(_)).then_some(()));
+    wait_for(&events, |what| matches!(what, EventKind::Lost(_)).then_some(()));
 
     line.board().restart(1);
-    (0..5).for_each(|tick| line.board().say(&Message::Sample(sample(tick))));
+    (0..5).for_each(|tick| line.board().send(&Message::Sample(sample(tick))));
     line.board().unplugged = false;
-    wait_for(&events, |what| matches!(what, What::Restarted).then_some(()));
-    wait_for(&events, |what| matches!(what, What::Message(Message::Sample(last)) if last.tick == 4).then_some(()));
-    link.request(Command::Tare).expect("it is greeted and answers");
+    wait_for(&events, |what| matches!(what, EventKind::Restarted).then_some(()));
+    wait_for(&events, |what| matches!(what, EventKind::Message(Message::Sample(last)) if last.tick == 4).then_some(()));
+    link.request(Command::Tare).expect("it is is_connected and answers");
     assert_eq!((link.state().restarts, link.state().counts.lost), (1, 0));
 }
 

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use proprio_link::{Link, LinkError, RequestError, What};
+use proprio_link::{EventKind, Link, LinkError, RequestError};
 use telemetry::{Command, Message, Refusal};
 
 use super::line::{Line, hello, sample, wait_for};
@@ -19,10 +19,10 @@ fn a_link_begins_with_a_ping_and_repeats_it_until_it_is_acknowledged() {
     link.request(Command::Tare).expect("it is done");
     let board = line.board();
     assert_eq!(board.done, [Command::Ping, Command::Tare]);
-    let pings = board.asked.iter().filter(|request| request.command == Command::Ping);
+    let pings = board.received.iter().filter(|request| request.command == Command::Ping);
     assert_eq!(pings.map(|request| request.id).collect::<Vec<_>>(), [1; 4]);
     drop(board);
-    assert!(link.state().greeted);
+    assert!(link.state().is_connected);
 }
 
 #[test]
@@ -33,12 +33,12 @@ fn a_request_whose_answer_was_lost_is_sent_again_and_acts_once() {
     line.board().answers_lost = 2;
     link.request(Command::Tare).expect("it is done");
     let board = line.board();
-    assert_eq!(board.asked.iter().filter(|request| request.command == Command::Tare).count(), 3);
+    assert_eq!(board.received.iter().filter(|request| request.command == Command::Tare).count(), 3);
     assert_eq!(board.done.iter().filter(|command| **command == Command::Tare).count(), 1);
 }
 
 #[test]
-fn a_refusal_is_told_with_its_reason() {
+fn a_refusal_is_returned_with_its_reason() {
     let line = Line::new();
     line.board().refuses = true;
     let (link, _events) = start(&line);
@@ -61,23 +61,23 @@ fn a_board_that_does_not_answer_is_given_up() {
 fn a_request_does_not_outlive_a_restart() {
     let line = Line::new();
     let (link, events) = start(&line);
-    line.board().say(&Message::Hello(hello(1)));
+    line.board().send(&Message::Hello(hello(1)));
     link.request(Command::Ping).expect("it is done");
     line.board().answers_lost = usize::MAX;
     std::thread::scope(|scope| {
         let arming = scope.spawn(|| link.request(Command::Arm));
-        while !line.board().asked.iter().any(|request| request.command == Command::Arm) {
+        while !line.board().received.iter().any(|request| request.command == Command::Arm) {
             std::thread::sleep(Duration::from_millis(1));
         }
         line.board().restart(2);
         let interrupted = arming.join().expect("no panic");
         assert!(matches!(interrupted, Err(LinkError::Request(RequestError::Interrupted))), "{interrupted:?}");
     });
-    wait_for(&events, |what| matches!(what, What::Restarted).then_some(()));
-    let arms = || line.board().asked.iter().filter(|request| request.command == Command::Arm).count();
+    wait_for(&events, |kind| matches!(kind, EventKind::Restarted).then_some(()));
+    let arms = || line.board().received.iter().filter(|request| request.command == Command::Arm).count();
     let before = arms();
     line.board().answers_lost = 0;
-    link.request(Command::Tare).expect("the new run is greeted and answers");
+    link.request(Command::Tare).expect("the new run is is_connected and answers");
     assert_eq!(arms(), before);
 }
 
@@ -96,26 +96,27 @@ fn a_board_that_has_seen_higher_ids_is_greeted_after_its_pause() {
 }
 
 #[test]
-fn one_who_is_slow_loses_the_oldest_events_and_holds_up_nobody() {
+fn a_slow_subscriber_loses_the_oldest_events_and_delays_no_other() {
     let line = Line::new();
     let (link, slow) = start(&line);
     let fast = link.subscribe();
-    let mut heard = 0;
+    let mut received = 0;
     for tick in 0..10_000 {
-        line.board().say(&Message::Sample(sample(tick)));
+        line.board().send(&Message::Sample(sample(tick)));
         if tick % 100 == 99 {
-            let is_last = |what: &What| matches!(what, What::Message(Message::Sample(last)) if last.tick == tick);
-            wait_for(&fast, |what| {
-                heard += u32::from(matches!(what, What::Message(Message::Sample(_))));
-                is_last(what).then_some(())
+            let is_last =
+                |kind: &EventKind| matches!(kind, EventKind::Message(Message::Sample(last)) if last.tick == tick);
+            wait_for(&fast, |kind| {
+                received += u32::from(matches!(kind, EventKind::Message(Message::Sample(_))));
+                is_last(kind).then_some(())
             });
         }
     }
-    assert_eq!((heard, fast.dropped()), (10_000, 0));
+    assert_eq!((received, fast.dropped()), (10_000, 0));
     assert!(slow.dropped() > 0);
-    // What is left are the newest.
-    let first = wait_for(&slow, |what| match what {
-        What::Message(Message::Sample(sample)) => Some(sample.tick),
+    // The newest events are left.
+    let first = wait_for(&slow, |kind| match kind {
+        EventKind::Message(Message::Sample(sample)) => Some(sample.tick),
         _ => None,
     });
     assert!(first > 1000, "{first}");

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use proprio_monitor::{Monitor, Options};
 use proprio_session::recording::Recorder;
-use proprio_session::{HostNs, NamedTable};
+use proprio_session::{HostNs, LoadedTable};
 use telemetry::{Encoder, MAX_FRAME, Message};
 
 use super::http::Page;
@@ -27,7 +27,7 @@ fn page(given: Option<PathBuf>) -> Page {
     let table = table();
     let options = Options {
         port: 0,
-        table: Some(NamedTable::load(&table).expect("the reference table")),
+        table: Some(LoadedTable::load(&table).expect("the reference table")),
         folder: folder.path().to_owned(),
         token: None,
         session: given,
@@ -76,7 +76,7 @@ fn a_part_of_a_session_is_what_is_between_two_times() {
 
 /// A mark has the host's time, and may be written behind samples that came after it.
 #[test]
-fn the_marks_of_a_recording_are_told_by_the_time_of_its_rows() {
+fn the_marks_of_a_recording_have_the_time_of_its_rows() {
     let page = page(None);
     let at_ms = |ms: u64| HostNs(1_764_000_000_000_000_000 + ms * 1_000_000);
     let mut recorder = Recorder::new(Vec::new(), at_ms(0), "a test").expect("memory takes all");

@@ -1,4 +1,4 @@
-//! How well the board knows the arm's shape, and what touches it, as people are told.
+//! Uncertainty and contacts of the arm on the page and in the status.
 
 use proprio_link::Link;
 use proprio_link::status::Status;
@@ -7,13 +7,13 @@ use telemetry::{Event, Message, SEGMENTS, SegmentUncertainty, Uncertainty};
 
 use super::http::Page;
 use super::line::{Line, sample};
-use super::page::{health, say};
+use super::page::{health, send_ticks};
 
 /// The segments' ends are known to 1 mm to the right and 2 mm along the base's tangent, and nothing touches them.
 fn uncertainty(tick: u32) -> Message {
     // mm² in units of 2⁻³² m², and 0.01 rad² in as many of rad².
     let end = [4295, 0, 4 * 4295];
-    let segment = SegmentUncertainty { theta: Some(42_949_673), end: Some(end), contact_percent: 3, is_touched: false };
+    let segment = SegmentUncertainty { theta: Some(42_949_673), end: Some(end), contact_percent: 3, in_contact: false };
     Message::Uncertainty(Uncertainty { tick, segments: [segment; SEGMENTS] })
 }
 
@@ -21,41 +21,41 @@ const NONE: [bool; SEGMENTS] = [false; SEGMENTS];
 const SECOND: [bool; SEGMENTS] = [false, true, false, false, false, false];
 
 #[test]
-fn the_page_is_told_the_board_s_own_ellipses_and_of_contact_before_the_next_of_them() {
+fn the_page_receives_the_board_s_covariances_and_contact_before_the_next_of_them() {
     let line = Line::new();
     let page = Page::of(&line, None);
     line.board().restart(1);
     let mut socket = page.socket(Some(&page.origin())).expect("its own page");
-    say(&line, 0..1);
+    send_ticks(&line, 0..1);
     let rows = socket.next("rows");
     assert!(rows["uncertainty"].is_null() && rows["contact"].is_null(), "{rows}");
 
-    line.board().say(&uncertainty(0));
-    say(&line, 1..2);
+    line.board().send(&uncertainty(0));
+    send_ticks(&line, 1..2);
     let rows = socket.next("rows");
     let ends = rows["uncertainty"]["ends_m2"].as_array().expect("ends");
     assert_eq!((ends.len(), &rows["contact"]), (SEGMENTS, &json!(NONE)));
     let is_near = |value: &Value, square_mm: f64| (value.as_f64().expect("a number") * 1e6 - square_mm).abs() < 1e-3;
     assert!(is_near(&ends[5][0], 1.0) && is_near(&ends[5][1], 0.0) && is_near(&ends[5][2], 4.0), "{rows}");
 
-    line.board().say(&Message::Event(Event::Contact(2, SECOND)));
-    say(&line, 2..3);
+    line.board().send(&Message::Event(Event::Contact(2, SECOND)));
+    send_ticks(&line, 2..3);
     assert_eq!(socket.next("rows")["contact"], json!(SECOND));
 }
 
 #[test]
-fn status_says_how_well_the_tip_is_known_and_what_touches_the_arm() {
+fn status_has_the_uncertainty_of_the_tip_and_the_contacts() {
     let line = Line::new();
     let (link, events) = Link::start(Box::new(line.clone()), None).expect("memory opens");
     line.board().restart(1);
-    line.board().say(&Message::Health(health(0, telemetry::SensorState::Ok)));
-    line.board().say(&uncertainty(0));
-    line.board().say(&Message::Event(Event::Contact(1, SECOND)));
+    line.board().send(&Message::Health(health(0, telemetry::SensorState::Ok)));
+    line.board().send(&uncertainty(0));
+    line.board().send(&Message::Event(Event::Contact(1, SECOND)));
     for tick in 0..200 {
-        line.board().say(&Message::Sample(sample(tick)));
+        line.board().send(&Message::Sample(sample(tick)));
     }
-    let status = Status::of(&link, &events, false).expect("the board says it");
-    let shape = status.shape.expect("it has said so");
+    let status = Status::of(&link, &events, false).expect("the board has sent its status");
+    let shape = status.shape.expect("the board has sent an uncertainty");
     assert_eq!(shape.touched, SECOND);
     // χ² of two degrees of freedom: 95 % are within 2.448 standard deviations.
     let tip = shape.tip.expect("it is known");

@@ -1,4 +1,4 @@
-//! A board that is being driven: armed as long as this lives.
+//! Driver of a board's pressures: the board stays armed while the driver exists.
 
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -12,71 +12,71 @@ use crate::{Link, LinkError, Mismatch};
 /// Time from one set of pressures to the next.
 pub const PERIOD: Duration = Duration::from_millis(50);
 
-/// How long the board lets them stand, ms: a lost request is repeated twice until then.
+/// Time for which the board holds them, ms: a lost request is repeated twice until then.
 pub const VALID_MS: u16 = 300;
 
-/// Set-points that are remembered, for the second before a `Health`.
-const REMEMBERED: usize = 20;
+/// Number of set-points that are stored: those of the second before a `Health`.
+const STORED: usize = 20;
 
-/// Less than that is rounding, Pa.
+/// Tolerance of a set-point for rounding, Pa.
 const TOLERANCE_PA: u32 = 1000;
 
-/// Drives the pressures. Dropped, it vents them.
+/// Drives the pressures; vents them when it is dropped.
 #[derive(Debug)]
 pub struct Driver<'l> {
     link: &'l Link,
-    asked_pa: VecDeque<[u32; REGULATORS]>,
+    requested_pa: VecDeque<[u32; REGULATORS]>,
     is_armed: bool,
 }
 
 impl<'l> Driver<'l> {
-    /// Arms the pressures of a board that is well.
+    /// Arms the pressures of a board without faults.
     ///
     /// # Errors
-    /// [`DriveError`]: the board has another table, comes out of a crash, is blind, or refuses.
+    /// [`DriveError`]: the board has another table, has restarted after a crash, reads no IMU, or refuses.
     pub fn arm(link: &'l Link, status: &Status) -> Result<Self, DriveError> {
         check(link, status)?;
-        let driver = Self { link, asked_pa: VecDeque::new(), is_armed: true };
+        let driver = Self { link, requested_pa: VecDeque::new(), is_armed: true };
         link.request(Command::Arm)?;
         Ok(driver)
     }
 
-    /// Sets the pressures, Pa, waits until that is done, and gives what was asked.
+    /// Sets the pressures, Pa, waits until the board has acknowledged them, and returns the request.
     ///
     /// # Errors
     /// [`LinkError::Request`].
     pub fn set(&mut self, pressures_pa: [u32; REGULATORS]) -> Result<SetPressures, LinkError> {
-        let asked = SetPressures { pressures_pa, valid_ms: VALID_MS };
-        self.link.request(Command::SetPressures(asked))?;
-        if self.asked_pa.len() == REMEMBERED {
-            self.asked_pa.pop_front();
+        let requested = SetPressures { pressures_pa, valid_ms: VALID_MS };
+        self.link.request(Command::SetPressures(requested))?;
+        if self.requested_pa.len() == STORED {
+            self.requested_pa.pop_front();
         }
-        self.asked_pa.push_back(pressures_pa);
-        Ok(asked)
+        self.requested_pa.push_back(pressures_pa);
+        Ok(requested)
     }
 
-    /// Whether the board does what it was asked for.
+    /// Checks that the board follows the requested pressures.
     ///
     /// # Errors
-    /// [`DriveError::HeldBack`] where its pressures are below all that were asked for within the last second.
+    /// [`DriveError::HeldBack`] where its pressures are below all that were requested within the last second.
     pub fn check(&self, health: &Health) -> Result<(), DriveError> {
-        if self.asked_pa.len() < REMEMBERED {
+        if self.requested_pa.len() < STORED {
             return Ok(());
         }
         for (i, board_pa) in health.pressures_pa.iter().enumerate() {
-            let asked_pa = self.asked_pa.iter().map(|pressures_pa| pressures_pa[i]).min().unwrap_or(0);
-            if board_pa + TOLERANCE_PA < asked_pa {
-                let [board_kpa, asked_kpa] = [*board_pa, asked_pa].map(|pa| f64::from(pa) / 1e3);
-                return Err(DriveError::HeldBack { regulator: i + 1, board_kpa, asked_kpa });
+            let requested_pa = self.requested_pa.iter().map(|pressures_pa| pressures_pa[i]).min().unwrap_or(0);
+            if board_pa + TOLERANCE_PA < requested_pa {
+                let [board_kpa, requested_kpa] = [*board_pa, requested_pa].map(|pa| f64::from(pa) / 1e3);
+                return Err(DriveError::HeldBack { regulator: i + 1, board_kpa, requested_kpa });
             }
         }
         Ok(())
     }
 
-    /// Vents the pressures and waits until that is done.
+    /// Vents the pressures and waits until the board has acknowledged that.
     ///
     /// # Errors
-    /// [`LinkError::Request`]; the board vents by itself within 1.5 s all the same.
+    /// [`LinkError::Request`]; the board vents at its own deadline, within 1.5 s, even so.
     pub fn vent(mut self) -> Result<(), LinkError> {
         self.is_armed = false;
         self.link.request(Command::Disarm)
@@ -92,7 +92,7 @@ impl Drop for Driver<'_> {
     }
 }
 
-/// Whether the board may be driven.
+/// Checks that the board may be driven.
 fn check(link: &Link, status: &Status) -> Result<(), DriveError> {
     let mismatches = link.state().mismatches;
     if let Some(table) = mismatches.iter().find(|mismatch| matches!(mismatch, Mismatch::Table { .. })) {
@@ -101,7 +101,7 @@ fn check(link: &Link, status: &Status) -> Result<(), DriveError> {
     if let Some(panic) = &status.hello.last_panic {
         return Err(DriveError::Crashed(panic.as_str().to_owned()));
     }
-    // The firmware lets no pressure rise then; other reasons of its own show once it is driven.
+    // The firmware raises no pressure without a valid IMU. Its other reasons to refuse show when it is driven.
     if status.health.imu.iter().all(|imu| imu.state != SensorState::Ok) {
         return Err(DriveError::Blind);
     }

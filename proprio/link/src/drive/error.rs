@@ -1,36 +1,36 @@
-//! Why a board is not driven, or not any more.
+//! Errors that keep a board from being driven, or end that.
 
 use crate::LinkError;
 
-/// What keeps pressures from being driven.
+/// An error that keeps pressures from being driven.
 #[derive(Debug, thiserror::Error)]
 pub enum DriveError {
     /// The board has another table than the one that was given.
     #[error("the pressures stay vented: {0}")]
     OtherTable(String),
-    /// The firmware has crashed before it came up.
+    /// The firmware crashed before this boot.
     #[error("the pressures stay vented: the firmware has crashed before this start: {0}")]
     Crashed(String),
-    /// Too little is known of the arm's shape.
+    /// No IMU is valid, so that the arm's shape is not known.
     #[error("the pressures stay vented: no IMU reads well")]
     Blind,
-    /// The board was asked for pressures and does not follow.
+    /// The board does not follow the requested pressures.
     #[error(
-        "the board keeps pressure {regulator} at {board_kpa:.1} kPa, asked for {asked_kpa:.1} kPa; all are vented now"
+        "the board keeps pressure {regulator} at {board_kpa:.1} kPa, requested {requested_kpa:.1} kPa; all are vented now"
     )]
     HeldBack {
         /// The regulator, from 1.
         regulator: usize,
         /// The board's set-point.
         board_kpa: f64,
-        /// The least that was asked for of late.
-        asked_kpa: f64,
+        /// Lowest request of the last second.
+        requested_kpa: f64,
     },
-    /// The board has started anew.
+    /// The board has restarted.
     #[error("the board has restarted, which vents it")]
     Restarted,
     /// The line is gone.
-    #[error("{0}; the board vents by itself within 1.5 s")]
+    #[error("{0}; the board vents on its own within 1.5 s")]
     Lost(String),
     /// A request was not done.
     #[error(transparent)]

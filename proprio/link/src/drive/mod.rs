@@ -1,11 +1,11 @@
-//! Pressures over time, sent to a board as it wants them: again and again, as it vents when nobody does.
+//! Pressures over time. They are sent to the board every 50 ms, as it vents when they are not renewed.
 //!
-//! | file | what it is for |
+//! | file | purpose |
 //! |---|---|
-//! | `profile.rs` | what the pressures shall be |
-//! | `ramp.rs` | that they change no faster than they may |
+//! | `profile.rs` | pressures over time |
+//! | `ramp.rs` | limit of their rate of change |
 //! | `driver.rs` | arming, set-points, venting |
-//! | `error.rs` | why a board is not driven |
+//! | `error.rs` | errors that end driving |
 
 mod driver;
 mod error;

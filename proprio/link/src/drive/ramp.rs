@@ -1,31 +1,31 @@
-//! Pressures that change no faster than they may.
+//! Limit of the pressures' rate of change.
 
 use telemetry::REGULATORS;
 
-/// Set-points on their way to what is wanted.
+/// Set-points on their way to the wanted pressures.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Ramp {
-    most_pa_per_s: f64,
+    max_pa_per_s: f64,
     now_pa: [f64; REGULATORS],
 }
 
 impl Ramp {
-    /// Vented, and changing by `most_pa_per_s` at most.
+    /// Vented, changing by `max_pa_per_s` at most.
     #[must_use]
-    pub fn new(most_pa_per_s: f64) -> Self {
-        Self { most_pa_per_s, now_pa: [0.0; REGULATORS] }
+    pub fn new(max_pa_per_s: f64) -> Self {
+        Self { max_pa_per_s, now_pa: [0.0; REGULATORS] }
     }
 
-    /// The set-points `step_s` after the last ones, Pa: as near to those wanted as they may be by then.
+    /// The set-points `step_s` after the last ones, Pa: as near to the wanted ones as the limit allows.
     pub fn step(&mut self, wanted_pa: [f64; REGULATORS], step_s: f64) -> [u32; REGULATORS] {
-        let most_pa = self.most_pa_per_s * step_s;
+        let max_pa = self.max_pa_per_s * step_s;
         for (now_pa, wanted_pa) in self.now_pa.iter_mut().zip(wanted_pa) {
-            *now_pa += (wanted_pa - *now_pa).clamp(-most_pa, most_pa);
+            *now_pa += (wanted_pa - *now_pa).clamp(-max_pa, max_pa);
         }
         self.now_pa.map(|now_pa| now_pa.round() as u32)
     }
 
-    /// Whether no pressure is left.
+    /// True where no pressure is left.
     #[must_use]
     pub fn is_vented(&self) -> bool {
         self.now_pa.iter().all(|now_pa| *now_pa <= 0.0)

@@ -23,7 +23,7 @@ export function shape(store, row, geometry) {
   return segments;
 }
 
-/** Points from a segment's start to its end: connector and arc, and what the two filters differ by spread over it. */
+/** Points from a segment's start to its end: connector and arc, with the difference of the two filters spread over them. */
 function line(x, y, heading, theta, end, geometry) {
   const chord = Math.hypot(end[0] - x, end[1] - y);
   const half = theta / 2;
@@ -45,15 +45,15 @@ function line(x, y, heading, theta, end, geometry) {
   });
 }
 
-/** Semi-axes and turn of the ellipse of 2 σ, mm, of a covariance in m². */
-export function ellipse([xx, xy, yy]) {
+/** Semi-axes, mm, and turn of the ellipse of a covariance in m²; `sigmas`: semi-axis in standard deviations. */
+export function ellipse([xx, xy, yy], sigmas) {
   const mean = (xx + yy) / 2, spread = Math.hypot((xx - yy) / 2, xy);
-  const axis = (variance) => 2000 * Math.sqrt(Math.max(0, variance));
+  const axis = (variance) => 1000 * sigmas * Math.sqrt(Math.max(0, variance));
   return { major: axis(mean + spread), minor: axis(mean - spread), turn: Math.atan2(2 * xy, xx - yy) / 2 };
 }
 
 /** Draws the arm in one row onto a canvas or an SVG of this size. */
-export function drawArm(c, width, height, { store, row, geometry, uncertainty, contact, colours }) {
+export function drawArm(c, width, height, { store, row, geometry, uncertainty, ellipseSigmas, contact, colours }) {
   const length = geometry?.reduce((sum, { length_mm, offset_mm }) => sum + length_mm + offset_mm, 0) ?? LENGTH;
   const scale = Math.min(width / (2.1 * length), height / (1.6 * length));
   const to = ([x, y]) => [width / 2 + x * scale, height - 0.42 * length * scale - y * scale];
@@ -73,7 +73,7 @@ export function drawArm(c, width, height, { store, row, geometry, uncertainty, c
     joint(c, to(end), heading, thick, colours);
     const covariance = uncertainty?.ends_m2?.[i];
     if (!covariance) return;
-    const { major, minor, turn } = ellipse(covariance);
+    const { major, minor, turn } = ellipse(covariance, ellipseSigmas);
     c.beginPath();
     c.ellipse(...to(end), major * scale, minor * scale, -turn, 0, 2 * Math.PI);
     c.strokeStyle = colours.ink;
@@ -95,7 +95,7 @@ function path(c, points, { colour, width, alpha = 1, dash = [] }) {
   c.globalAlpha = 1;
 }
 
-/** Lines every 100 mm, the base, and what 100 mm are. */
+/** Lines every 100 mm, the base, and a scale of 100 mm. */
 function grid(c, width, height, to, scale, colours) {
   const [x0, y0] = to([0, 0]);
   const step = 100 * scale;
@@ -140,7 +140,7 @@ function truth(c, store, row, to, colours) {
   }
 }
 
-/** What is to be read beside it. */
+/** The values next to the arm. */
 export function armValues(store, row) {
   const value = (name) => store.column(name)?.[row];
   const n = store.series('x', '_mm').length;

@@ -1,16 +1,16 @@
-// Pressures, for who has the token.
+// Control of the pressures, with the token.
 
-import { ask } from './feed.js';
+import { post } from './feed.js';
 
-/** Time from one sending of the set-points to the next, ms; they stand for 500 ms. */
+/** Period of the set-points, ms; the board holds them for 500 ms. */
 const REFRESH = 150;
 const LARGEST_KPA = 280;
 const NAMES = ['module 1 right', 'module 1 left', 'module 2 right', 'module 2 left', 'module 3 right', 'module 3 left'];
 
 export class Control {
-  constructor(section, complain) {
+  constructor(section, showError) {
     this.section = section;
-    this.complain = complain;
+    this.showError = showError;
     this.part = (id) => section.querySelector(id);
     this.button = document.getElementById('vent');
     this.takeToken();
@@ -25,7 +25,7 @@ export class Control {
     setInterval(() => this.refresh(), REFRESH);
   }
 
-  /** The token is behind the # of the address that was printed, and is taken out of it. */
+  /** Takes the token out of the address that was printed, which has it after the #. */
   takeToken() {
     const given = location.hash.match(/^#token=(\w+)$/)?.[1];
     if (given) {
@@ -61,7 +61,7 @@ export class Control {
     for (const { input, output, board } of this.sliders) output.textContent = `${input.value} kPa, board ${board.toFixed(0)} kPa`;
   }
 
-  /** What the board says: only while it is armed is there anything to be set. */
+  /** Shows the board's status; pressures can be set only while it is armed. */
   status(arm, health) {
     this.section.hidden = this.button.hidden = !arm.allows_control;
     this.lock();
@@ -82,11 +82,11 @@ export class Control {
 
   async send(command) {
     try {
-      await ask('/control', command, this.token);
+      await post('/control', command, this.token);
       return true;
     } catch (error) {
       if (error.status === 401) this.setToken(null);
-      this.complain(error.message);
+      this.showError(error.message);
       return false;
     }
   }
@@ -94,7 +94,7 @@ export class Control {
   async arm() {
     if (await this.send('arm')) {
       this.isDriving = true;
-      // The next status may still be of before.
+      // The next status may still be older.
       this.armedUntil = performance.now() + 1000;
     }
   }
@@ -105,7 +105,7 @@ export class Control {
     if (this.token) await this.send('vent');
   }
 
-  /** Sends the set-points again, so that they stand. A page that is hidden does not. */
+  /** Sends the set-points again, so that the board holds them. A hidden page does not. */
   async refresh() {
     if (!this.isDriving || document.hidden || this.isSending) return;
     this.isSending = true;

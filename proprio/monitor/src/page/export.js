@@ -1,8 +1,8 @@
-// What is seen, as files.
+// Export of the visible data to files.
 
 import { visible } from './plot.js';
 
-/** Hands a text to the browser as a file. */
+/** Saves a text as a file of the browser. */
 export function save(name, type, text) {
   const link = document.createElement('a');
   link.href = URL.createObjectURL(new Blob([text], { type }));
@@ -25,7 +25,7 @@ export function csv(store, from, to, limit) {
   return lines.join('\n') + '\n';
 }
 
-/** What a canvas is drawn with, as far as this page uses it, for an SVG. */
+/** The part of a canvas's context that this page uses, for an SVG. */
 export class SvgContext {
   constructor() {
     Object.assign(this, { strokeStyle: '#000', fillStyle: '#000', lineWidth: 1, lineCap: 'butt', lineJoin: 'miter' });
@@ -36,7 +36,7 @@ export class SvgContext {
     this.clips = 0;
   }
 
-  /** Where the next drawing's corner is. */
+  /** Begins a group with its corner at this point. */
   group(x, y) { this.parts.push(`<g transform="translate(${x} ${y})">`); }
   endGroup() { this.parts.push('</g>'); }
 

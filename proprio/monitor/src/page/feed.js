@@ -1,15 +1,15 @@
-// The line to the server.
+// The connection to the server.
 
-/** Time from one try to the next, ms. */
-const AGAIN = 1000;
+/** Time between two attempts to connect, ms. */
+const RETRY = 1000;
 
 /**
- * Keeps a WebSocket to the server, and tells what comes: `arm(message)`, `history(buffer)`, `rows(message)`,
+ * Keeps a WebSocket to the server and calls these `handlers`: `arm(message)`, `history(buffer)`, `rows(message)`,
  * `status(message)`, `skipped(count)`, `gone()`.
  */
 export class Feed {
-  constructor(tell) {
-    this.tell = tell;
+  constructor(handlers) {
+    this.handlers = handlers;
     this.connect();
   }
 
@@ -17,8 +17,8 @@ export class Feed {
     this.socket = new WebSocket(`ws://${location.host}/feed`);
     this.socket.onmessage = ({ data }) => this.take(JSON.parse(data));
     this.socket.onclose = () => {
-      this.tell.gone();
-      setTimeout(() => this.connect(), AGAIN);
+      this.handlers.gone();
+      setTimeout(() => this.connect(), RETRY);
     };
   }
 
@@ -27,43 +27,43 @@ export class Feed {
       case 'arm':
         // Rows that come before the history are kept until it is here.
         this.waiting = [];
-        this.tell.arm(message);
+        this.handlers.arm(message);
         this.catchUp();
         break;
       case 'rows':
-        if (this.waiting) this.waiting.push(message); else this.tell.rows(message);
+        if (this.waiting) this.waiting.push(message); else this.handlers.rows(message);
         break;
       case 'status':
-        this.tell.status(message);
+        this.handlers.status(message);
         break;
       case 'skipped':
-        this.tell.skipped(message.messages);
+        this.handlers.skipped(message.messages);
         break;
     }
   }
 
-  /** Fetches what this page has missed. */
+  /** Fetches the rows that this page has missed. */
   async catchUp() {
     this.waiting ??= [];
     try {
       const answer = await fetch('/history');
-      if (answer.ok) this.tell.history(await answer.arrayBuffer());
+      if (answer.ok) this.handlers.history(await answer.arrayBuffer());
     } catch {
-      // The server is gone; the socket says so.
+      // The server is gone; the socket's `onclose` handles that.
     }
     const waiting = this.waiting ?? [];
     this.waiting = null;
-    waiting.forEach((message) => this.tell.rows(message));
+    waiting.forEach((message) => this.handlers.rows(message));
   }
 
-  /** Says which batch is on the screen. */
+  /** Reports the batch that is on the screen. */
   shown(newest_us) {
     if (this.socket.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify({ shown_us: newest_us }));
   }
 }
 
-/** Asks the server for something; gives its answer, or throws what it says. */
-export async function ask(path, body, token) {
+/** Sends a request to the server; returns its answer, or throws its error. */
+export async function post(path, body, token) {
   const headers = { 'Content-Type': 'application/json' };
   if (token) headers.Authorization = `Bearer ${token}`;
   const answer = await fetch(path, { method: 'POST', headers, body: JSON.stringify(body) }).catch(() => {

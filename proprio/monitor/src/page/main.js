@@ -1,28 +1,28 @@
-// The page: what there is, drawn as often as it changes.
+// The page: its data and its parts, drawn when they change.
 
 import { Store } from './store.js';
-import { Feed, ask } from './feed.js';
+import { Feed, post } from './feed.js';
 import { armValues, drawArm } from './arm.js';
 import { PLOTS, Range, clock, drawPlot, extent, innerWidth, visible } from './plot.js';
 import { View, handle } from './view.js';
-import { Strips, text } from './sensors.js';
-import { Facts } from './facts.js';
-import { Chooser, load } from './sessions.js';
+import { SensorList, text } from './sensors.js';
+import { BoardPanel } from './board_panel.js';
+import { SessionPicker, load } from './sessions.js';
 import { Control } from './control.js';
 import { SvgContext, csv, save } from './export.js';
 
 const $ = (id) => document.getElementById(id);
 
-/** Time from one look at what need not be drawn with every row to the next, ms. */
-const SLOWLY = 100;
+/** Period of the parts that are not drawn with every row, ms. */
+const PERIOD = 100;
 
 const app = {
   arm: null, status: null, live: null, session: null,
   view: new View(), isFixed: false, isPlaying: false, hidden: new Set(), marks: [],
   uncertainty: null, contact: null,
-  /** Something was changed by hand; rows have come. */
+  /** The user has changed something; new rows have come. */
   isDirty: true, isNew: false, newest_us: 0, drawn: 0, skipped: 0,
-  /** What is shown: a session, or what comes. */
+  /** The rows that are shown: of a session, or live. */
   get store() { return this.session?.store ?? this.live; },
   changed() { this.isDirty = true; },
   fix(isFixed) {
@@ -32,10 +32,10 @@ const app = {
   },
 };
 
-const strips = new Strips($('strips'));
-const facts = new Facts($('facts'), $('notes'));
-const control = new Control($('control'), complain);
-const chooser = new Chooser($('sessions'), () => app.arm?.opens_sessions, openSession);
+const sensorList = new SensorList($('strips'));
+const boardPanel = new BoardPanel($('facts'), $('notes'));
+const control = new Control($('control'), showError);
+const sessionPicker = new SessionPicker($('sessions'), () => app.arm?.opens_sessions, openSession);
 const plots = PLOTS.map(figure);
 
 const feed = new Feed({
@@ -47,7 +47,7 @@ const feed = new Feed({
     }
     for (const id of ['record', 'mark', 'board']) $(id).hidden = !arm.is_live;
     linkState(arm.is_live ? 'wait' : 'ok', arm.is_live ? 'waiting for the board' : 'sessions only');
-    if (arm.session && !app.session) load(arm.session, {}).then(openSession, (error) => complain(error.message));
+    if (arm.session && !app.session) load(arm.session, {}).then(openSession, (error) => showError(error.message));
   },
   history(buffer) {
     app.live.load(buffer);
@@ -55,7 +55,7 @@ const feed = new Feed({
   },
   rows({ rows, newest_us, uncertainty, contact }) {
     for (const [time, values] of rows) {
-      // The history may have it.
+      // The history may contain it.
       if (!(time <= app.live.last)) app.live.push(time, values);
     }
     Object.assign(app, { newest_us, uncertainty: uncertainty ?? app.uncertainty, contact: contact ?? app.contact });
@@ -96,17 +96,17 @@ function recordState(isRecording, isPossible) {
   $('mark').disabled = !isRecording;
 }
 
-/** What went wrong, until the next thing is done or some seconds have passed. */
-function complain(message) {
+/** Shows an error until the next action, or for some seconds. */
+function showError(message) {
   text($('notice'), message);
   $('notice').hidden = !message;
-  clearTimeout(complain.timer);
-  if (message) complain.timer = setTimeout(() => complain(''), 8000);
+  clearTimeout(showError.timer);
+  if (message) showError.timer = setTimeout(() => showError(''), 8000);
 }
 
-/** For another arm: strips, and the legend that shows and hides segments. */
+/** Builds the parts for another arm: sensors, and the legend that shows and hides segments. */
 function build() {
-  strips.build(app.store.names);
+  sensorList.build(app.store.names);
   const segments = app.store.series('theta', '_deg').length;
   app.hidden.clear();
   $('segments').replaceChildren(...Array.from({ length: segments }, (_, i) => {
@@ -124,7 +124,7 @@ function build() {
   app.changed();
 }
 
-/** The marks of what is shown, each a button that goes there. */
+/** Lists the marks, each as a button that moves the cursor to it. */
 function listMarks() {
   const { marks } = app.session ?? app;
   $('marks').hidden = !marks.length;
@@ -184,11 +184,11 @@ async function inFull() {
   try {
     openSession(await load(app.session.name, { from_s, to_s }));
   } catch (error) {
-    complain(error.message);
+    showError(error.message);
   }
 }
 
-/** Pauses and goes on; in a session, plays. */
+/** Pauses and resumes; plays a session. */
 function pause() {
   if (!app.store?.count) return;
   if (app.session) {
@@ -206,8 +206,7 @@ function reset() {
   plots.forEach(({ range }) => range.reset());
   app.fix(false);
   app.view.span = Number($('span').value) || 0;
-  if (app.session) app.view.end = app.session.store.last;
-  else app.view.follow();
+  if (app.session) app.view.end = app.session.store.last; else app.view.follow();
   app.changed();
 }
 
@@ -244,24 +243,24 @@ function armSpec() {
   const row = store?.count ? store.rowAt(app.view.cursor ?? store.last) : 0;
   const geometry = (app.session ? app.session.arm : app.arm)?.geometry;
   const isNow = !app.session && app.view.isFollowing;
-  return { store, row, geometry, colours: palette, uncertainty: isNow && app.uncertainty, contact: isNow && app.contact };
+  return { store, row, geometry, colours: palette, ellipseSigmas: app.arm?.ellipse_sigmas, uncertainty: isNow && app.uncertainty, contact: isNow && app.contact };
 }
 
-function plotSpec({ before, range, canvas }) {
+function plotSpec({ prefix, range, canvas }) {
   const { store, view, hidden } = app;
   const [from, to] = wholePixels(view.window(store), innerWidth(canvas));
-  const columns = store?.series(before, '_deg') ?? [];
+  const columns = store?.series(prefix, '_deg') ?? [];
   const seen = columns.filter((_, i) => !hidden.has(i));
   const [low, high] = store?.count ? extent(seen, ...visible(store, from, to, view.limit)) : [NaN, NaN];
   if (!app.isFixed) range.follow(low, high);
   const hasTable = Boolean(app.session || app.arm?.opens_sessions);
   const unknown = !store?.count ? 'nothing has come yet' : !hasTable ? 'takes a table: --table TABLE.toml'
-    : app.session || before === 'theta' ? 'not known here' : 'known from the next tare on';
+    : app.session || prefix === 'theta' ? 'not known here' : 'known from the next tare on';
   const empty = low <= high ? '' : unknown;
   return { store, columns, range, from, to, limit: view.limit, cursor: view.cursor, marks: (app.session ?? app).marks, hidden, colours: palette, empty };
 }
 
-/** The window moved on by whole pixels only: rows stay in their columns, and what would look the same is not drawn again. */
+/** The window, moved by whole pixels only: rows stay in their columns, and an unchanged picture is not drawn again. */
 function wholePixels([from, to], width) {
   const pixel = (to - from) / width;
   const end = Math.ceil(to / pixel) * pixel;
@@ -280,14 +279,14 @@ function draw(isAll) {
   app.drawn++;
 }
 
-function drawSlowly() {
+function drawPeriodic() {
   const { store, view } = app;
   if (!store) return;
   const isSession = Boolean(app.session);
   const row = isSession ? store.rowAt(view.cursor ?? store.last) : Math.max(store.begin, store.end - 1);
-  strips.show(store, row, isSession ? null : app.status?.sensors ?? []);
+  sensorList.show(store, row, isSession ? null : app.status?.sensors ?? []);
   const isRunning = isSession ? app.isPlaying : view.isFollowing;
-  text($('pause'), isRunning ? 'Pause' : isSession ? 'Play' : 'Go on');
+  text($('pause'), isRunning ? 'Pause' : isSession ? 'Play' : 'Resume');
   $('pause').setAttribute('aria-pressed', !isRunning);
   const scrub = $('scrub');
   scrub.disabled = !store.count;
@@ -301,13 +300,13 @@ function drawSlowly() {
   $('key-truth').hidden = !store.names.some((name) => /^truth\d+_x_mm$/.test(name) && at(name));
   $('key-ellipse').hidden = !app.uncertainty;
   $('key-contact').hidden = !app.contact;
-  facts.show(app.status);
+  boardPanel.show(app.status);
 }
 
 let drawnTo = NaN, seen_us = 0, shown_us = 0, played = performance.now();
 function frame(now) {
   requestAnimationFrame(frame);
-  // What was drawn in the frame before is on the screen now.
+  // The picture of the last frame is on the screen now.
   if (shown_us) feed.shown(shown_us);
   shown_us = 0;
   if (app.isPlaying && app.session) {
@@ -323,13 +322,13 @@ function frame(now) {
   if (!app.session && app.view.isFollowing && app.newest_us !== seen_us) shown_us = seen_us = app.newest_us;
 }
 requestAnimationFrame(frame);
-setInterval(drawSlowly, SLOWLY);
+setInterval(drawPeriodic, PERIOD);
 setInterval(() => {
-  facts.showPage(app.drawn, app.store?.count ?? 0, app.skipped);
+  boardPanel.showPage(app.drawn, app.store?.count ?? 0, app.skipped);
   app.drawn = 0;
 }, 1000);
 
-// Hands
+// Input
 
 function exportCsv() {
   if (app.store?.count) save('proprio.csv', 'text/csv', csv(app.store, ...app.view.window(app.store), app.view.limit));
@@ -357,24 +356,24 @@ function exportSvg() {
 }
 
 async function attempt(work) {
-  complain('');
+  showError('');
   try {
     await work();
   } catch (error) {
-    complain(error.message);
+    showError(error.message);
   }
 }
 
-const record = () => attempt(() => ask('/record', { on: $('record').getAttribute('aria-pressed') !== 'true' }));
+const record = () => attempt(() => post('/record', { on: $('record').getAttribute('aria-pressed') !== 'true' }));
 const mark = () => attempt(async () => {
   const text = `mark ${app.marks.length + 1}`;
-  await ask('/mark', { text });
+  await post('/mark', { text });
   app.marks.push({ time_s: app.live.last, text });
   listMarks();
   app.changed();
 });
 
-const BUTTONS = { pause, record, mark, open: () => attempt(() => chooser.show()), 'close-session': closeSession, reset, csv: exportCsv, svg: exportSvg, 'in-full': inFull };
+const BUTTONS = { pause, record, mark, open: () => attempt(() => sessionPicker.show()), 'close-session': closeSession, reset, csv: exportCsv, svg: exportSvg, 'in-full': inFull };
 for (const [id, act] of Object.entries(BUTTONS)) $(id).addEventListener('click', act);
 $('fixed').addEventListener('change', ({ target }) => app.fix(target.checked));
 $('span').addEventListener('change', ({ target }) => {

@@ -1,10 +1,10 @@
 // Plots over time, of any number of rows.
 
 export const PLOTS = [
-  { title: 'Bend angle θ', unit: '°', before: 'theta', least: 20 },
-  { title: 'Drift taken from the IMUs', unit: '°', before: 'drift', least: 2 },
-  { title: 'Innovation by the corrected IMUs', unit: '°', before: 'innovation_imu', least: 1 },
-  { title: 'Innovation by the bend sensors', unit: '°', before: 'innovation_bend', least: 4 },
+  { title: 'Bend angle θ', unit: '°', prefix: 'theta', least: 20 },
+  { title: 'Drift taken from the IMUs', unit: '°', prefix: 'drift', least: 2 },
+  { title: 'Innovation by the corrected IMUs', unit: '°', prefix: 'innovation_imu', least: 1 },
+  { title: 'Innovation by the bend sensors', unit: '°', prefix: 'innovation_bend', least: 4 },
 ];
 
 const LEFT = 48, RIGHT = 10, TOP = 8, BOTTOM = 20;
@@ -18,7 +18,7 @@ export class Range {
 
   reset() { [this.low, this.high] = [-this.least / 2, this.least / 2]; }
 
-  /** Follows what is seen: grows at once, and shrinks where much of it is empty, so that it does not flicker. */
+  /** Follows the visible values: grows at once, and shrinks where much of the range is empty, so that it does not flicker. */
   follow(low, high) {
     if (!(low <= high)) return;
     const pad = Math.max(0.06 * (high - low), (this.least - (high - low)) / 2, 0);
@@ -41,7 +41,7 @@ export class Range {
   }
 }
 
-/** Rows between two times, and one on each side, so that lines go on to the edge; none after the limit. */
+/** Rows between two times, and one on each side, so that lines reach the edge; none after the limit. */
 export function visible(store, from, to, limit) {
   return [store.rowAt(from), Math.min(store.end, store.rowAt(to) + 2, store.rowAt(limit) + 1)];
 }
@@ -98,12 +98,12 @@ export function pieces(times, column, first, last, toX, toY) {
   return found;
 }
 
-/** Time between rows at the start of what is seen: a slow session is no gap. */
+/** Time between rows at the start of the visible part: a slow session is no gap. */
 function gap(times, i, first) {
   return i > first + 1 ? times[first + 1] - times[first] : 0;
 }
 
-/** Steps of 1, 2 or 5 times a power of ten, about so many of them. */
+/** About this number of steps of 1, 2 or 5 times a power of ten. */
 export function ticks(low, high, about) {
   const rough = (high - low) / about, power = 10 ** Math.floor(Math.log10(rough));
   const step = [1, 2, 5, 10].map((times) => times * power).find((candidate) => candidate >= rough);
@@ -213,7 +213,7 @@ function axes(c, inner, { from, to, range, toX, toY, colours, width }) {
   }
 }
 
-/** Where a pointer is in a plot, as shares of its width and height. */
+/** Position of a pointer in a plot, as shares of its width and height. */
 export function shares(canvas, event) {
   const box = canvas.getBoundingClientRect();
   const x = (event.clientX - box.left - LEFT) / (box.width - LEFT - RIGHT);

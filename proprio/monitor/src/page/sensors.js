@@ -1,46 +1,46 @@
-// A strip for each sensor: value, state, reason.
+// List of the sensors: value, state, reason.
 
 import { minus } from './plot.js';
 
-/** How a state looks; whatever is not here is bad. */
+/** Look of each state; any other state is bad. */
 const LOOKS = { Ok: 'ok', Slow: 'warn', Intermittent: 'warn', read: 'ok', missing: 'bad', '–': 'none' };
 
-export class Strips {
+export class SensorList {
   constructor(list) {
     this.list = list;
-    this.strips = [];
+    this.sensors = [];
   }
 
-  /** One for each bend sensor, then one for each IMU. */
+  /** Adds an item for each bend sensor, then one for each IMU. */
   build(names) {
-    const sensors = names.filter((name) => /^(bend\d+[ab]_adc|imu\d+_deg)$/.test(name));
+    const columns = names.filter((name) => /^(bend\d+[ab]_adc|imu\d+_deg)$/.test(name));
     this.list.replaceChildren();
-    this.strips = sensors.map((column) => {
+    this.sensors = columns.map((column) => {
       const [, kind, number] = column.match(/^(bend|imu)(\d+[ab]?)/);
       const item = document.createElement('li');
       const part = (tag, className) => item.appendChild(Object.assign(document.createElement(tag), { className }));
       part('b', 'name').textContent = `${kind === 'imu' ? 'IMU' : 'bend'} ${number}`;
-      const strip = { column, kind, item, value: part('span', 'value'), state: part('span', 'state'), reason: part('span', 'reason') };
+      const sensor = { column, kind, item, value: part('span', 'value'), state: part('span', 'state'), reason: part('span', 'reason') };
       item.id = `strip-${kind}${number}`;
       this.list.append(item);
-      return strip;
+      return sensor;
     });
   }
 
-  /** `health`: what the board says of each, in this order; without it a sensor is read or missing. */
+  /** `health`: the board's state of each, in this order; without it a sensor is read or missing. */
   show(store, row, health) {
-    this.strips.forEach((strip, i) => {
-      const told = health?.[i];
-      // A board that says nothing of itself reads nothing either.
-      const value = store.count && (told || !health) ? store.column(strip.column)[row] : NaN;
+    this.sensors.forEach((sensor, i) => {
+      const status = health?.[i];
+      // Without the board's health there is no current reading.
+      const value = store.count && (status || !health) ? store.column(sensor.column)[row] : NaN;
       const isRead = Number.isFinite(value);
-      const state = told?.state ?? (!store.count || health ? '–' : isRead ? 'read' : 'missing');
-      const reason = told ? [told.reason, told.missed ? `${told.missed} missed` : ''].filter(Boolean).join(', ') : '';
-      text(strip.value, !isRead ? '–' : strip.kind === 'imu' ? `${minus(value.toFixed(1))}°` : `${value} counts`);
-      text(strip.state, state);
-      text(strip.reason, reason);
+      const state = status?.state ?? (!store.count || health ? '–' : isRead ? 'read' : 'missing');
+      const reason = status ? [status.reason, status.missed ? `${status.missed} missed` : ''].filter(Boolean).join(', ') : '';
+      text(sensor.value, !isRead ? '–' : sensor.kind === 'imu' ? `${minus(value.toFixed(1))}°` : `${value} counts`);
+      text(sensor.state, state);
+      text(sensor.reason, reason);
       const look = LOOKS[state] ?? 'bad';
-      if (strip.item.dataset.look !== look) strip.item.dataset.look = look;
+      if (sensor.item.dataset.look !== look) sensor.item.dataset.look = look;
     });
   }
 }

@@ -1,10 +1,10 @@
-// Sessions that were recorded: chosen, opened, and loaded again in part.
+// Recorded sessions: picked, opened, and loaded again in part.
 
 import { Store, headOf } from './store.js';
 
 const size = (bytes) => (bytes < 1e6 ? `${Math.ceil(bytes / 1e3)} kB` : `${(bytes / 1e6).toFixed(1)} MB`);
 
-/** Fetches a session, or what of it is between two times. */
+/** Fetches a session, or its part between two times. */
 export async function load(name, part) {
   const query = new URLSearchParams({ name, ...part });
   const answer = await fetch(`/session?${query}`);
@@ -16,8 +16,8 @@ export async function load(name, part) {
   return { name, store, arm: about.arm, samples: about.samples, every: about.every, marks: about.marks };
 }
 
-/** The dialog that lists what can be opened. */
-export class Chooser {
+/** The dialog that lists the sessions that can be opened. */
+export class SessionPicker {
   constructor(dialog, opens, chosen) {
     this.dialog = dialog;
     this.chosen = chosen;
@@ -33,7 +33,7 @@ export class Chooser {
     this.file.disabled = !this.opens();
     this.files.replaceChildren();
     if (!this.opens()) {
-      this.note.textContent = 'A session is shown by what the estimator makes of it: start proprio monitor with --table TABLE.toml.';
+      this.note.textContent = 'A session is shown with the estimates of a replay, which needs a table: start proprio monitor with --table TABLE.toml.';
       return;
     }
     const files = await (await fetch('/sessions')).json();

@@ -48,16 +48,16 @@ export class Store {
   }
 
   /** Values of one kind, a segment each, in a row: `series('theta', '_deg')`. */
-  series(before, behind) {
+  series(prefix, suffix) {
     const found = [];
     for (let i = 1; ; i++) {
-      const column = this.column(`${before}${i}${behind}`);
+      const column = this.column(`${prefix}${i}${suffix}`);
       if (!column) return found;
       found.push(column);
     }
   }
 
-  /** Takes the rows of an answer of the server in place of its own; gives what is said in front of them. */
+  /** Replaces its rows by those of the server's answer; returns the description in front of them. */
   load(buffer) {
     const head = headOf(buffer);
     const { about, offset } = head;
@@ -70,7 +70,7 @@ export class Store {
   }
 }
 
-/** One line of JSON, then numbers. */
+/** Header of an answer: one line of JSON, before the numbers. */
 export function headOf(buffer) {
   const bytes = new Uint8Array(buffer);
   const end = bytes.indexOf(10);

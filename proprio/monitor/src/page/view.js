@@ -1,4 +1,4 @@
-// Which part of the time is seen, and the hands on it.
+// The visible part of the time, and its input.
 
 import { innerWidth, shares } from './plot.js';
 
@@ -12,7 +12,7 @@ export class View {
     this.follow();
   }
 
-  /** To the newest row, and on with it. */
+  /** Moves to the newest row and follows new ones. */
   follow() {
     this.end = null;
     this.cursor = null;
@@ -21,17 +21,17 @@ export class View {
 
   get isFollowing() { return this.end === null; }
 
-  /** Stays where it is; what comes later is not seen. */
+  /** Stops following; later rows are not shown. */
   hold(store) {
     if (this.isFollowing) this.limit = store.last;
     [, this.end] = this.window(store);
     this.cursor ??= Math.min(this.end, this.limit);
   }
 
-  /** Time of the last row that is seen. */
+  /** Time of the last visible row. */
   last(store) { return Math.min(this.limit, store.last); }
 
-  /** From and to; a span of 0 is all there is. */
+  /** Begin and end; a span of 0 shows all rows. */
   window(store) {
     const last = store?.count ? this.last(store) : 0, first = store?.count ? store.first : 0;
     const span = this.span || Math.max(last - first, SHORTEST);
@@ -40,7 +40,7 @@ export class View {
     return [to - span, to];
   }
 
-  /** Another span around a share of the width; what follows keeps its end. */
+  /** Changes the span around a share of the width; a window that follows keeps its end. */
   zoom(store, factor, share) {
     const [from, to] = this.window(store);
     const span = Math.max(SHORTEST, (to - from) * factor);
@@ -48,7 +48,7 @@ export class View {
     this.span = span;
   }
 
-  /** This span, around the moment that the arm shows; as far as there are rows on both sides. */
+  /** Sets the span around the moment that the arm shows, within the rows. */
   setSpan(store, span) {
     if (!this.isFollowing && span) {
       const [from, to] = this.window(store);
@@ -61,7 +61,7 @@ export class View {
     this.span = span;
   }
 
-  /** To the right by a share of the width, which ends all following. */
+  /** Moves to the right by a share of the width and stops following. */
   move(store, share) {
     this.hold(store);
     const [from, to] = this.window(store);
@@ -70,7 +70,7 @@ export class View {
     this.end = Math.min(Math.max(end, store.first + 0.1 * this.span), this.last(store) + 0.9 * this.span);
   }
 
-  /** To this moment; the window follows it. */
+  /** Moves the cursor to this moment, and the window to the cursor. */
   seek(store, time) {
     this.hold(store);
     this.cursor = Math.min(Math.max(time, store.first), this.last(store));
@@ -80,7 +80,7 @@ export class View {
 }
 
 /**
- * Mouse, fingers and keys on a plot. `app` has `store`, `view`, `isFixed` and `changed()`; `range` is the plot's own.
+ * Handles mouse, touch and keys on a plot. `app` has `store`, `view`, `isFixed` and `changed()`; `range` is the plot's own.
  */
 export function handle(canvas, app, range) {
   const pointers = new Map();
@@ -116,7 +116,7 @@ export function handle(canvas, app, range) {
     app.changed();
   });
   const release = (event) => {
-    // A click without a movement is a moment.
+    // A click without a movement picks a moment.
     if (event.type === 'pointerup' && moved <= 4 && pointers.size === 1 && app.store.count) {
       const [from, to] = app.view.window(app.store);
       app.view.seek(app.store, from + shares(canvas, event)[0] * (to - from));

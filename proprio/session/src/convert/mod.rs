@@ -1,6 +1,6 @@
-//! Sessions from one kind of file to another: CSV, a recording, or a board's raw bytes.
+//! Conversion of sessions between file formats: CSV, a recording, or a board's raw bytes.
 //!
-//! What the new kind can hold is there to the bit. What it cannot is said.
+//! Values that the new format can hold are exact to the bit; the others are reported.
 
 mod samples;
 mod to_csv;
@@ -14,15 +14,14 @@ use samples::Samples;
 use telemetry::SEGMENTS;
 
 use crate::recording::{Item, Reader};
-use crate::{Error, Header, Kind, Needs, OutputFile, Problem, Progress, SessionError, SessionReader};
+use crate::{
+    Error, FileFormat, Header, OutputFile, Progress, RequiredColumns, SessionError, SessionProblem, SessionReader,
+};
 
-/// Name of the work in its progress.
-const WORK: &str = "converting";
-
-/// Converts `input` to `output`, whose kind its name tells, and gives what was left out.
+/// Converts `input` to `output`, in the format of its name, and returns what was left out.
 ///
 /// # Errors
-/// What is wrong with the input, [`Error::OutputKind`] and [`Error::SameKind`], [`Error::Output`].
+/// [`Error::Session`] of the input, [`Error::OutputKind`] and [`Error::SameKind`], [`Error::Output`].
 pub fn convert(input: &Path, output: &Path, progress: &mut dyn Progress) -> Result<Vec<String>, Error> {
     let kind = output_kind(output)?;
     let header = Header::of(input)?;
@@ -30,17 +29,17 @@ pub fn convert(input: &Path, output: &Path, progress: &mut dyn Progress) -> Resu
         return Err(Error::SameKind(input.to_owned()));
     }
     if header.segments > SEGMENTS {
-        let problem = Problem::TooManySegments(header.segments);
+        let problem = SessionProblem::TooManySegments(header.segments);
         return Err(SessionError { path: input.to_owned(), line: None, column: None, problem }.into());
     }
     let file = OutputFile::create(output, &[input])?;
-    let reader = SessionReader::open(input, &Needs { bend: vec![None; header.segments], truth: false })?;
+    let reader = SessionReader::open(input, &RequiredColumns { bend: vec![None; header.segments], truth: false })?;
     let (file, mut left_out) = match (header.kind, kind) {
-        (_, Kind::Csv) => to_csv::write(reader, file, progress)?,
-        (Kind::Recording, _) => extract(input, file, reader.has_truth())?,
-        (Kind::Csv, Kind::Raw) => frames(reader, file, progress)?,
-        (Kind::Csv, _) => to_recording::of_samples(reader, file, output, progress)?,
-        (Kind::Raw, _) => to_recording::of_bytes(input, file, output)?,
+        (_, FileFormat::Csv) => to_csv::write(reader, file, progress)?,
+        (FileFormat::Recording, _) => extract(input, file, reader.has_truth())?,
+        (FileFormat::Csv, FileFormat::Raw) => frames(reader, file, progress)?,
+        (FileFormat::Csv, _) => to_recording::of_samples(reader, file, output, progress)?,
+        (FileFormat::Raw, _) => to_recording::of_bytes(input, file, output)?,
     };
     if !header.unknown.is_empty() {
         left_out.push(format!("the columns {} are left out", header.unknown.join(", ")));
@@ -49,11 +48,11 @@ pub fn convert(input: &Path, output: &Path, progress: &mut dyn Progress) -> Resu
     Ok(left_out)
 }
 
-fn output_kind(output: &Path) -> Result<Kind, Error> {
+fn output_kind(output: &Path) -> Result<FileFormat, Error> {
     match output.extension().unwrap_or_default().to_ascii_lowercase().to_str() {
-        Some("csv") => Ok(Kind::Csv),
-        Some("mcap") => Ok(Kind::Recording),
-        Some("bin") => Ok(Kind::Raw),
+        Some("csv") => Ok(FileFormat::Csv),
+        Some("mcap") => Ok(FileFormat::Recording),
+        Some("bin") => Ok(FileFormat::Raw),
         _ => Err(Error::OutputKind(output.to_owned())),
     }
 }
@@ -61,9 +60,9 @@ fn output_kind(output: &Path) -> Result<Kind, Error> {
 /// The bytes of a recording, one after the other.
 fn extract(input: &Path, mut file: OutputFile, has_truth: bool) -> Result<(OutputFile, Vec<String>), Error> {
     let fail = |problem| SessionError { path: input.to_owned(), line: None, column: None, problem };
-    let source = File::open(input).map_err(|error| fail(Problem::Read(error)))?;
+    let source = File::open(input).map_err(|error| fail(SessionProblem::Read(error)))?;
     for item in Reader::new(BufReader::with_capacity(1 << 16, source)) {
-        if let Item::Bytes(_, bytes) = item.map_err(|error| fail(Problem::Recording(error)))? {
+        if let Item::Bytes(_, bytes) = item.map_err(|error| fail(SessionProblem::Recording(error)))? {
             file.write_all(&bytes).map_err(|error| file.error(error))?;
         }
     }

@@ -5,6 +5,9 @@ use telemetry::{BEND_SENSORS, Encoder, MAX_FRAME, Message, SEGMENTS, Sample};
 
 use crate::{Error, Progress, Row, SessionReader};
 
+/// Name of the work in its progress.
+pub const WORK: &str = "converting";
+
 /// Units of 2⁻³⁰ in one of a BNO055.
 const UNIT: i32 = 1 << 16;
 
@@ -27,7 +30,7 @@ impl<'p> Samples<'p> {
     /// The next row with its sample and the frame that holds it.
     pub fn next(&mut self) -> Result<Option<(Vec<u8>, Sample, Row)>, Error> {
         let Some(row) = self.reader.next_row()? else { return Ok(None) };
-        self.progress.advance(super::WORK, self.reader.progress());
+        self.progress.advance(WORK, self.reader.progress());
         if row.starts && self.tick > 0 {
             self.tare = self.tare.wrapping_add(1);
         }
@@ -38,14 +41,14 @@ impl<'p> Samples<'p> {
         for (place, reading) in imu.iter_mut().zip(row.sample.imu) {
             *place = reading.map(|reading| self.quaternion(reading));
         }
-        let sample = Sample { tick: self.tick, time_us: row.sample.time_us, tare: self.tare, bend, imu };
+        let sample = Sample { tick: self.tick, time_us: row.sample.time_us, tare_epoch: self.tare, bend, imu };
         self.tick += 1;
         let mut buffer = [0; MAX_FRAME];
         let frame = self.encoder.encode(&Message::Sample(sample), &mut buffer).expect("every sample fits a frame");
         Ok(Some((frame.to_vec(), sample, row)))
     }
 
-    /// As a BNO055 gives it.
+    /// A reading in the units of a BNO055.
     fn quaternion(&mut self, reading: ImuReading) -> [i16; 4] {
         match reading {
             ImuReading::Quaternion(parts) => {
@@ -60,15 +63,15 @@ impl<'p> Samples<'p> {
         }
     }
 
-    /// What could not be held to the bit.
+    /// Notes about values that were rounded.
     pub fn rounded(&self) -> Vec<String> {
-        let mut said = Vec::new();
+        let mut notes = Vec::new();
         if self.headings > 0 {
-            said.push("headings became quaternions, rounded to the 0.007 deg of an IMU".to_owned());
+            notes.push("headings became quaternions, rounded to the 0.007 deg of an IMU".to_owned());
         }
         if self.rounded > 0 {
-            said.push(format!("{} quaternions were rounded to the units of an IMU, 2^-14", self.rounded));
+            notes.push(format!("{} quaternions were rounded to the units of an IMU, 2^-14", self.rounded));
         }
-        said
+        notes
     }
 }

@@ -1,19 +1,20 @@
-//! What a board has read, as CSV.
+//! A recording's readings as CSV.
 
 use std::io::{self, Write};
 
 use estimator_core::{ImuReading, SENSORS_PER_SEGMENT};
 
-use crate::{Error, Kind, OutputFile, Progress, Row, SENSOR_NAMES, SessionReader, TARE, Truth};
+use super::samples::WORK;
+use crate::{Error, FileFormat, OutputFile, Progress, Row, SENSOR_NAMES, SessionReader, TARE, Truth};
 
-/// Which columns there are.
+/// The columns of the file.
 struct Layout {
     bend_sensors: Vec<[bool; SENSORS_PER_SEGMENT]>,
     has_truth: bool,
     has_true_headings: bool,
 }
 
-/// Writes all rows, and gives what was left out.
+/// Writes all rows and returns what was left out.
 pub fn write(
     mut reader: SessionReader,
     mut file: OutputFile,
@@ -28,9 +29,9 @@ pub fn write(
         starts += u64::from(row.starts);
         estimates += u64::from(row.board.is_some_and(|board| board.estimate.is_some()));
         layout.write_row(&mut file, &row, starts.saturating_sub(1)).map_err(|error| file.error(error))?;
-        progress.advance(super::WORK, reader.progress());
+        progress.advance(WORK, reader.progress());
     }
-    let arrival = if reader.kind() == Kind::Recording { ", the times of arrival" } else { "" };
+    let arrival = if reader.kind() == FileFormat::Recording { ", the times of arrival" } else { "" };
     let mut left_out =
         vec![format!("the board's events, uncertainties and health{arrival} and the bytes themselves are left out")];
     if estimates > 0 {

@@ -8,7 +8,7 @@ use telemetry::{Decoder, Message};
 
 use super::samples::Samples;
 use crate::recording::Recorder;
-use crate::{Error, HostNs, OutputFile, Problem, Progress, SessionError, SessionReader};
+use crate::{Error, HostNs, OutputFile, Progress, SessionError, SessionProblem, SessionReader};
 
 const NO_ARRIVAL: &str = "there are no times of arrival; those of the samples, from 1970 on, stand for them";
 
@@ -39,7 +39,7 @@ pub fn of_samples(
 pub fn of_bytes(input: &Path, file: OutputFile, path: &Path) -> Result<(OutputFile, Vec<String>), Error> {
     let failed = |source| Error::Output { path: path.to_owned(), source };
     let unreadable =
-        |error| SessionError { path: input.to_owned(), line: None, column: None, problem: Problem::Read(error) };
+        |error| SessionError { path: input.to_owned(), line: None, column: None, problem: SessionProblem::Read(error) };
     let source = BufReader::with_capacity(1 << 16, File::open(input).map_err(unreadable)?);
     let mut recorder = Recorder::new(file, HostNs(0), "raw bytes").map_err(failed)?;
     let (mut decoder, mut frame, mut at) = (Decoder::<Message>::new(), Vec::new(), HostNs(0));

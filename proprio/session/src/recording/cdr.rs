@@ -3,7 +3,7 @@
 /// Its first four bytes: plain CDR, little-endian (DDS-XTypes 1.3, 7.6.2).
 const HEADER: [u8; 4] = [0, 1, 0, 0];
 
-/// A message that is being written.
+/// Writer of a message.
 #[derive(Debug)]
 pub struct CdrWriter(Vec<u8>);
 
@@ -50,27 +50,27 @@ impl CdrWriter {
         self.put(value.to_le_bytes());
     }
 
-    /// Numbers without their count, as an array has them.
+    /// Numbers of an array, without their count.
     pub fn floats(&mut self, values: &[f64]) {
         for value in values {
             self.f64(*value);
         }
     }
 
-    /// With the zero that CDR ends a string with.
+    /// A string, ended by a zero.
     pub fn string(&mut self, text: &str) {
         self.length(text.len() + 1);
         self.0.extend_from_slice(text.as_bytes());
         self.0.push(0);
     }
 
-    /// Of the sequence whose items follow.
+    /// Length of a sequence, whose items follow.
     pub fn length(&mut self, length: usize) {
         self.u32(length as u32);
     }
 }
 
-/// A message that is being read; `None` where it is too short.
+/// Reader of a message; its methods return `None` where the message is too short.
 #[derive(Debug)]
 pub struct CdrReader<'b> {
     body: &'b [u8],
@@ -93,7 +93,7 @@ impl<'b> CdrReader<'b> {
         self.take().map(u32::from_le_bytes)
     }
 
-    /// Without the zero that ends it.
+    /// A string, without the zero that ends it.
     pub fn string(&mut self) -> Option<&'b str> {
         let length = self.u32()? as usize;
         let text = self.body.get(self.at..)?.get(..length)?;
@@ -127,7 +127,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_cut_is_not_read() {
+    fn a_cut_message_is_not_read() {
         let mut cdr = CdrWriter::new();
         cdr.string("frame");
         cdr.length(2);

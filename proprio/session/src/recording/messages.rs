@@ -1,4 +1,4 @@
-//! What the board says, as ROS 2 messages.
+//! The board's messages as ROS 2 messages.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -26,7 +26,7 @@ pub fn sample(stamp: HostNs, sample: &Sample) -> Vec<u8> {
     let mut cdr = header(stamp);
     cdr.u32(sample.tick);
     cdr.u64(sample.time_us);
-    cdr.u8(sample.tare);
+    cdr.u8(sample.tare_epoch);
     cdr.u16(mask(&sample.bend));
     cdr.u8(mask(&sample.imu) as u8);
     sample.bend.iter().for_each(|counts| cdr.u16(counts.unwrap_or_default()));
@@ -34,7 +34,7 @@ pub fn sample(stamp: HostNs, sample: &Sample) -> Vec<u8> {
     cdr.into_bytes()
 }
 
-/// Bit i is set where the i-th value is there.
+/// Bit mask of the values that are present.
 fn mask<T>(values: &[Option<T>]) -> u16 {
     values.iter().rev().fold(0, |mask, value| mask << 1 | u16::from(value.is_some()))
 }
@@ -77,7 +77,7 @@ pub fn uncertainty(stamp: HostNs, of: &Uncertainty) -> Vec<u8> {
         cdr.floats(&segment.end_m2().unwrap_or([f64::NAN; 3]));
     }
     of.segments.iter().for_each(|segment| cdr.u8(segment.contact_percent));
-    of.segments.iter().for_each(|segment| cdr.u8(segment.is_touched.into()));
+    of.segments.iter().for_each(|segment| cdr.u8(segment.in_contact.into()));
     cdr.into_bytes()
 }
 
@@ -90,7 +90,7 @@ pub fn contact(stamp: HostNs, touched: [bool; SEGMENTS]) -> Vec<u8> {
     cdr.into_bytes()
 }
 
-/// From the estimator's bits to rad or m.
+/// Converts the estimator's bits to rad or m.
 fn value(bits: i32) -> f64 {
     Q::from_bits(bits).to_f64()
 }
@@ -117,7 +117,7 @@ pub fn mark(text: &str) -> Vec<u8> {
     cdr.into_bytes()
 }
 
-/// The text of a `std_msgs/msg/String`; `None` where it is none.
+/// The text of a `std_msgs/msg/String`; `None` where it cannot be decoded.
 pub fn read_mark(message: &[u8]) -> Option<String> {
     CdrReader::new(message)?.string().map(str::to_owned)
 }
@@ -130,7 +130,7 @@ pub fn chip_number(chip: &[u8; 16]) -> String {
 fn board(cdr: &mut CdrWriter, health: &Health, hello: Option<&Hello>, chip: &str) {
     let mut values = vec![
         ("tick", health.tick.to_string()),
-        ("longest_tick_us", health.longest_tick_us.to_string()),
+        ("longest_tick_us", health.max_estimate_latency_us.to_string()),
         ("longest_imu_read_us", health.longest_imu_read_us.to_string()),
         ("load_percent", (f64::from(health.load_permille) / 10.0).to_string()),
         ("overruns", health.overruns.to_string()),
@@ -155,10 +155,10 @@ fn board(cdr: &mut CdrWriter, health: &Health, hello: Option<&Hello>, chip: &str
 fn sensor_status(cdr: &mut CdrWriter, name: &str, sensor: SensorHealth, chip: &str) {
     let level = match sensor.state {
         SensorState::Ok => Level::Ok,
-        SensorState::Slow | SensorState::Intermittent => Level::Warn,
+        SensorState::Timeout | SensorState::Intermittent => Level::Warn,
         _ => Level::Error,
     };
-    status(cdr, level, name, &format!("{:?}", sensor.state), chip, &[("missed", sensor.missed.to_string())]);
+    status(cdr, level, name, &sensor.state.to_string(), chip, &[("missed", sensor.missed.to_string())]);
 }
 
 /// `diagnostic_msgs/msg/DiagnosticStatus`'s levels.
@@ -182,10 +182,10 @@ fn status(cdr: &mut CdrWriter, level: Level, name: &str, message: &str, chip: &s
 }
 
 /// `proprio_msgs/msg/SetPoints`.
-pub fn set_points(stamp: HostNs, asked: &SetPressures) -> Vec<u8> {
+pub fn set_points(stamp: HostNs, requested: &SetPressures) -> Vec<u8> {
     let mut cdr = header(stamp);
-    asked.pressures_pa.iter().for_each(|pressure_pa| cdr.u32(*pressure_pa));
-    cdr.u16(asked.valid_ms);
+    requested.pressures_pa.iter().for_each(|pressure_pa| cdr.u32(*pressure_pa));
+    cdr.u16(requested.valid_ms);
     cdr.into_bytes()
 }
 
@@ -200,7 +200,7 @@ pub fn truth(stamp: HostNs, ends: &[Option<Truth>]) -> Vec<u8> {
     cdr.into_bytes()
 }
 
-/// The ends in a `proprio_msgs/msg/Truth`; `None` where it is none.
+/// The ends in a `proprio_msgs/msg/Truth`; `None` where it cannot be decoded.
 pub fn read_truth(message: &[u8]) -> Option<Vec<Option<Truth>>> {
     let mut cdr = CdrReader::new(message)?;
     cdr.u32()?;
@@ -222,7 +222,7 @@ mod tests {
     use super::{HostNs, Truth, read_truth, truth};
 
     #[test]
-    fn truth_comes_back_to_the_bit() {
+    fn truth_is_read_back_to_the_bit() {
         let ends = [
             Some(Truth { x_m: 0.1, y_m: -0.2, heading_rad: Some(7.0) }),
             Some(Truth { x_m: 0.1, y_m: -0.2, heading_rad: None }),

@@ -1,75 +1,42 @@
-//! A recording that is read from its begin to its end, in memory that does not grow with its length.
+//! Reads a recording from its begin to its end, in memory that does not grow with its length.
 
 use std::io::{self, Read};
 
 use mcap::io::MessageReader;
 use mcap::sans_io::LinearReaderOptions;
 use mcap::{McapError, Message};
-use telemetry::PROTOCOL_VERSION;
 
-use super::{MARKS, RAW, TRUTH, messages};
+use super::messages;
+use super::read_error::ReadError;
+use super::topics::{MARKS, RAW, TRUTH};
 use crate::{HostNs, Truth};
 
-/// No record of ours is longer; a longer one is a damaged length.
-const LONGEST_RECORD: usize = 1 << 28;
+/// Longest record that is read, bytes; a longer one has a damaged length.
+const MAX_RECORD: usize = 1 << 28;
 
-/// What a recording holds for a session.
+/// A part of a recording that a session uses.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Item {
-    /// Bytes as they came, and when.
+    /// Received bytes, and the time of their arrival.
     Bytes(HostNs, Vec<u8>),
-    /// The truth of the sample with this tick, which came before.
+    /// The truth of the sample with this tick, which is before it.
     Truth(u32, Vec<Option<Truth>>),
-    /// A moment that a person has marked, and what for.
+    /// A mark that a person has set: its time and text.
     Mark(HostNs, String),
 }
 
-/// Why a recording cannot be read on.
-#[derive(Debug, thiserror::Error)]
-pub enum ReadError {
-    /// The system does not give it.
-    #[error("cannot be read: {0}")]
-    Read(io::Error),
-    /// It ends in the middle.
-    #[error("the recording was cut: it has no end")]
-    Cut,
-    /// It is compressed.
-    #[error("the recording is compressed with {0}, which proprio does not read")]
-    Compressed(String),
-    /// It is of a firmware whose messages this program does not know.
-    #[error("the messages of its firmware, version {0}, have another form than this proprio reads")]
-    OtherForm(String),
-    /// It is of a board that spoke another version of the protocol.
-    #[error("its board spoke protocol version {0}, and this proprio reads version {PROTOCOL_VERSION}")]
-    OtherProtocol(u8),
-    /// It is damaged, or no recording of ours.
-    #[error("the recording is damaged: {0}")]
-    Damaged(String),
-}
-
-impl From<McapError> for ReadError {
-    fn from(error: McapError) -> Self {
-        match error {
-            McapError::Io(error) => Self::Read(error),
-            McapError::UnexpectedEof | McapError::UnexpectedEoc => Self::Cut,
-            McapError::UnsupportedCompression(name) => Self::Compressed(name),
-            other => Self::Damaged(other.to_string()),
-        }
-    }
-}
-
-/// Whether a file that begins so is an MCAP file.
+/// True where `begin` is that of an MCAP file.
 #[must_use]
 pub fn is_recording(begin: &[u8]) -> bool {
     begin.starts_with(mcap::MAGIC)
 }
 
-/// How MCAP files are read: no message of a damaged chunk is taken.
+/// Options of MCAP readers: messages of a damaged chunk are refused.
 pub(super) fn options() -> LinearReaderOptions {
-    LinearReaderOptions::default().with_prevalidate_chunk_crcs(true).with_record_length_limit(LONGEST_RECORD)
+    LinearReaderOptions::default().with_prevalidate_chunk_crcs(true).with_record_length_limit(MAX_RECORD)
 }
 
-/// A recording that is being read.
+/// Reader of a recording.
 pub struct Reader<R> {
     messages: MessageReader<R>,
 }
@@ -89,7 +56,7 @@ impl<R: Read> Iterator for Reader<R> {
     }
 }
 
-/// What a session needs of a message, if anything.
+/// The item in a message; `None` on other channels.
 fn item(message: Result<Message<'static>, McapError>) -> Result<Option<Item>, ReadError> {
     let message = message?;
     match message.channel.topic.as_str() {
@@ -106,7 +73,7 @@ fn item(message: Result<Message<'static>, McapError>) -> Result<Option<Item>, Re
     }
 }
 
-/// Bytes as they came, without the times: the items of a raw file.
+/// Reader of a raw file: received bytes without times.
 pub struct RawReader<R>(R);
 
 impl<R: Read> RawReader<R> {

@@ -1,4 +1,4 @@
-//! What is whole of a recording that was cut.
+//! Recovery of a recording that was cut.
 
 use std::io::{self, Read, Write};
 
@@ -7,29 +7,30 @@ use mcap::sans_io::{LinearReadEvent, LinearReader};
 use mcap::write::NoSeek;
 use mcap::{Attachment, McapError, WriteOptions};
 
-use super::reader::{ReadError, options};
+use super::read_error::ReadError;
+use super::reader::options;
 use super::writer::io_error;
 
-/// What was saved.
+/// Result of a recovery.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Recovery {
-    /// Messages.
+    /// Number of recovered messages.
     pub messages: u64,
     /// Times of the first and the last message, ns since 1970.
     pub times_ns: Option<(u64, u64)>,
     /// Bytes of the source up to its cut.
     pub bytes: u64,
-    /// Whether the source was cut at all.
+    /// The source was cut.
     pub was_cut: bool,
 }
 
-/// Why nothing was recovered.
+/// An error that ends a recovery.
 #[derive(Debug, thiserror::Error)]
 pub enum RecoverError {
     /// The source cannot be read.
     #[error("cannot be read: {0}")]
     Read(io::Error),
-    /// It is no recording, or nothing in it is whole.
+    /// The source is no recording, or has no complete chunk.
     #[error(transparent)]
     Source(#[from] ReadError),
     /// The sink cannot be written.
@@ -54,7 +55,7 @@ pub fn recover(mut source: impl Read, sink: impl Write) -> Result<Recovery, Reco
                 reader.notify_read(count);
             }
             Ok(LinearReadEvent::Record { opcode, data }) => match mcap::parse_record(opcode, data) {
-                // What follows is an index, which is made anew; without it the file was cut all the same.
+                // The index follows. It is written again for the copy, also where the source was cut before it.
                 Ok(Record::DataEnd(_)) => {}
                 Ok(record) => copy.record(record).map_err(sink_error)?,
                 Err(_) => copy.done.was_cut = true,

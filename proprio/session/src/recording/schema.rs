@@ -1,6 +1,6 @@
-//! The forms of the messages: ROS 2's own, and ours, each with all that it is made of.
+//! Schemas of the messages, those of ROS 2 and those of proprio, each with the schemas that it contains.
 
-/// A message's name and its definition, and those that it needs.
+/// Name and definition of a message, and the definitions that it contains.
 #[derive(Debug)]
 pub struct Schema {
     pub name: &'static str,
@@ -74,7 +74,7 @@ pub const STRING: Schema =
     Schema { name: "std_msgs/msg/String", definition: include_str!("definitions/String.msg"), needs: &[] };
 
 impl Schema {
-    /// The definition and all that it needs, as MCAP's encoding `ros2msg` has them.
+    /// The definition and all that it contains, in MCAP's encoding `ros2msg`.
     pub fn text(&self) -> String {
         let mut text = self.definition.to_owned();
         for (name, definition) in self.needs {

@@ -1,4 +1,4 @@
-//! A recording that is being made.
+//! Writes a recording.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -9,26 +9,27 @@ use mcap::write::NoSeek;
 use mcap::{Attachment, McapError, WriteOptions};
 use telemetry::{Estimate, Hello, Message, SCHEMA, SEGMENTS, Sample, SetPressures};
 
+use super::messages;
 use super::schema::{self, Schema};
-use super::{CONTACT, DIAGNOSTICS, JOINT_STATES, MARKS, RAW, SAMPLES, SET_POINTS, SHAPE, TRUTH, UNCERTAINTY, messages};
-use crate::{BoardClock, HostNs, Truth};
+use super::topics::{CONTACT, DIAGNOSTICS, JOINT_STATES, MARKS, RAW, SAMPLES, SET_POINTS, SHAPE, TRUTH, UNCERTAINTY};
+use crate::{ClockSync, HostNs, Truth};
 
-/// How long anything may wait to be written, ns. A file that is cut loses no more than that.
+/// Longest time before data is written, ns. A file that is cut loses no more than that.
 const FLUSH_NS: u64 = 900_000_000;
 
-/// A recording that is being made. Every second it appends what came as one whole chunk; nothing is ever changed again.
+/// Writer of a recording. Every second it appends the received data as one complete chunk; written chunks never change.
 pub struct Recorder<W: Write> {
     mcap: mcap::Writer<NoSeek<W>>,
     channels: Channels,
-    clock: BoardClock,
+    clock: ClockSync,
     hello: Option<Hello>,
     /// Tick and time of the last sample, which its estimate follows at once.
     sample: Option<(u32, HostNs)>,
     flushed: HostNs,
     raw_messages: u32,
     samples: u64,
-    /// Times that the host has asked for pressures.
-    asked: u32,
+    /// Number of the host's requests for pressures.
+    requested: u32,
     marks: u32,
 }
 
@@ -51,10 +52,10 @@ struct Channels {
 }
 
 impl<W: Write> Recorder<W> {
-    /// Begins a recording at `at`, of what comes over `line`.
+    /// Begins a recording of the line of this name at `at`.
     ///
     /// # Errors
-    /// Those of `sink`.
+    /// Errors of `sink`.
     pub fn new(sink: W, at: HostNs, line: &str) -> io::Result<Self> {
         // Chunks are put together in memory, so that the file only grows. Compression would need a C compiler.
         let options = WriteOptions::new()
@@ -83,7 +84,7 @@ impl<W: Write> Recorder<W> {
             truth: None,
             marks: None,
         };
-        let clock = BoardClock::default();
+        let clock = ClockSync::default();
         Ok(Self {
             mcap,
             channels,
@@ -93,15 +94,15 @@ impl<W: Write> Recorder<W> {
             flushed: at,
             raw_messages: 0,
             samples: 0,
-            asked: 0,
+            requested: 0,
             marks: 0,
         })
     }
 
-    /// Attaches the table that the board has, as its file stands.
+    /// Attaches the board's table, as TOML.
     ///
     /// # Errors
-    /// Those of the sink.
+    /// Errors of the sink.
     pub fn attach_table(&mut self, at: HostNs, toml: &[u8]) -> io::Result<()> {
         self.attach(at, "table.toml", "application/toml", toml)
     }
@@ -112,29 +113,29 @@ impl<W: Write> Recorder<W> {
         self.mcap.attach(&attachment).map_err(io_error)
     }
 
-    /// Samples so far.
+    /// Number of samples so far.
     #[must_use]
     pub fn samples(&self) -> u64 {
         self.samples
     }
 
-    /// Writes bytes as they came.
+    /// Writes received bytes.
     ///
     /// # Errors
-    /// Those of the sink.
+    /// Errors of the sink.
     pub fn bytes(&mut self, at: HostNs, bytes: &[u8]) -> io::Result<()> {
         self.flush_if_due(at)?;
         self.raw_messages = self.raw_messages.wrapping_add(1);
         self.write(self.channels.raw, self.raw_messages, at, at, bytes)
     }
 
-    /// Writes what was decoded from them.
+    /// Writes a message that was decoded from them.
     ///
     /// # Errors
-    /// Those of the sink.
+    /// Errors of the sink.
     pub fn message(&mut self, at: HostNs, message: &Message) -> io::Result<()> {
         match message {
-            Message::Hello(hello) => self.greet(at, hello),
+            Message::Hello(hello) => self.attach_hello(at, hello),
             Message::Sample(sample) => self.sample(at, sample),
             Message::Estimate(estimate) => self.estimate(at, estimate),
             Message::Health(health) => {
@@ -157,40 +158,40 @@ impl<W: Write> Recorder<W> {
         self.write(channel, tick, at, stamp, &messages::contact(stamp, touched))
     }
 
-    /// Writes the truth of the sample with this tick, which came before.
+    /// Writes the truth of the sample with this tick, which was written before.
     ///
     /// # Errors
-    /// Those of the sink.
+    /// Errors of the sink.
     pub fn truth(&mut self, at: HostNs, tick: u32, ends: &[Option<Truth>]) -> io::Result<()> {
         let channel = channel_once(&mut self.channels.truth, &mut self.mcap, TRUTH, &schema::TRUTH)?;
         let stamp = self.stamp(tick, at);
         self.write(channel, tick, at, stamp, &messages::truth(stamp, ends))
     }
 
-    /// Writes what the host has asked of the pressures.
+    /// Writes the pressures that the host has requested.
     ///
     /// # Errors
-    /// Those of the sink.
-    pub fn set_points(&mut self, at: HostNs, asked: &SetPressures) -> io::Result<()> {
+    /// Errors of the sink.
+    pub fn set_points(&mut self, at: HostNs, requested: &SetPressures) -> io::Result<()> {
         let channel = channel_once(&mut self.channels.set_points, &mut self.mcap, SET_POINTS, &schema::SET_POINTS)?;
-        self.asked = self.asked.wrapping_add(1);
-        self.write(channel, self.asked, at, at, &messages::set_points(at, asked))
+        self.requested = self.requested.wrapping_add(1);
+        self.write(channel, self.requested, at, at, &messages::set_points(at, requested))
     }
 
-    /// Writes that a person has marked this moment, and what for.
+    /// Writes a mark that a person has set.
     ///
     /// # Errors
-    /// Those of the sink.
+    /// Errors of the sink.
     pub fn mark(&mut self, at: HostNs, text: &str) -> io::Result<()> {
         let channel = channel_once(&mut self.channels.marks, &mut self.mcap, MARKS, &schema::STRING)?;
         self.marks = self.marks.wrapping_add(1);
         self.write(channel, self.marks, at, at, &messages::mark(text))
     }
 
-    /// Writes what came, where it has waited long enough.
+    /// Writes buffered data that has waited long enough.
     ///
     /// # Errors
-    /// Those of the sink.
+    /// Errors of the sink.
     pub fn flush_if_due(&mut self, now: HostNs) -> io::Result<()> {
         if now.0.saturating_sub(self.flushed.0) < FLUSH_NS {
             return Ok(());
@@ -199,10 +200,10 @@ impl<W: Write> Recorder<W> {
         self.mcap.flush().map_err(io_error)
     }
 
-    /// Completes the recording with its index, and gives the sink back.
+    /// Completes the recording with its index and returns the sink.
     ///
     /// # Errors
-    /// Those of the sink.
+    /// Errors of the sink.
     pub fn finish(mut self) -> io::Result<W> {
         self.mcap.finish().map_err(io_error)?;
         let mut sink = self.mcap.into_inner().into_inner();
@@ -210,8 +211,8 @@ impl<W: Write> Recorder<W> {
         Ok(sink)
     }
 
-    /// The `Hello` of each boot is attached once.
-    fn greet(&mut self, at: HostNs, hello: &Hello) -> io::Result<()> {
+    /// Attaches the `Hello` of each boot once.
+    fn attach_hello(&mut self, at: HostNs, hello: &Hello) -> io::Result<()> {
         if self.hello.as_ref() == Some(hello) {
             return Ok(());
         }
@@ -234,7 +235,7 @@ impl<W: Write> Recorder<W> {
         self.write(shape, estimate.tick, at, stamp, &messages::pose_array(stamp, estimate))
     }
 
-    /// The time of a tick; that of its arrival where its sample did not come.
+    /// Time of a tick; that of its arrival where its sample was lost.
     fn stamp(&self, tick: u32, at: HostNs) -> HostNs {
         self.sample.filter(|(last, _)| *last == tick).map_or(at, |(_, stamp)| stamp)
     }
@@ -250,20 +251,20 @@ fn channel<W: Write>(mcap: &mut mcap::Writer<NoSeek<W>>, topic: &str, schema: &S
     mcap.add_channel(id, topic, "cdr", &BTreeMap::new()).map_err(io_error)
 }
 
-/// A channel that is there from its first message on.
+/// A channel that is added with its first message.
 fn channel_once<W: Write>(
-    place: &mut Option<u16>,
+    id: &mut Option<u16>,
     mcap: &mut mcap::Writer<NoSeek<W>>,
     topic: &str,
     schema: &Schema,
 ) -> io::Result<u16> {
-    match place {
+    match id {
         Some(channel) => Ok(*channel),
-        None => Ok(*place.insert(channel(mcap, topic, schema)?)),
+        None => Ok(*id.insert(channel(mcap, topic, schema)?)),
     }
 }
 
-/// What a sink can say; the writer itself is used as it is meant to be.
+/// The error of the sink in an error of the writer.
 pub(super) fn io_error(error: McapError) -> io::Error {
     match error {
         McapError::Io(error) => error,

@@ -14,7 +14,7 @@ const FLOOD: usize = 40;
 /// # Panics
 /// If the board resets.
 pub fn board(mut run_ms: impl FnMut(&mut Board, u64)) -> Board {
-    let mut board = Board::new(WiredRig::new(Scenario::One, 1));
+    let mut board = Board::new(WiredRig::new(Scenario::FreeSwing, 1));
     // The first tick comes late, as the board is still being set up.
     board.run_ms(50);
     run_ms(&mut board, 1_950);

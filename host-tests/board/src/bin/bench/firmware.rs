@@ -43,7 +43,7 @@ fn size(names: &[&str]) -> f64 {
 /// Figures of a rig without faults, with all messages at 100 Hz.
 fn without_faults() -> [Figure; 3] {
     const SECONDS: u32 = 60;
-    let mut board = Board::new(WiredRig::new(Scenario::One, 1));
+    let mut board = Board::new(WiredRig::new(Scenario::FreeSwing, 1));
     board.run_ms(2_000);
     let (instructions, started) = (board.machine.instructions(), Instant::now());
     board.run_ms(u64::from(SECONDS) * 1000);

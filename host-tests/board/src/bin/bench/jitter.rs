@@ -20,7 +20,7 @@ struct Watched {
 /// # Panics
 /// If the firmware does not sample.
 pub fn cycles() -> f64 {
-    let world = Watched { rig: WiredRig::new(Scenario::One, 1), conversions: Vec::new() };
+    let world = Watched { rig: WiredRig::new(Scenario::FreeSwing, 1), conversions: Vec::new() };
     let mut machine = Machine::new(firmware(), world).expect("a firmware for the Due");
     for second in 0..20 {
         // Noise on the line, so that the processor's work is not the same every time.

@@ -67,8 +67,8 @@ fn arms(binary: &str, segments: &[u32]) -> Vec<(u32, Range, Range)> {
 
 /// The same for so many samples of each arm.
 fn arms_of(binary: &str, segments: &[u32], steps: usize) -> Vec<(u32, Range, Range)> {
-    let mut machine =
-        Machine::new(&elf("on-target-tests", binary), WiredRig::new(Scenario::One, 1)).expect("a firmware for the Due");
+    let mut machine = Machine::new(&elf("on-target-tests", binary), WiredRig::new(Scenario::FreeSwing, 1))
+        .expect("a firmware for the Due");
     println!("instructions of a step   in the tare          after it");
     let arm = |segments: &u32| {
         let counts = counts(&mut machine, steps);

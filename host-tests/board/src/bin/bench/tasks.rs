@@ -19,16 +19,16 @@ struct Handler {
     exit: u32,
 }
 
-/// Longest run of each task, µs, with requests and faults: from the first instruction of its interrupt to the last,
-/// preemption included; of `shape`, which waits in between, from the tick to the end of its last piece.
+/// The longest of each task, µs, in a run with requests and faults: from the first instruction of its interrupt to the last,
+/// what preempts it included; of `estimation`, which waits in between, from the tick to the end of its last piece.
 pub fn figures() -> [Figure; 5] {
     let longest = |name, handler| Figure { name, value: longest(&Handler::of(handler)) as f64 / CYCLES_PER_US };
     [
         longest("task_twi1", "TWI1"),
         longest("task_time", "TC1"),
         longest("task_tick", "TC0"),
-        longest("task_requests", "HSMCI"),
-        Figure { name: "task_shape", value: longest_tick() as f64 / CYCLES_PER_US },
+        longest("task_commands", "HSMCI"),
+        Figure { name: "task_estimation", value: longest_tick() as f64 / CYCLES_PER_US },
     ]
 }
 
@@ -69,15 +69,15 @@ fn longest(handler: &Handler) -> Cycles {
     longest
 }
 
-/// Longest time from a tick to the end of the shape task's last piece, cycles.
+/// The longest from a tick to the last piece of the estimation task, cycles.
 fn longest_tick() -> Cycles {
-    let (tick, shape) = (Handler::of("TC0"), Handler::of("SSC"));
+    let (tick, estimation) = (Handler::of("TC0"), Handler::of("SSC"));
     let mut longest = 0;
     fault_run::board(|board, ms| {
         let end = board.machine.now() + ms * CYCLES_PER_MS;
         while board.machine.run_to(tick.entry, end) {
             let begun = board.machine.now();
-            while board.machine.run_to(shape.exit, begun + TICK) {
+            while board.machine.run_to(estimation.exit, begun + TICK) {
                 longest = longest.max(board.machine.now() - begun);
             }
         }

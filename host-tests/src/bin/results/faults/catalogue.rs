@@ -45,8 +45,8 @@ impl Course {
     /// True if sessions of a scenario have it: the arm rests where nothing touches it, and is touched in the others.
     pub fn is_in(self, scenario: Scenario) -> bool {
         match self {
-            Self::Rest | Self::AfterRest => scenario == Scenario::One,
-            Self::SpoiledInContact(_) => scenario != Scenario::One,
+            Self::Rest | Self::AfterRest => scenario == Scenario::FreeSwing,
+            Self::SpoiledInContact(_) => scenario != Scenario::FreeSwing,
             Self::Spoiled(_) | Self::Moves(_) => true,
         }
     }

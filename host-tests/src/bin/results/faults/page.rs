@@ -29,7 +29,7 @@ impl Faults {
 
     fn write(&self, page: &mut String) -> fmt::Result {
         writeln!(page, "{INTRODUCTION}")?;
-        writeln!(page, "Arms {ARMS:?} of the test arms ([RESULTS.md](RESULTS.md)), nothing tuned.\n")?;
+        writeln!(page, "Arms {ARMS:?} of the test arms ([results](results.md)), nothing tuned.\n")?;
         self.write_counts(page)?;
         for scenario in ["I", "II"] {
             writeln!(page, "## Scenario {scenario}\n")?;

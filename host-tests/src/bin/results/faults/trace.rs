@@ -5,7 +5,7 @@ use std::ops::Range;
 use calibration_tables::{ArmFile, FileError};
 use estimator_core::Method;
 use host_tests::twin::TwinSession;
-use proprio_analysis::consistency::Honesty;
+use proprio_analysis::consistency::FilterConsistency;
 use proprio_analysis::metrics::tip_errors_m;
 
 /// The fused tip in one sample.
@@ -28,13 +28,13 @@ impl Trace {
     pub fn of(session: &TwinSession, table: &ArmFile) -> Result<Self, FileError> {
         let mut moments = Vec::new();
         session.replay(table, |row, outcome| {
-            let mut honesty = Honesty::default();
-            honesty.add(row, outcome);
+            let mut consistency = FilterConsistency::default();
+            consistency.add(row, outcome);
             let error_m = tip_errors_m(row, outcome)[Method::Fusion as usize];
             moments.push(Moment {
                 time_s: row.sample.time_us as f64 / 1e6,
                 error_mm: error_m.map_or(f64::INFINITY, |error_m| error_m * 1e3),
-                is_inside: honesty.figures().tip_inside_percent.is_some_and(|percent| percent > 50.0),
+                is_inside: consistency.metrics().tip_inside_percent.is_some_and(|percent| percent > 50.0),
                 is_flagged: outcome.conditions.iter().any(|condition| condition.is_degraded()),
             });
         })?;

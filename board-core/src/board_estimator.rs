@@ -1,0 +1,71 @@
+//! The estimator between sensors and telemetry: samples in, estimates out; the first tare and each later restart.
+
+use estimator_core::{ArmConfig, Estimator, Q};
+use telemetry::{Estimate, Event, SEGMENTS, Sample, Uncertainty};
+
+/// Ticks of 10 ms until the first tare if an IMU does not start.
+pub const TARE_TICKS: u32 = 200;
+
+/// Capacity of the anchor's moving-average window, samples.
+const WINDOW: usize = 100;
+
+/// The estimator and its tare epoch.
+///
+/// It is large: make it as a static, and [start](Self::start) it there.
+#[derive(Debug)]
+pub struct BoardEstimator {
+    estimator: Estimator<'static, Q, SEGMENTS, WINDOW>,
+    tare_epoch: u8,
+    tared: bool,
+    /// Contact that was reported last, one bit per segment.
+    contact_mask: u32,
+}
+
+impl BoardEstimator {
+    /// An estimator that is not started and estimates nothing.
+    pub const fn new(table: &'static ArmConfig<'static, Q>) -> Self {
+        Self { estimator: Estimator::const_new(table), tare_epoch: 0, tared: false, contact_mask: 0 }
+    }
+
+    /// Starts the estimator at boot. A table with more segments or a longer window than the capacity gives no estimate;
+    /// samples are sent all the same.
+    pub fn start(&mut self) {
+        // The firmware's build has checked the table. If it were wrong, the host would receive empty estimates.
+        let _ = self.estimator.start();
+    }
+
+    /// Restarts the estimator with the next sample: the arm is in its reference pose.
+    pub fn tare(&mut self) {
+        self.start();
+        self.tare_epoch = self.tare_epoch.wrapping_add(1);
+        self.tared = true;
+    }
+
+    /// Returns whether the first tare is due. IMUs start a second after the board; samples before that do not contain
+    /// their zero.
+    pub fn needs_first_tare(&self, tick: u32, all_imus_read: bool) -> bool {
+        !self.tared && (all_imus_read || tick >= TARE_TICKS)
+    }
+
+    /// Number of tares since boot, modulo 256, as in [`Sample::tare_epoch`].
+    pub const fn tare_epoch(&self) -> u8 {
+        self.tare_epoch
+    }
+
+    /// Updates the estimator with a sample and returns the new estimate.
+    pub fn update(&mut self, sample: &Sample) -> Estimate {
+        Estimate::of(sample.tick, self.estimator.update(&sample.into()))
+    }
+
+    /// Returns an event if contact began or ended with the latest sample, which was that of this tick.
+    pub fn contact_event(&mut self, tick: u32) -> Option<Event> {
+        let mask = self.estimator.contact_mask();
+        let has_changed = core::mem::replace(&mut self.contact_mask, mask) != mask;
+        has_changed.then(|| Event::Contact(tick, core::array::from_fn(|i| mask >> i & 1 != 0)))
+    }
+
+    /// Covariance of the latest estimate, which was that of this tick, as computed within the last ticks.
+    pub fn uncertainty(&self, tick: u32) -> Uncertainty {
+        Uncertainty::of(tick, &self.estimator.uncertainties(), &self.estimator.contacts())
+    }
+}

@@ -1,0 +1,222 @@
+//! Requests are idempotent, executed in order, and limited in their rate.
+
+use board_core::{BUCKET_SIZE, CommandServer, REFILL_PER_TICK, SESSION_TIMEOUT_TICKS};
+use proptest::prelude::*;
+use telemetry::{Command, Outcome, Refusal, Reply, Request};
+
+const LATE: Option<Outcome> = Some(Outcome::Nack(Refusal::Late));
+const BUSY: Option<Outcome> = Some(Outcome::Nack(Refusal::Busy));
+const ACK: Option<Outcome> = Some(Outcome::Ack);
+
+/// A server and the requests that it executed.
+#[derive(Default)]
+struct Board {
+    server: CommandServer,
+    done: Vec<(u32, Command)>,
+}
+
+impl Board {
+    /// Sends a request whose command succeeds.
+    fn send(&mut self, id: u32, command: Command, tick: u32) -> Option<Outcome> {
+        let reply = self.server.answer(&Request { id, command }, tick, |command| {
+            self.done.push((id, command));
+            Ok(())
+        });
+        reply.map(|reply: Reply| {
+            assert_eq!(reply.id, id);
+            reply.outcome
+        })
+    }
+}
+
+#[test]
+fn the_first_request_may_have_any_number() {
+    for id in [0, 1, 12_345, u32::MAX] {
+        let mut board = Board::default();
+        assert_eq!(board.send(id, Command::Arm, 0), ACK);
+        assert_eq!(board.done, [(id, Command::Arm)]);
+    }
+}
+
+#[test]
+fn a_repeated_request_gets_its_reply_again_and_is_executed_once() {
+    let mut board = Board::default();
+    for tick in [0, 0, 5, 100_000] {
+        assert_eq!(board.send(1, Command::Tare, tick), ACK);
+    }
+    assert_eq!(board.done, [(1, Command::Tare)]);
+}
+
+#[test]
+fn a_repeated_request_that_was_refused_is_not_executed_again() {
+    let mut server = CommandServer::new();
+    let request = Request { id: 1, command: Command::Arm };
+    let refused = Some(Reply { id: 1, outcome: Outcome::Nack(Refusal::Disarmed) });
+    assert_eq!(server.answer(&request, 0, |_| Err(Refusal::Disarmed)), refused);
+    assert_eq!(server.answer(&request, 1, |_| Ok(())), refused);
+}
+
+#[test]
+fn an_older_request_is_late() {
+    let mut board = Board::default();
+    board.send(5, Command::Arm, 0);
+    assert_eq!(board.send(4, Command::Disarm, 0), LATE);
+    assert_eq!(board.send(0, Command::Ping, 0), LATE);
+    assert_eq!(board.send(4, Command::Arm, 100_000), LATE);
+    assert_eq!(board.done.len(), 1);
+}
+
+#[test]
+fn another_request_under_the_last_number_is_late() {
+    let mut board = Board::default();
+    board.send(5, Command::Arm, 0);
+    assert_eq!(board.send(5, Command::Disarm, 0), LATE);
+    assert_eq!(board.done, [(5, Command::Arm)]);
+}
+
+#[test]
+fn numbers_may_have_gaps() {
+    let mut board = Board::default();
+    for id in [1, 2, 10, 1000] {
+        assert_eq!(board.send(id, Command::Ping, 0), ACK);
+    }
+    assert_eq!(board.done.len(), 4);
+}
+
+#[test]
+fn a_ping_begins_a_new_session_after_the_timeout() {
+    let mut board = Board::default();
+    board.send(900, Command::Arm, 10);
+    assert_eq!(board.send(1, Command::Ping, 10 + SESSION_TIMEOUT_TICKS - 1), LATE);
+    // Refused requests do not restart the timeout, so that a host that repeats its ping is accepted.
+    assert_eq!(board.send(1, Command::Ping, 10 + SESSION_TIMEOUT_TICKS), ACK);
+    assert_eq!(board.send(2, Command::Arm, 10 + SESSION_TIMEOUT_TICKS), ACK);
+    assert_eq!(board.send(900, Command::Disarm, 10 + SESSION_TIMEOUT_TICKS), ACK);
+}
+
+#[test]
+fn a_new_host_may_begin_at_the_last_number_of_the_previous_one() {
+    let mut board = Board::default();
+    board.send(1, Command::Ping, 0);
+    assert_eq!(board.send(1, Command::Ping, SESSION_TIMEOUT_TICKS), ACK);
+    assert_eq!(board.done.len(), 2);
+}
+
+#[test]
+fn a_burst_is_served_and_then_a_steady_rate() {
+    let mut board = Board::default();
+    let mut served = Vec::new();
+    for tick in 0..4 {
+        let before = board.done.len();
+        for n in 0..100 {
+            board.send(tick * 100 + n, Command::Ping, tick);
+        }
+        served.push(board.done.len() - before);
+    }
+    let per_tick = usize::from(REFILL_PER_TICK);
+    assert_eq!(served, [usize::from(BUCKET_SIZE), per_tick, per_tick, per_tick]);
+}
+
+#[test]
+fn a_flood_gets_one_busy_reply_a_tick_and_no_other() {
+    let mut board = Board::default();
+    for id in 0..u32::from(BUCKET_SIZE) {
+        assert_eq!(board.send(id, Command::Ping, 0), ACK);
+    }
+    assert_eq!(board.send(100, Command::Ping, 0), BUSY);
+    assert_eq!(board.send(101, Command::Ping, 0), None);
+    for id in 102..102 + u32::from(REFILL_PER_TICK) {
+        assert_eq!(board.send(id, Command::Ping, 1), ACK);
+    }
+    assert_eq!(board.send(200, Command::Ping, 1), BUSY);
+    assert_eq!(board.send(201, Command::Ping, 1), None);
+}
+
+#[test]
+fn a_request_refused_as_busy_may_be_sent_again_under_the_same_number() {
+    let mut board = Board::default();
+    for id in 0..u32::from(BUCKET_SIZE) {
+        board.send(id, Command::Ping, 0);
+    }
+    assert_eq!(board.send(100, Command::Tare, 0), BUSY);
+    assert_eq!(board.send(100, Command::Tare, 1), ACK);
+    assert_eq!(board.done.last(), Some(&(100, Command::Tare)));
+}
+
+#[test]
+fn a_disarm_is_executed_during_a_flood() {
+    let mut board = Board::default();
+    for id in 0..1000 {
+        board.send(id, Command::Ping, 0);
+    }
+    board.send(1000, Command::Disarm, 0);
+    assert_eq!(board.done.last(), Some(&(1000, Command::Disarm)));
+    assert_eq!(board.send(1000, Command::Disarm, 1), ACK);
+    assert_eq!(board.done.len(), usize::from(BUCKET_SIZE) + 1);
+}
+
+#[test]
+fn a_long_pause_refills_no_more_than_the_bucket() {
+    let mut board = Board::default();
+    for id in 0..100 {
+        board.send(id, Command::Ping, 100_000);
+    }
+    assert_eq!(board.done.len(), usize::from(BUCKET_SIZE));
+}
+
+#[test]
+fn a_pause_refills_the_bucket_even_while_the_tick_wraps() {
+    let mut board = Board::default();
+    for id in 0..100 {
+        board.send(id, Command::Ping, u32::MAX);
+    }
+    let before = board.done.len();
+    for id in 100..200 {
+        board.send(id, Command::Ping, 10);
+    }
+    assert_eq!(board.done.len() - before, usize::from(BUCKET_SIZE));
+}
+
+/// Next arrival on the line.
+#[derive(Debug, Clone)]
+enum Arrival {
+    /// A new request, after some that are delayed or lost.
+    New { skipped: u32 },
+    /// A request that was sent before.
+    Old { before_newest: u32 },
+}
+
+fn arrival() -> impl Strategy<Value = Arrival> {
+    prop_oneof![
+        (0_u32..3).prop_map(|skipped| Arrival::New { skipped }),
+        (0_u32..20).prop_map(|before_newest| Arrival::Old { before_newest }),
+    ]
+}
+
+proptest! {
+    /// Shorter than the timeout of a session.
+    #[test]
+    fn repeated_and_delayed_requests_are_executed_once_and_in_order(
+        arrivals in prop::collection::vec(arrival(), 1..SESSION_TIMEOUT_TICKS as usize),
+        first in 20_u32..1000,
+    ) {
+        // Of one host, each number belongs to one command.
+        let command = |id: u32| [Command::Ping, Command::Arm, Command::Disarm, Command::Tare][id as usize % 4];
+        let mut board = Board::default();
+        let mut newest = first;
+        board.send(first, command(first), 0);
+        let mut expected = vec![(first, command(first))];
+        for (tick, arrival) in (1..).zip(arrivals) {
+            let id = match arrival {
+                Arrival::New { skipped } => {
+                    newest += 1 + skipped;
+                    expected.push((newest, command(newest)));
+                    newest
+                }
+                Arrival::Old { before_newest } => newest - before_newest,
+            };
+            board.send(id, command(id), tick);
+        }
+        prop_assert_eq!(board.done, expected);
+    }
+}

@@ -1,0 +1,94 @@
+//! Command task: decodes the host's requests, executes them and replies.
+
+use atsam3x8e_hal::tc::Mono;
+use atsam3x8e_hal::uart::Rx;
+use board_core::{Actuator, CommandServer, Schedule, Task};
+use rtic::Mutex;
+use telemetry::{Command, DecodeError, Decoder, Message, Outcome, Refusal, Reply, Request};
+
+use crate::downlink::TelemetrySender;
+use crate::parameters::RECEIVE_BYTES;
+use crate::supervision::SUPERVISOR;
+
+/// State that requests set for the other tasks.
+pub struct Control {
+    /// Periods of the messages.
+    pub schedule: Schedule,
+    /// A tare was requested.
+    pub tare_requested: bool,
+    /// A `Hello` was requested.
+    pub hello_requested: bool,
+    /// Frames since boot that were received damaged.
+    pub damaged_frames: u32,
+}
+
+/// State of the command task.
+pub struct CommandTask {
+    rx: Rx,
+    decoder: Decoder<Request>,
+    server: CommandServer,
+}
+
+impl CommandTask {
+    /// The task before its first byte.
+    pub const fn new(rx: Rx) -> Self {
+        Self { rx, decoder: Decoder::new(), server: CommandServer::new() }
+    }
+
+    /// Handles the bytes since the last tick. Returns whether a reboot was requested.
+    pub fn run(
+        &mut self,
+        tick: u32,
+        mut actuator: impl Mutex<T = Actuator>,
+        mut control: impl Mutex<T = Control>,
+        mut sender: impl Mutex<T = TelemetrySender>,
+    ) -> bool {
+        let mut reboot = false;
+        let mut bytes = [0; RECEIVE_BYTES];
+        let count = self.rx.read(&mut bytes);
+        for byte in bytes.iter().take(count) {
+            let reply = match self.decoder.push(*byte) {
+                Some(Ok(request)) => self.server.answer(&request, tick, |command| {
+                    let result = control
+                        .lock(|control| actuator.lock(|actuator| execute(command, actuator, control, &mut reboot)));
+                    log(&request, result);
+                    result
+                }),
+                Some(Err(DecodeError::Request(id))) => Some(Reply { id, outcome: Outcome::Nack(Refusal::Unknown) }),
+                Some(Err(_)) | None => None,
+            };
+            if let Some(reply) = reply {
+                sender.lock(|sender| sender.send(&Message::Reply(reply)));
+            }
+        }
+        let damaged = self.decoder.counts().damaged;
+        control.lock(|control| control.damaged_frames = damaged);
+        SUPERVISOR.report(Task::Commands, tick);
+        reboot
+    }
+}
+
+fn execute(command: Command, actuator: &mut Actuator, control: &mut Control, reboot: &mut bool) -> Result<(), Refusal> {
+    match command {
+        Command::Ping => control.hello_requested = true,
+        Command::Tare => control.tare_requested = true,
+        Command::Rates(rates) => control.schedule = Schedule::new(rates),
+        Command::Arm => actuator.arm(),
+        Command::Disarm => actuator.disarm(),
+        Command::SetPressures(pressures) => actuator.set(&pressures, Mono::now_us())?,
+        Command::Reboot => {
+            actuator.disarm();
+            *reboot = true;
+        }
+    }
+    Ok(())
+}
+
+/// Logs an executed request; set-points, which are sent many times a second, at the level debug alone.
+fn log(request: &Request, result: Result<(), Refusal>) {
+    match (result, request.command) {
+        (Ok(()), Command::SetPressures(_)) => defmt::debug!("{}", request),
+        (Ok(()), _) => defmt::info!("{}", request),
+        (Err(refusal), _) => defmt::warn!("request {} refused: {}", request.id, refusal),
+    }
+}

@@ -1,0 +1,45 @@
+//! Identity of the board and its firmware, for the `Hello`.
+
+use atsam3x8e_hal::crash;
+use atsam3x8e_hal::reset::Cause;
+use telemetry::{Hello, PROTOCOL_VERSION, ResetCause, SCHEMA, Text};
+
+use crate::table;
+
+/// The board's `Hello`.
+pub fn hello(chip: [u8; 16], reset: ResetCause, boot: u32, last_panic: Option<&crash::Text>) -> Hello {
+    Hello {
+        protocol: PROTOCOL_VERSION,
+        schema: SCHEMA,
+        firmware: text(env!("CARGO_PKG_VERSION")),
+        revision: text(env!("REVISION")),
+        arm: text(table::ARM),
+        table: table::CHECKSUM,
+        chip,
+        reset,
+        boot,
+        last_panic: last_panic.map(|last| text(last.as_str())),
+    }
+}
+
+/// Cuts a text at N bytes.
+fn text<const N: usize>(whole: &str) -> Text<N> {
+    let mut text = Text::new();
+    for character in whole.chars() {
+        if text.push(character).is_err() {
+            break;
+        }
+    }
+    text
+}
+
+/// Converts the HAL's cause of the reset to the protocol's.
+pub fn reset_cause(cause: Cause) -> ResetCause {
+    match cause {
+        Cause::PowerUp | Cause::Unknown => ResetCause::PowerOn,
+        Cause::Backup => ResetCause::Backup,
+        Cause::Watchdog => ResetCause::Watchdog,
+        Cause::Software => ResetCause::Software,
+        Cause::Pin => ResetCause::Pin,
+    }
+}

@@ -1,0 +1,233 @@
+//! Estimation task: reads the IMUs, updates the estimator and sends the messages of the tick.
+
+use atsam3x8e_hal::gpio::{Output, Pin};
+use atsam3x8e_hal::tc::prelude::*;
+use board_core::imus::Imus;
+use board_core::{Actuator, BendSensorMonitor, BoardEstimator, DueMessages, Task};
+use rtic::Mutex;
+use telemetry::{Actuation, Estimate, Event, Health, Hello, Message, REGULATORS, SEGMENTS, Sample, SensorState};
+
+use crate::command_task::Control;
+use crate::cpu_load::CpuLoad;
+use crate::downlink::TelemetrySender;
+use crate::imu_bus::ImuBus;
+use crate::parameters::IMUS_US;
+use crate::supervision::SUPERVISOR;
+use crate::table::TABLE;
+use crate::tick::Tick;
+
+/// Maximum events sent per tick; further ones are discarded.
+const EVENTS: usize = 16;
+
+/// State of the estimation task.
+pub struct EstimationTask {
+    imus: Imus<ImuBus, Pin<'B', 26, Output>>,
+    bend_sensors: BendSensorMonitor,
+    estimator: &'static mut BoardEstimator,
+    hello: Hello,
+    /// A boot loop: the pressures stay at zero.
+    safe_mode: bool,
+    load: CpuLoad,
+    last_tick: Option<u32>,
+    counters: Counters,
+}
+
+/// Timing and counters of [`Health`].
+#[derive(Default)]
+struct Counters {
+    max_estimate_latency_us: u32,
+    longest_imu_read_us: u32,
+    overruns: u32,
+    stale_scans: u32,
+}
+
+/// Results of one cycle.
+struct CycleResult {
+    sample: Sample,
+    estimate: Estimate,
+    events: heapless::Vec<Event, EVENTS>,
+}
+
+impl EstimationTask {
+    /// Starts the estimator.
+    pub fn new(
+        imus: Imus<ImuBus, Pin<'B', 26, Output>>,
+        estimator: &'static mut BoardEstimator,
+        hello: Hello,
+        safe_mode: bool,
+    ) -> Self {
+        estimator.start();
+        Self {
+            imus,
+            bend_sensors: BendSensorMonitor::new(),
+            estimator,
+            hello,
+            safe_mode,
+            load: CpuLoad::new(),
+            last_tick: None,
+            counters: Counters::default(),
+        }
+    }
+
+    /// Runs one cycle, from the IMUs to the messages.
+    pub async fn run(
+        &mut self,
+        tick: Tick,
+        mut actuator: impl Mutex<T = Actuator>,
+        mut control: impl Mutex<T = Control>,
+        mut sender: impl Mutex<T = TelemetrySender>,
+    ) {
+        self.count_overruns(tick.number);
+        let deadline = instant(tick.time_us + IMUS_US);
+        // A poll that takes longer is cut off; the readings until then count.
+        let _ = Mono::timeout_at(deadline, self.imus.read(tick.number)).await;
+        self.counters.longest_imu_read_us = self.counters.longest_imu_read_us.max(since(tick.time_us));
+        SUPERVISOR.report(Task::Imus, tick.number);
+
+        let tare = control.lock(|control| core::mem::take(&mut control.tare_requested));
+        let mut result = self.run_cycle(&tick, tare);
+        SUPERVISOR.report(Task::Estimator, tick.number);
+        self.counters.max_estimate_latency_us = self.counters.max_estimate_latency_us.max(since(tick.time_us));
+
+        let degraded = self.safe_mode || self.is_degraded();
+        let (actuation, pressures_pa) = actuator.lock(|actuator| {
+            actuator.set_degraded(degraded);
+            while let Some(event) = actuator.event() {
+                let _ = result.events.push(event);
+            }
+            (actuator.state(), actuator.pressures_pa())
+        });
+        let (mut due, damaged_frames) = control.lock(|control| {
+            let due = control.schedule.due(tick.number);
+            let hello = core::mem::take(&mut control.hello_requested) || due.hello;
+            (DueMessages { hello, ..due }, control.damaged_frames)
+        });
+        due.hello |= self.last_tick.is_none();
+        self.last_tick = Some(tick.number);
+        let uncertainty = due.uncertainty.then(|| self.estimator.uncertainty(tick.number));
+        sender.lock(|sender| {
+            self.send(sender, &result, due);
+            if let Some(uncertainty) = uncertainty {
+                sender.send(&Message::Uncertainty(uncertainty));
+            }
+            if due.health {
+                let health = self.health(tick.number, sender.dropped(), damaged_frames, actuation, pressures_pa);
+                sender.send(&Message::Health(health));
+            }
+        });
+        SUPERVISOR.report(Task::Telemetry, tick.number);
+    }
+
+    fn count_overruns(&mut self, tick: u32) {
+        let skipped = self.last_tick.map_or(0, |last| tick.wrapping_sub(last).saturating_sub(1));
+        self.counters.overruns = self.counters.overruns.saturating_add(skipped);
+    }
+
+    /// Validates the readings and updates the estimator.
+    fn run_cycle(&mut self, tick: &Tick, tare: bool) -> CycleResult {
+        let readings = self.imus.validate();
+        let mut events = heapless::Vec::new();
+        for event in readings.events {
+            let _ = events.push(event);
+        }
+        if tick.scan.is_none() {
+            self.counters.stale_scans = self.counters.stale_scans.saturating_add(1);
+        }
+        let bend = self.bend_sensors.step(tick.scan.as_ref(), |event| {
+            let _ = events.push(event);
+        });
+        if tare || self.estimator.needs_first_tare(tick.number, readings.imu.iter().all(Option::is_some)) {
+            self.estimator.tare();
+            let _ = events.push(Event::Tare(tick.number));
+        }
+        let sample = Sample {
+            tick: tick.number,
+            time_us: tick.time_us,
+            tare_epoch: self.estimator.tare_epoch(),
+            bend,
+            imu: readings.imu,
+        };
+        let estimate = self.estimator.update(&sample);
+        if let Some(event) = self.estimator.contact_event(tick.number) {
+            let _ = events.push(event);
+        }
+        CycleResult { sample, estimate, events }
+    }
+
+    fn send(&self, sender: &mut TelemetrySender, result: &CycleResult, due: DueMessages) {
+        if due.hello {
+            sender.send(&Message::Hello(self.hello.clone()));
+        }
+        // Samples first: a replay needs them.
+        if due.sample {
+            sender.send(&Message::Sample(result.sample));
+        }
+        if due.estimate {
+            sender.send(&Message::Estimate(result.estimate));
+        }
+        for event in &result.events {
+            log(event);
+            sender.send(&Message::Event(*event));
+        }
+    }
+
+    /// Returns whether the estimate is too poor to let the pressures rise: no IMU at all, or a segment whose bend sensors
+    /// are all lost.
+    fn is_degraded(&self) -> bool {
+        let no_imu = self.imus.health().iter().all(|imu| imu.state != SensorState::Ok);
+        let has_sensors =
+            |segment: usize| TABLE.segments.get(segment).is_some_and(|s| s.bend.iter().any(Option::is_some));
+        no_imu || (0..SEGMENTS).any(|segment| has_sensors(segment) && self.bend_sensors.segment_is_lost(segment))
+    }
+
+    fn health(
+        &mut self,
+        tick: u32,
+        dropped_frames: u32,
+        damaged_frames: u32,
+        actuation: Actuation,
+        pressures_pa: [u32; REGULATORS],
+    ) -> Health {
+        let counters = &mut self.counters;
+        Health {
+            tick,
+            bend: self.bend_sensors.health(),
+            imu: self.imus.health(),
+            max_estimate_latency_us: core::mem::take(&mut counters.max_estimate_latency_us),
+            longest_imu_read_us: core::mem::take(&mut counters.longest_imu_read_us),
+            load_permille: self.load.permille(),
+            overruns: counters.overruns,
+            stale_scans: counters.stale_scans,
+            dropped_frames,
+            damaged_frames,
+            bus_recoveries: self.imus.bus_recoveries(),
+            saturations: estimator_core::saturations(),
+            actuation,
+            pressures_pa,
+        }
+    }
+}
+
+/// Logs an event: faults of sensors and of their bus as warnings.
+fn log(event: &Event) {
+    let is_fault = match event {
+        Event::Imu(_, state) | Event::Bend(_, state) => *state != SensorState::Ok,
+        Event::BusRecovery => true,
+        Event::Actuation(_) | Event::Tare(_) | Event::Contact(..) => false,
+    };
+    if is_fault {
+        defmt::warn!("{}", event);
+    } else {
+        defmt::info!("{}", event);
+    }
+}
+
+/// Time from `time_us` to now, µs.
+fn since(time_us: u64) -> u32 {
+    Mono::now_us().saturating_sub(time_us) as u32
+}
+
+/// Converts a time in µs to the monotonic's.
+fn instant(time_us: u64) -> <Mono as Timebase>::Instant {
+    <Mono as Timebase>::Instant::from_ticks(0) + time_us.micros()
+}

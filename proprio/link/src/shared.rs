@@ -1,0 +1,108 @@
+//! State and event queues that the link's thread shares with its handle.
+
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
+use std::time::Duration;
+
+use telemetry::{Command, Counts, Hello};
+
+use crate::event::{Event, EventKind, Mismatch};
+use crate::queue::Queue;
+use crate::requests::Answer;
+
+/// Capacity of a subscription's queue, events: ten seconds of the full stream.
+const CAPACITY: usize = 8192;
+
+/// A request to the link's thread.
+#[derive(Debug)]
+pub(super) enum LinkRequest {
+    /// Send a command to the board.
+    Command(Command, Answer),
+    /// End.
+    Stop,
+}
+
+/// State and subscribers of a link.
+#[derive(Debug, Default)]
+pub(super) struct SharedLink {
+    subscribers: Mutex<Subscribers>,
+    state: Mutex<LinkState>,
+}
+
+#[derive(Debug, Default)]
+struct Subscribers {
+    queues: Vec<Weak<Queue<Event>>>,
+    /// The last event of a line that is gone for good, for later subscribers.
+    end: Option<Event>,
+}
+
+/// Current state of a link.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct LinkState {
+    /// Name of the line; `None` while it is gone.
+    pub port: Option<String>,
+    /// True once the board has acknowledged a Ping since its start.
+    pub is_connected: bool,
+    /// The board's last `Hello`.
+    pub hello: Option<Hello>,
+    /// Bytes received.
+    pub bytes: u64,
+    /// Frames received, damaged and lost.
+    pub counts: Counts,
+    /// Restarts of the board since its first `Hello`.
+    pub restarts: u32,
+    /// Times that the line was opened again.
+    pub reopened: u32,
+    /// Differences between board and host.
+    pub mismatches: Vec<Mismatch>,
+}
+
+impl SharedLink {
+    fn subscribers(&self) -> MutexGuard<'_, Subscribers> {
+        self.subscribers.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Adds a subscriber.
+    pub fn subscribe(&self) -> Subscription {
+        let queue = Arc::new(Queue::new(CAPACITY));
+        let mut subscribers = self.subscribers();
+        if let Some(end) = &subscribers.end {
+            queue.push(end.clone());
+        }
+        subscribers.queues.push(Arc::downgrade(&queue));
+        Subscription { queue }
+    }
+
+    /// The state, locked.
+    pub fn state(&self) -> MutexGuard<'_, LinkState> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Puts an event into the queue of every subscriber.
+    pub fn publish(&self, event: &Event) {
+        let mut subscribers = self.subscribers();
+        if matches!(event.kind, EventKind::Ended(_)) {
+            subscribers.end = Some(event.clone());
+        }
+        subscribers.queues.retain(|queue| queue.upgrade().inspect(|queue| queue.push(event.clone())).is_some());
+    }
+}
+
+/// A subscription to the events of a link.
+#[derive(Debug)]
+pub struct Subscription {
+    queue: Arc<Queue<Event>>,
+}
+
+impl Subscription {
+    /// The next event; `None` where none comes within `wait`.
+    #[must_use]
+    pub fn next(&self, wait: Duration) -> Option<Event> {
+        self.queue.pop(wait)
+    }
+
+    /// Number of events that were dropped because they were not taken in time.
+    #[must_use]
+    pub fn dropped(&self) -> u64 {
+        self.queue.dropped()
+    }
+}
