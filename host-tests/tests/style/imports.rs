@@ -1,4 +1,4 @@
-//! Which file of a crate imports from which: each name is followed over re-exports to the file that defines it.
+//! Imports between the files of a crate: each name is followed over re-exports to the file that defines it.
 
 use std::path::Path;
 

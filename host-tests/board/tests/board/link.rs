@@ -49,7 +49,7 @@ fn a_cable_that_comes_back_is_opened_again_and_nothing_counts_as_lost() {
     drop(terminal);
     let lost = std::iter::from_fn(|| events.next(Duration::from_secs(20)))
         .find(|event| matches!(event.kind, EventKind::Lost(_)));
-    assert!(lost.is_some(), "it is told that the line is gone");
+    assert!(lost.is_some(), "the loss of the line is an event");
     assert_eq!(link.state().port, None);
 
     let mut terminal = Terminal::new();
