@@ -104,6 +104,7 @@ impl EstimationTask {
         });
         due.hello |= self.last_tick.is_none();
         self.last_tick = Some(tick.number);
+        result.events.iter().for_each(log);
         let uncertainty = due.uncertainty.then(|| self.estimator.uncertainty(tick.number));
         sender.lock(|sender| {
             self.send(sender, &result, due);
@@ -166,7 +167,6 @@ impl EstimationTask {
             sender.send(&Message::Estimate(result.estimate));
         }
         for event in &result.events {
-            log(event);
             sender.send(&Message::Event(*event));
         }
     }

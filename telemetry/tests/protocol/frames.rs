@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 use telemetry::{
     DecodeError, Decoder, EARLIER_SCHEMAS, Encoder, Event, Message, PROTOCOL_VERSION, Payload, Request, SCHEMA,
-    SEGMENTS, SegmentUncertainty, Uncertainty, topic,
+    SEGMENTS, SegmentUncertainty, SensorState, Uncertainty, topic,
 };
 
 use crate::values::{longest_messages, message, ping};
@@ -120,4 +120,14 @@ fn a_whole_block_without_a_version_is_damaged() {
     // CRC-32 of nothing is zero.
     let found = decode(&mut decoder, &block_by_hand(&[0; 4]));
     assert_eq!(found, [Err(DecodeError::Damaged)]);
+}
+
+#[test]
+fn sensor_states_are_printed_by_the_names_of_the_protocol_page() {
+    use SensorState::{Inconsistent, Intermittent, Invalid, NoResponse, Ok, Stuck, Timeout};
+    let page = include_str!("../../../docs/reference/protocol.md");
+    for (number, state) in [Ok, NoResponse, Stuck, Invalid, Inconsistent, Timeout, Intermittent].iter().enumerate() {
+        let row = format!("| {number} | {state:?} | {state} |");
+        assert!(page.contains(&row), "{row}");
+    }
 }
