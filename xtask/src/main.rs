@@ -24,7 +24,9 @@ fn main() -> ExitCode {
         Some("style") => style::run(),
         Some("commands") => commands::run(),
         Some("pictures") => pictures::run(),
-        _ => Err("usage: cargo xtask demo | verify | bench | style | results | commands | pictures | accept".to_owned()),
+        _ => {
+            Err("usage: cargo xtask demo | verify | bench | style | results | commands | pictures | accept".to_owned())
+        }
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,
