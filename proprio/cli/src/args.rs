@@ -54,7 +54,7 @@ pub enum Command {
     Monitor(MonitorArgs),
     /// Convert a session to CSV, a recording or raw bytes
     Convert(ConvertArgs),
-    /// Recover the complete part of a recording that was cut
+    /// Recover the whole parts of a recording that is damaged or was cut
     Recover(RecoverArgs),
     /// Print a completion script for a shell
     Completions(CompletionsArgs),

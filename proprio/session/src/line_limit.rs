@@ -1,0 +1,52 @@
+//! A limit of the length of lines, so that a file without line ends does not take the memory.
+
+use std::fmt;
+use std::io::{self, Read};
+
+/// Longest line, bytes.
+pub const LONGEST_LINE: usize = 1 << 20;
+
+/// Reader of text whose lines are not longer than [`LONGEST_LINE`].
+pub struct LineLimit<R> {
+    source: R,
+    line: u64,
+    length: usize,
+}
+
+/// The error of a longer line.
+#[derive(Debug)]
+pub struct LongLine {
+    /// Its number, from 1.
+    pub line: u64,
+}
+
+impl<R> LineLimit<R> {
+    pub fn new(source: R) -> Self {
+        Self { source, line: 1, length: 0 }
+    }
+}
+
+impl<R: Read> Read for LineLimit<R> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let count = self.source.read(buffer)?;
+        for piece in buffer[..count].split_inclusive(|byte| matches!(byte, b'\n' | b'\r')) {
+            self.length += piece.len();
+            if self.length > LONGEST_LINE {
+                return Err(io::Error::other(LongLine { line: self.line }));
+            }
+            self.line += u64::from(piece.ends_with(b"\n"));
+            if piece.ends_with(b"\n") || piece.ends_with(b"\r") {
+                self.length = 0;
+            }
+        }
+        Ok(count)
+    }
+}
+
+impl fmt::Display for LongLine {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "line {} is longer than {LONGEST_LINE} bytes", self.line)
+    }
+}
+
+impl std::error::Error for LongLine {}
