@@ -50,3 +50,24 @@ impl fmt::Display for LongLine {
 }
 
 impl std::error::Error for LongLine {}
+
+#[cfg(test)]
+mod tests {
+    use std::io::Read;
+
+    use super::{LONGEST_LINE, LineLimit, LongLine};
+
+    #[test]
+    fn a_long_line_is_refused_by_its_number() {
+        let text = [b"a,b\n1,2\n".as_slice(), &vec![b','; LONGEST_LINE + 1]].concat();
+        let error = LineLimit::new(&text[..]).read_to_end(&mut Vec::new()).expect_err("the line is too long");
+        let long = error.get_ref().and_then(|error| error.downcast_ref::<LongLine>());
+        assert_eq!(long.map(|long| long.line), Some(3));
+    }
+
+    #[test]
+    fn a_long_file_of_short_lines_is_read() {
+        let text = "1,2\r".repeat(LONGEST_LINE);
+        assert_eq!(LineLimit::new(text.as_bytes()).read_to_end(&mut Vec::new()).expect("lines are short"), text.len());
+    }
+}

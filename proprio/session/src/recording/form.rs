@@ -73,10 +73,13 @@ pub fn head(bytes: &[u8]) -> Option<(u8, u64)> {
     Some((*bytes.first()?, u64_at(bytes, 1)?))
 }
 
-/// The opcode of a record's body: `opcode`, or where that does not fit the body, one that differs in one bit and does.
-pub fn opcode_of(opcode: u8, body: &[u8]) -> Option<u8> {
+/// The opcode of a record's body: `opcode`, or where that does not fit the body, one that differs in one bit and does. In a
+/// file with chunks, a message outside of them is the least likely.
+pub fn opcode_of(opcode: u8, body: &[u8], is_chunked: bool) -> Option<u8> {
+    let is_unlikely = opcode == op::MESSAGE && is_chunked;
     let flipped = (0..8).map(|bit| opcode ^ 1 << bit).filter(|opcode| *opcode != op::MESSAGE);
-    [opcode].into_iter().chain(flipped).find(|opcode| fits(*opcode, body))
+    let first = Some(opcode).filter(|_| !is_unlikely);
+    first.into_iter().chain(flipped).chain([opcode]).find(|opcode| fits(*opcode, body))
 }
 
 /// True where a body has the form of such a record. Chunks are checked by [`ChunkForm`].

@@ -14,6 +14,8 @@
 //! | `messages.rs`, `schema.rs`, `cdr.rs` | ROS 2 messages |
 
 mod cdr;
+#[cfg(test)]
+mod damage_tests;
 mod decompress;
 mod form;
 mod hole;

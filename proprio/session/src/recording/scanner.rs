@@ -186,26 +186,40 @@ impl<R: Read> Scanner<R> {
         }
         if length <= MAX_RECORD {
             let length = length as usize;
+            let next = at + HEAD + length;
+            let is_chunked = self.is_chunked;
             let body = self.window.peek(at + HEAD, length)?;
-            let fitting =
-                if in_search { Some(opcode).filter(|of| form::fits(*of, body)) } else { form::opcode_of(opcode, body) };
-            if body.len() == length {
-                if let Some(opcode) = fitting.filter(|of| !in_search || *of == op::ATTACHMENT) {
-                    return self.take(at, opcode, length).map(Some);
-                }
-                let is_unknown = opcode > op::DATA_END;
-                if (fitting.is_some() || is_unknown) && self.follows(at + HEAD + length, opcode)? {
-                    return self.take(at, opcode, length).map(Some);
-                }
+            let is_complete = body.len() == length;
+            let fitting = if in_search {
+                Some(opcode).filter(|of| form::fits(*of, body))
+            } else {
+                form::opcode_of(opcode, body, is_chunked)
+            };
+            if let Some(opcode) = fitting.filter(|of| is_complete && (!in_search || *of == op::ATTACHMENT)) {
+                return self.take(at, opcode, length).map(Some);
+            }
+            if is_complete && (fitting.is_some() || opcode > op::DATA_END) && self.follows(next, opcode)? {
+                return self.take(at, opcode, length).map(Some);
+            }
+            if in_search || self.found(next, true)?.is_some() {
+                return Ok(None);
             }
         }
-        let own = form::own_length(opcode, self.window.peek(at + HEAD, MOST_LENGTHS)?);
-        let Some(own) = own.filter(|own| !in_search && *own as u64 <= MAX_RECORD) else { return Ok(None) };
-        let body = self.window.peek(at + HEAD, own)?;
-        if body.len() == own && form::fits(opcode, body) && self.follows(at + HEAD + own, opcode)? {
-            return self.take(at, opcode, own).map(Some);
+        if in_search {
+            return Ok(None);
         }
-        Ok(None)
+        let own = form::own_length(opcode, self.window.peek(at + HEAD, MOST_LENGTHS)?);
+        let Some(own) = own.filter(|own| *own as u64 <= MAX_RECORD) else { return Ok(None) };
+        let next = at + HEAD + own;
+        let body = self.window.peek(at + HEAD, own)?;
+        if body.len() < own || !form::fits(opcode, body) {
+            return Ok(None);
+        }
+        let is_followed = match opcode {
+            op::HEADER | op::DATA_END | op::FOOTER => self.follows(next, opcode)?,
+            _ => self.found(next, true)?.is_some(),
+        };
+        if is_followed { self.take(at, opcode, own).map(Some) } else { Ok(None) }
     }
 
     /// True for the records that a search stops at. Messages in a damaged chunk have no checksum of their own.
@@ -247,15 +261,21 @@ impl<R: Read> Scanner<R> {
         if opcode != op::CHUNK && form.data.checked_add(form.header as u64) != Some(length) {
             return Ok(None);
         }
-        for data_length in form.data_lengths(length).into_iter().flatten() {
+        let lengths = form.data_lengths(length);
+        let is_sure = lengths.iter().flatten().count() == 1;
+        for data_length in lengths.into_iter().flatten() {
             let data_length = data_length as usize;
+            let next = at + HEAD + form.header + data_length;
             let data = self.window.peek(at + HEAD + form.header, data_length)?;
             if data.len() < data_length {
                 continue;
             }
             if let Some(records) = form.records(data) {
                 let records = records.into_owned();
-                return Ok(Some(Found { opcode: op::CHUNK, length: HEAD + form.header + data_length, records }));
+                // A compressed chunk ends before its data where that is too long.
+                if is_sure || self.follows(next, op::CHUNK)? {
+                    return Ok(Some(Found { opcode: op::CHUNK, length: next - at, records }));
+                }
             }
         }
         Ok(None)

@@ -60,3 +60,27 @@ impl<R: Read> Window<R> {
         read.map(|_| ())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{PIECE, Window};
+
+    #[test]
+    fn a_claimed_length_takes_no_more_memory_than_the_file() {
+        let file = [7; 22_000];
+        let mut window = Window::new(&file[..]);
+        assert_eq!(window.peek(0, 1 << 40).expect("memory can be read").len(), file.len());
+        assert!(window.bytes.capacity() <= 4 * PIECE, "{} bytes", window.bytes.capacity());
+    }
+
+    #[test]
+    fn consumed_bytes_are_not_kept() {
+        let file = vec![7; 1 << 22];
+        let mut window = Window::new(&file[..]);
+        while !window.peek(0, 100).expect("memory can be read").is_empty() {
+            window.consume(100);
+        }
+        assert_eq!(window.offset(), file.len() as u64);
+        assert!(window.bytes.capacity() <= 4 * PIECE, "{} bytes", window.bytes.capacity());
+    }
+}
