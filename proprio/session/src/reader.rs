@@ -46,7 +46,7 @@ impl Rows {
         let items: Items = if kind == FileFormat::Raw {
             Box::new(RawReader::new(bytes))
         } else {
-            Box::new(Reader::new(bytes, summary))
+            Box::new(Reader::with_summary(bytes, summary))
         };
         Ok(Self::Recorded(Box::new(RecordedRows::new(items)), position))
     }

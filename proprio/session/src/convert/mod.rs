@@ -63,7 +63,7 @@ fn extract(input: &Path, mut file: OutputFile, has_truth: bool) -> Result<(Outpu
     let mut source = SessionFile::open(input)?;
     let summary = source.summary()?;
     let (mut encoder, mut holes) = (Encoder::new(), 0);
-    for item in Reader::new(source.into_bytes()?, summary) {
+    for item in Reader::with_summary(source.into_bytes()?, summary) {
         let result = match item.map_err(|error| fail(SessionProblem::Recording(error)))? {
             Item::Bytes(_, bytes) => file.write_all(&bytes),
             Item::Sample(_, sample) => {

@@ -43,7 +43,7 @@ fn recording() -> Vec<u8> {
 fn items(bytes: &[u8]) -> Reader<Cursor<&[u8]>> {
     let mut source = Cursor::new(bytes);
     let summary = Summary::of(&mut source).expect("memory can be read");
-    Reader::new(source, summary)
+    Reader::with_summary(source, summary)
 }
 
 /// The rows, and the number of holes.
@@ -296,5 +296,14 @@ fn any_bytes_behind_the_magic_ones_are_refused_without_a_panic() {
         damaged.truncate(next() % damaged.len());
         let _ = recovered(&damaged);
         let _ = items(&damaged).filter(|item| matches!(item, Ok(Item::Hole(_)))).count();
+    }
+}
+
+#[test]
+fn a_file_that_is_cut_at_any_byte_has_no_hole() {
+    let recording = recording();
+    for end in (4096..recording.len()).step_by(7) {
+        let (recovery, _) = recovered(&recording[..end]).unwrap_or_else(|error| panic!("cut at {end}: {error}"));
+        assert!(recovery.was_cut && !recovery.has_loss(), "cut at {end}: {recovery:?}");
     }
 }

@@ -1,4 +1,4 @@
-//! The form of MCAP records, by which a whole record is told from a damaged one.
+//! The form of MCAP records, and the check of a record by it.
 
 use std::borrow::Cow;
 
@@ -31,7 +31,7 @@ pub struct ChunkForm {
     pub content: u64,
     /// Length of the data in the file, bytes.
     pub data: u64,
-    /// Checksum of the content; 0 where there is none.
+    /// Checksum of the content; 0 where it has no checksum.
     pub crc: u32,
 }
 
@@ -89,6 +89,17 @@ pub fn fits(opcode: u8, body: &[u8]) -> bool {
         op::ATTACHMENT => attachment_fits(body),
         _ => own_length(opcode, body) == Some(body.len()),
     }
+}
+
+/// True where a body is certainly that of such a record, which zeros or the bytes of a chunk are not.
+pub fn fits_surely(opcode: u8, body: &[u8]) -> bool {
+    fits(opcode, body)
+        && match opcode {
+            op::MESSAGE_INDEX => body.len() >= 22,
+            op::METADATA => u32_at(body, 0) != Some(0) && mcap::parse_record(opcode, body).is_ok(),
+            op::ATTACHMENT => !body.ends_with(&[0; 4]),
+            _ => true,
+        }
 }
 
 /// True where the lengths and the checksum of an attachment are right.

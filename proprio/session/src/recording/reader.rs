@@ -46,8 +46,13 @@ pub struct Reader<R> {
 }
 
 impl<R: Read> Reader<R> {
+    /// Begins at the file's first byte.
+    pub fn new(source: R) -> Self {
+        Self::with_summary(source, Summary::default())
+    }
+
     /// Begins at the file's first byte. `summary` has the channels where the first chunk is damaged.
-    pub(crate) fn new(source: R, summary: Summary) -> Self {
+    pub(crate) fn with_summary(source: R, summary: Summary) -> Self {
         let topics = summary.channels.into_iter().map(|(id, channel)| (id, channel.topic)).collect();
         Self { scanner: Scanner::new(source), topics, has_messages: false, has_damage: false, at_end: false }
     }

@@ -178,7 +178,7 @@ impl<R: Read> Scanner<R> {
         if in_search && !self.may_follow_damage(opcode) {
             return Ok(None);
         }
-        if let Some(found) = self.chunk(at, opcode, length)? {
+        if let Some(found) = self.chunk(at, opcode, length, in_search)? {
             return Ok(Some(found));
         }
         if opcode == op::CHUNK {
@@ -191,14 +191,15 @@ impl<R: Read> Scanner<R> {
             let body = self.window.peek(at + HEAD, length)?;
             let is_complete = body.len() == length;
             let fitting = if in_search {
-                Some(opcode).filter(|of| form::fits(*of, body))
+                Some(opcode).filter(|of| form::fits_surely(*of, body))
             } else {
                 form::opcode_of(opcode, body, is_chunked)
             };
             if let Some(opcode) = fitting.filter(|of| is_complete && (!in_search || *of == op::ATTACHMENT)) {
                 return self.take(at, opcode, length).map(Some);
             }
-            if is_complete && (fitting.is_some() || opcode > op::DATA_END) && self.follows(next, opcode)? {
+            let is_sure = opcode == op::DATA_END || !in_search || self.is_searched(next)?;
+            if is_complete && is_sure && (fitting.is_some() || opcode > op::DATA_END) && self.follows(next, opcode)? {
                 return self.take(at, opcode, length).map(Some);
             }
             if in_search || self.found(next, true)?.is_some() {
@@ -231,6 +232,12 @@ impl<R: Read> Scanner<R> {
         }
     }
 
+    /// True where the record at `at` is of a kind that a search stops at, or there is none or an end.
+    fn is_searched(&mut self, at: usize) -> io::Result<bool> {
+        let opcode = self.window.peek(at, 1)?.first().copied();
+        Ok(opcode.is_none_or(|opcode| opcode == mcap::MAGIC[0] || self.may_follow_damage(opcode)))
+    }
+
     /// True where a record begins at `at`, or the file ends there, behind a record of this kind.
     fn follows(&mut self, at: usize, opcode: u8) -> io::Result<bool> {
         let next = self.window.peek(at, HEAD)?;
@@ -255,10 +262,14 @@ impl<R: Read> Scanner<R> {
     }
 
     /// The chunk at `at`, whose opcode or one of whose lengths may be damaged, as its checksum holds.
-    fn chunk(&mut self, at: usize, opcode: u8, length: u64) -> io::Result<Option<Found>> {
+    fn chunk(&mut self, at: usize, opcode: u8, length: u64, in_search: bool) -> io::Result<Option<Found>> {
         let header = self.window.peek(at + HEAD, MAX_CHUNK_HEADER)?;
         let Some(form) = ChunkForm::of(header) else { return Ok(None) };
-        if opcode != op::CHUNK && form.data.checked_add(form.header as u64) != Some(length) {
+        // Zeros are no chunk.
+        if in_search && (form.crc == 0 || form.data == 0) {
+            return Ok(None);
+        }
+        if (opcode != op::CHUNK || in_search) && form.data.checked_add(form.header as u64) != Some(length) {
             return Ok(None);
         }
         let lengths = form.data_lengths(length);
