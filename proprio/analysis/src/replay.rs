@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use estimator_core::{Estimator, FusedOps, Q};
+use proprio_session::recording::HoleTimes;
 use proprio_session::{FileFormat, LoadedTable, Progress, Row, SessionReader, is_version_0_1};
 use telemetry::{Hello, TICK_HZ};
 
@@ -19,6 +20,8 @@ pub struct SessionSummary {
     pub seconds: f64,
     /// True where the file's last line has a line end; otherwise its last number may be cut.
     pub ends_with_line: bool,
+    /// The damaged parts of a recording, which are left out.
+    pub holes: Vec<HoleTimes>,
     /// Facts about a board's recording; `None` for a CSV.
     pub recording: Option<RecordingFacts>,
 }
@@ -119,6 +122,12 @@ impl<'p> SessionRows<'p> {
         let recording =
             if reader.kind() == FileFormat::Csv { None } else { Some(RecordingFacts::new(reader.hello(), table)?) };
         let seconds = (last_us - first_us.unwrap_or(last_us)) as f64 / 1e6;
-        Ok(SessionSummary { samples, seconds, ends_with_line: reader.ends_with_line(), recording })
+        Ok(SessionSummary {
+            samples,
+            seconds,
+            ends_with_line: reader.ends_with_line(),
+            holes: reader.holes().to_vec(),
+            recording,
+        })
     }
 }

@@ -19,7 +19,7 @@ pub const STYLES: Styles = Styles::styled();
 #[derive(Debug, Parser)]
 #[command(version, styles = STYLES, max_term_width = 100)]
 #[command(
-    after_help = "Exit status: 0 done, 2 the input or the command cannot be used, 130 interrupted, 1 a fault of proprio itself."
+    after_help = "Exit status: 0 done, 2 the input or the command cannot be used, 130 interrupted, 1 a loss in `recover` or a fault of proprio itself."
 )]
 pub struct Cli {
     #[command(subcommand)]
@@ -54,7 +54,7 @@ pub enum Command {
     Monitor(MonitorArgs),
     /// Convert a session to CSV, a recording or raw bytes
     Convert(ConvertArgs),
-    /// Recover the complete part of a recording that was cut
+    /// Recover the whole parts of a recording that is damaged or was cut
     Recover(RecoverArgs),
     /// Print a completion script for a shell
     Completions(CompletionsArgs),

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use csv::StringRecord;
 
 use crate::columns::{Column, TruthColumns};
+use crate::line_limit::{LineLimit, LongLine};
 use crate::source::SessionFile;
 use crate::{Pose, SessionError, SessionProblem, Truth, cell};
 
@@ -15,7 +16,7 @@ pub(crate) struct CsvFile {
     path: PathBuf,
     size_bytes: u64,
     names: Vec<String>,
-    csv: csv::Reader<Box<dyn Read>>,
+    csv: csv::Reader<LineLimit<Box<dyn Read>>>,
     record: StringRecord,
     ends_with_line: bool,
 }
@@ -24,7 +25,8 @@ impl CsvFile {
     /// Reads the header.
     pub fn new(mut source: SessionFile) -> Result<Self, SessionError> {
         let (path, size_bytes, ends_with_line) = (source.path.clone(), source.size_bytes, source.ends_with_line()?);
-        let mut csv = csv::ReaderBuilder::new().buffer_capacity(1 << 16).from_reader(source.into_bytes()?);
+        let mut csv =
+            csv::ReaderBuilder::new().buffer_capacity(1 << 16).from_reader(LineLimit::new(source.into_bytes()?));
         let header = csv.headers().map_err(|error| csv_error(&path, error))?;
         let names: Vec<String> = header.iter().map(|name| name.trim().to_owned()).collect();
         let has_header = !header.iter().all(str::is_empty);
@@ -127,8 +129,9 @@ fn csv_error(path: &Path, error: csv::Error) -> SessionError {
     let mut line = error.position().map(|position| line_at(path, position));
     let problem = match error.into_kind() {
         csv::ErrorKind::Io(error) => {
-            line = None;
-            SessionProblem::Read(error)
+            let long = error.get_ref().and_then(|error| error.downcast_ref::<LongLine>());
+            line = long.map(|long| long.line);
+            if long.is_some() { SessionProblem::LongLine } else { SessionProblem::Read(error) }
         }
         csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
             SessionProblem::RowLength { found: len, expected: expected_len }

@@ -5,7 +5,7 @@
 //! |---|---|
 //! | `row.rs`, `required_columns.rs`, `table.rs` | a row; the columns that a table needs of it; a table with its path |
 //! | `reader.rs` | [`SessionReader`]: the rows of a session of any kind |
-//! | `csv_file.rs`, `csv_rows.rs`, `columns.rs`, `cell.rs`, `header.rs`, `source.rs` | CSV files |
+//! | `csv_file.rs`, `csv_rows.rs`, `columns.rs`, `cell.rs`, `header.rs`, `line_limit.rs`, `source.rs` | CSV files |
 //! | `camera.rs`, `pressures.rs` | a camera's poses; pressures over time |
 //! | `row_assembler.rs` | [`RowAssembler`]: rows from the messages of a board, recorded or live |
 //! | `recording/` | MCAP: written, read, recovered |
@@ -26,6 +26,7 @@ mod duration;
 mod ellipse;
 mod error;
 mod header;
+mod line_limit;
 mod output;
 mod pressures;
 mod progress;

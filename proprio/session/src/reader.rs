@@ -9,7 +9,7 @@ use telemetry::{Hello, SEGMENTS};
 
 use crate::csv_file::CsvFile;
 use crate::csv_rows::CsvRows;
-use crate::recording::{Item, RawReader, ReadError, Reader, RecordedRows};
+use crate::recording::{HoleTimes, Item, RawReader, ReadError, Reader, RecordedRows};
 use crate::source::{FileFormat, SessionFile};
 use crate::{Mark, RequiredColumns, Row, SessionError, SessionProblem};
 
@@ -36,14 +36,18 @@ enum Rows {
 }
 
 impl Rows {
-    fn new(source: SessionFile, needs: &RequiredColumns) -> Result<Self, SessionError> {
+    fn new(mut source: SessionFile, needs: &RequiredColumns) -> Result<Self, SessionError> {
         let kind = source.kind;
         if kind == FileFormat::Csv {
             return Ok(Self::Csv(Box::new(CsvRows::new(CsvFile::new(source)?, needs)?)));
         }
+        let summary = source.summary()?;
         let (bytes, position) = source.into_counted()?;
-        let items: Items =
-            if kind == FileFormat::Raw { Box::new(RawReader::new(bytes)) } else { Box::new(Reader::new(bytes)) };
+        let items: Items = if kind == FileFormat::Raw {
+            Box::new(RawReader::new(bytes))
+        } else {
+            Box::new(Reader::with_summary(bytes, summary))
+        };
         Ok(Self::Recorded(Box::new(RecordedRows::new(items)), position))
     }
 }
@@ -196,6 +200,15 @@ impl SessionReader {
         match &self.rows {
             Rows::Csv(_) => &[],
             Rows::Recorded(rows, _) => rows.marks(),
+        }
+    }
+
+    /// The holes of a damaged recording that were read so far, by the times of the rows.
+    #[must_use]
+    pub fn holes(&self) -> &[HoleTimes] {
+        match &self.rows {
+            Rows::Csv(_) => &[],
+            Rows::Recorded(rows, _) => rows.holes(),
         }
     }
 

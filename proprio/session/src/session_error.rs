@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use board_core::FULL_SCALE_PA;
 use telemetry::SEGMENTS;
 
+use crate::line_limit::LONGEST_LINE;
 use crate::recording::ReadError;
 
 /// A problem of a session, with its place in the file.
@@ -36,6 +37,9 @@ pub enum SessionProblem {
     /// It has a header and no more.
     #[error("has no samples, expected a row for each sample below the header")]
     NoSamples,
+    /// A line that no session has.
+    #[error("the line is longer than {most} kB", most = LONGEST_LINE / 1024)]
+    LongLine,
     /// It is not UTF-8 text.
     #[error("is not UTF-8 text")]
     NotText,
@@ -120,7 +124,7 @@ pub enum SessionProblem {
     #[error(transparent)]
     Recording(ReadError),
     /// A recording of which nothing can be recovered.
-    #[error("nothing in it is whole: it was cut within its first second")]
+    #[error("nothing in it is whole: no message can be read")]
     NothingWhole,
     /// A recording of a board with fewer segments than the arm.
     #[error("is a recording of a board with {SEGMENTS} segments at most, the arm has {0}")]

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use crate::recording::is_recording;
+use crate::recording::{Summary, is_recording};
 use crate::{SessionError, SessionProblem};
 
 /// Bytes at the start by which the format is detected.
@@ -74,6 +74,14 @@ impl SessionFile {
             self.file.read_exact(&mut last).map_err(|error| self.error(SessionProblem::Read(error)))?;
         }
         Ok(last == [b'\n'])
+    }
+
+    /// The index of a recording; empty for other files and for a pipe.
+    pub fn summary(&mut self) -> Result<Summary, SessionError> {
+        if self.kind != FileFormat::Recording || !self.is_regular_file {
+            return Ok(Summary::default());
+        }
+        Summary::of(&mut self.file).map_err(|error| self.error(SessionProblem::Read(error)))
     }
 
     /// The bytes from the first on.

@@ -134,7 +134,7 @@ pub struct ConvertArgs {
 
 #[derive(Debug, Args)]
 pub struct RecoverArgs {
-    /// Recording that was cut
+    /// Recording that is damaged or was cut
     pub input: PathBuf,
     /// Recording to write
     #[arg(short, long, value_name = "WHOLE.mcap")]

@@ -17,12 +17,16 @@ mod simulate;
 mod status;
 mod tune;
 
+use std::process::ExitCode;
+
 use crate::args::Command;
 use crate::error::Error;
 
 impl Command {
-    pub fn run(self) -> Result<(), Error> {
+    /// Runs the command. Its exit status is that of a command that is done, or of a finding.
+    pub fn run(self) -> Result<ExitCode, Error> {
         match self {
+            Self::Recover(args) => return recover::run(&args),
             Self::Align(args) => align::run(&args),
             Self::Calibrate(args) => calibrate::run(&args),
             Self::Tune(args) => tune::run(&args),
@@ -36,8 +40,8 @@ impl Command {
             Self::Drive(args) => drive::run(&args),
             Self::Monitor(args) => monitor::run(&args),
             Self::Convert(args) => convert::run(&args),
-            Self::Recover(args) => recover::run(&args),
             Self::Completions(args) => completions::run(&args),
         }
+        .map(|()| ExitCode::SUCCESS)
     }
 }

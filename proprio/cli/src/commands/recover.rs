@@ -1,7 +1,7 @@
 //! `proprio recover`.
 
 use std::fs::File;
-use std::io::BufReader;
+use std::process::ExitCode;
 
 use proprio_session::recording::{RecoverError, Recovery, recover};
 use proprio_session::{OutputFile, SessionError, SessionProblem};
@@ -10,23 +10,62 @@ use crate::args::RecoverArgs;
 use crate::error::Error;
 use crate::terminal;
 
-pub fn run(args: &RecoverArgs) -> Result<(), Error> {
+/// Recovers a recording. The exit status is 1 where a part of it is lost.
+pub fn run(args: &RecoverArgs) -> Result<ExitCode, Error> {
     let fail = |problem| SessionError { path: args.input.clone(), line: None, column: None, problem };
     let source = File::open(&args.input).map_err(|error| fail(SessionProblem::Read(error)))?;
     let mut file = OutputFile::create(&args.output, &[&args.input])?;
-    let recovery = recover(BufReader::with_capacity(1 << 16, source), &mut file).map_err(|error| match error {
+    let recovery = recover(source, &mut file).map_err(|error| match error {
         RecoverError::Read(error) => fail(SessionProblem::Read(error)).into(),
         RecoverError::Source(error) => fail(SessionProblem::Recording(error)).into(),
         RecoverError::Sink(error) => file.error(error),
     })?;
-    let Recovery { messages, times_ns, bytes, was_cut } = recovery;
-    let Some((first, last)) = times_ns else { return Err(fail(SessionProblem::NothingWhole).into()) };
+    let Some((first, last)) = recovery.times_ns else { return Err(fail(SessionProblem::NothingWhole).into()) };
     file.finish()?;
+    warn_of_loss(args, &recovery);
+    let Recovery { messages, bytes, .. } = recovery;
     let seconds = (last - first) as f64 / 1e9;
-    let cut = if was_cut { "recovered from a file that was cut" } else { "the file was complete" };
+    let source = source_text(&recovery);
+    let name = args.output.display();
     terminal::eprint_line(&format_args!(
-        "{}: {messages} messages of {seconds:.3} s, {cut} ({bytes} bytes read)",
-        args.output.display()
+        "{name}: {messages} messages of {seconds:.3} s, {source} ({bytes} bytes read)"
     ));
-    Ok(())
+    Ok(ExitCode::from(u8::from(recovery.has_loss())))
+}
+
+/// Names each damaged part.
+fn warn_of_loss(args: &RecoverArgs, recovery: &Recovery) {
+    let input = args.input.display();
+    for hole in &recovery.holes {
+        let times = hole.times(recovery.start_ns);
+        terminal::warn(&format_args!("{input}: {times} ({} bytes from byte {})", hole.bytes, hole.offset));
+    }
+    if recovery.lost_attachments > 0 {
+        let count = recovery.lost_attachments;
+        terminal::warn(&format_args!("{input}: {count} damaged attachments or metadata are left out"));
+    }
+    if recovery.lost_messages > 0 {
+        let count = recovery.lost_messages;
+        terminal::warn(&format_args!("{input}: {count} messages are left out: their channel is damaged"));
+    }
+}
+
+/// The state of the source, and the share of it that is kept.
+fn source_text(recovery: &Recovery) -> String {
+    if recovery.has_loss() {
+        let cut = if recovery.was_cut { ", which was cut as well" } else { "" };
+        let share = match recovery.recorded {
+            Some(recorded) if recorded > 0 => {
+                format!("{:.2} % of its messages", 100.0 * recovery.messages as f64 / recorded as f64)
+            }
+            _ => format!("{:.2} % of its bytes", 100.0 * recovery.kept()),
+        };
+        format!("recovered from a file that is damaged{cut}: {share} are kept")
+    } else if recovery.was_cut {
+        "recovered from a file that was cut".to_owned()
+    } else if recovery.index_was_damaged {
+        "recovered from a file with a damaged index: no message is lost".to_owned()
+    } else {
+        "the file was complete".to_owned()
+    }
 }

@@ -9,6 +9,7 @@ use proprio_analysis::metrics::ErrorMetrics;
 use proprio_analysis::replay::{SessionSummary, replay};
 use proprio_analysis::session_metrics::{AllMetrics, ByMethod, SessionMetrics};
 use proprio_analysis::{Outcome, smooth};
+use proprio_session::recording::HoleTimes;
 use proprio_session::{LAST_LINE, LoadedTable, OutputFile, Row};
 
 use crate::args::ReplayArgs;
@@ -41,6 +42,16 @@ pub fn run(args: &ReplayArgs) -> Result<(), Error> {
     // The file gets its name last, so that a command that fails leaves none.
     terminal::print(&text)?;
     Ok(out.map_or(Ok(()), EstimateWriter::finish)?)
+}
+
+/// Warns of the damaged parts of a recording.
+fn warn_of_holes(path: &Path, holes: &[HoleTimes]) {
+    for hole in holes {
+        terminal::warn(&format_args!(
+            "{}: {hole}; what the board has estimated behind it is compared from the next tare on",
+            path.display()
+        ));
+    }
 }
 
 /// Reports the agreement of the board's estimates with the replay.
@@ -82,10 +93,11 @@ fn replay_all<S: FusedOps>(
         } else {
             replay(path, table, progress, visit)
         };
-        let SessionSummary { samples, seconds, ends_with_line, recording } = summary?;
+        let SessionSummary { samples, seconds, ends_with_line, holes, recording } = summary?;
         if !ends_with_line {
             terminal::warn(&format_args!("{}: {LAST_LINE}", path.display()));
         }
+        warn_of_holes(path, &holes);
         let recorded = recording.filter(|_| compare.is_some()).map(|recording| {
             comparison.table_matches = recording.table_matches;
             let comparison = comparison.of(recording.recorded_by);

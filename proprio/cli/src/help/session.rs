@@ -11,6 +11,7 @@ impl Help for SessionProblem {
             Self::Read(_) | Self::Recording(ReadError::Read(_)) => "check the name and that you may read it",
             Self::Directory => "name the .csv file in it",
             Self::NoHeader | Self::NoSamples | Self::NothingWhole => "record the session again, or take another",
+            Self::LongLine => "end each row with a line end; is it a CSV? copy the file again, or take another",
             Self::NotText => "save it as CSV in UTF-8",
             Self::MissingColumn(_) => {
                 "take the arm or table of this session, or add the column; names are as in docs/reference/files.md, between commas"
@@ -38,7 +39,10 @@ impl Help for SessionProblem {
             Self::Recording(ReadError::OtherForm(_) | ReadError::OtherProtocol(_)) => {
                 "read it with the proprio of that version"
             }
-            Self::Recording(ReadError::Compressed(_)) => "decompress it (`mcap decompress`)",
+            Self::Recording(ReadError::NoMcap) => "name a recording (.mcap); other sessions are used as they are",
+            Self::Recording(ReadError::Foreign(_)) => {
+                "take a recording of `proprio record`, or make a CSV of this one's samples (docs/reference/files.md)"
+            }
             Self::Recording(ReadError::Damaged(_)) => {
                 "recover its complete part with `proprio recover`, or take another"
             }

@@ -11,6 +11,7 @@ mod calibrate_faults;
 mod calibrate_gaps;
 mod common;
 mod convert;
+mod damaged_recordings;
 mod drive;
 mod earlier_schema;
 mod estimates;

@@ -26,7 +26,7 @@ pub fn record(pieces: impl IntoIterator<Item = Vec<u8>>) -> Vec<u8> {
     recorder.finish().expect("memory takes all")
 }
 
-fn ticks(board: SyntheticBoard) -> Vec<Vec<u8>> {
+pub fn ticks(board: SyntheticBoard) -> Vec<Vec<u8>> {
     board.map(|(frames, _)| frames.concat()).collect()
 }
 
@@ -285,22 +285,6 @@ fn a_recording_that_is_cut_at_any_byte_loses_no_more_than_its_last_second() {
         let saved = recorded["equal"].as_u64().expect("a count");
         let at_best = 2000 * cut as u64 / recording.len() as u64;
         assert!(saved + 200 > at_best, "cut at {cut}: {saved} recovered of about {at_best}");
-    }
-}
-
-#[test]
-fn a_flipped_bit_costs_what_follows_and_is_never_read() {
-    let recording = record(ticks(SyntheticBoard::new(1, 10.0)));
-    let mut random = ChaCha8Rng::seed_from_u64(2);
-    for _ in 0..10 {
-        let mut damaged = recording.clone();
-        let at = damaged.len() / 4 + random.next_u32() as usize % (damaged.len() / 2);
-        damaged[at] ^= 1 << (random.next_u32() % 8);
-        let folder = Folder::with("damaged.mcap", &damaged);
-        folder.done(&["recover", "damaged.mcap", "-o", "whole.mcap"]);
-        let (recorded, stderr) = recorded(&folder, "whole.mcap");
-        assert_eq!(recorded["first_difference"], Value::Null, "byte {at}: {stderr}");
-        assert!(recorded["equal"].as_u64().expect("a count") > 100, "byte {at}: {stderr}");
     }
 }
 

@@ -6,14 +6,14 @@ mod samples;
 mod to_csv;
 mod to_recording;
 
-use std::fs::File;
-use std::io::{BufReader, Write};
+use std::io::Write;
 use std::path::Path;
 
 use samples::Samples;
-use telemetry::SEGMENTS;
+use telemetry::{Encoder, MAX_FRAME, Message, SEGMENTS};
 
 use crate::recording::{Item, Reader};
+use crate::source::SessionFile;
 use crate::{
     Error, FileFormat, Header, OutputFile, Progress, RequiredColumns, SessionError, SessionProblem, SessionReader,
 };
@@ -60,15 +60,29 @@ fn output_kind(output: &Path) -> Result<FileFormat, Error> {
 /// The bytes of a recording, one after the other.
 fn extract(input: &Path, mut file: OutputFile, has_truth: bool) -> Result<(OutputFile, Vec<String>), Error> {
     let fail = |problem| SessionError { path: input.to_owned(), line: None, column: None, problem };
-    let source = File::open(input).map_err(|error| fail(SessionProblem::Read(error)))?;
-    for item in Reader::new(BufReader::with_capacity(1 << 16, source)) {
-        if let Item::Bytes(_, bytes) = item.map_err(|error| fail(SessionProblem::Recording(error)))? {
-            file.write_all(&bytes).map_err(|error| file.error(error))?;
-        }
+    let mut source = SessionFile::open(input)?;
+    let summary = source.summary()?;
+    let (mut encoder, mut holes) = (Encoder::new(), 0);
+    for item in Reader::with_summary(source.into_bytes()?, summary) {
+        let result = match item.map_err(|error| fail(SessionProblem::Recording(error)))? {
+            Item::Bytes(_, bytes) => file.write_all(&bytes),
+            Item::Sample(_, sample) => {
+                let mut buffer = [0; MAX_FRAME];
+                let frame = encoder.encode(&Message::Sample(sample), &mut buffer).expect("every sample fits a frame");
+                file.write_all(frame)
+            }
+            Item::Hole(_) => {
+                holes += 1;
+                Ok(())
+            }
+            Item::Truth(..) | Item::Mark(..) => Ok(()),
+        };
+        result.map_err(|error| file.error(error))?;
     }
-    let truth = has_truth.then(|| "the truth is left out".to_owned());
-    let left_out = ["the times of arrival and the attachments are left out".to_owned()].into_iter().chain(truth);
-    Ok((file, left_out.collect()))
+    let mut left_out = vec!["the times of arrival and the attachments are left out".to_owned()];
+    left_out.extend((holes > 0).then(|| format!("{holes} damaged parts of the recording are left out")));
+    left_out.extend(has_truth.then(|| "the truth is left out".to_owned()));
+    Ok((file, left_out))
 }
 
 /// A CSV's samples as a board would send them.

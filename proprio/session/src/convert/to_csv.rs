@@ -5,6 +5,7 @@ use std::io::{self, Write};
 use estimator_core::{ImuReading, SENSORS_PER_SEGMENT};
 
 use super::samples::WORK;
+use crate::recording::HoleTimes;
 use crate::{Error, FileFormat, OutputFile, Progress, Row, SENSOR_NAMES, SessionReader, TARE, Truth};
 
 /// The columns of the file.
@@ -37,6 +38,7 @@ pub fn write(
     if estimates > 0 {
         left_out.push(format!("the board's {estimates} estimates are left out; `proprio replay` makes them again"));
     }
+    left_out.extend(reader.holes().iter().map(HoleTimes::to_string));
     Ok((file, left_out))
 }
 

@@ -34,6 +34,26 @@ pub fn sample(stamp: HostNs, sample: &Sample) -> Vec<u8> {
     cdr.into_bytes()
 }
 
+/// The sample in a `proprio_msgs/msg/Sample`; `None` where it cannot be decoded.
+pub fn read_sample(message: &[u8]) -> Option<Sample> {
+    let mut cdr = CdrReader::new(message)?;
+    cdr.u32()?;
+    cdr.u32()?;
+    cdr.string()?;
+    let (tick, time_us, tare_epoch) = (cdr.u32()?, cdr.u64()?, cdr.u8()?);
+    let (bend_read, imu_read) = (cdr.u16()?, cdr.u8()?);
+    let (mut bend, mut imu) = ([None; BEND_SENSORS], [None; SEGMENTS]);
+    for (i, place) in bend.iter_mut().enumerate() {
+        let counts = cdr.u16()?;
+        *place = (bend_read >> i & 1 == 1).then_some(counts);
+    }
+    for (i, place) in imu.iter_mut().enumerate() {
+        let quaternion = [cdr.i16()?, cdr.i16()?, cdr.i16()?, cdr.i16()?];
+        *place = (imu_read >> i & 1 == 1).then_some(quaternion);
+    }
+    Some(Sample { tick, time_us, tare_epoch, bend, imu })
+}
+
 /// Bit mask of the values that are present.
 fn mask<T>(values: &[Option<T>]) -> u16 {
     values.iter().rev().fold(0, |mask, value| mask << 1 | u16::from(value.is_some()))
@@ -219,7 +239,19 @@ pub fn read_truth(message: &[u8]) -> Option<Vec<Option<Truth>>> {
 
 #[cfg(test)]
 mod tests {
-    use super::{HostNs, Truth, read_truth, truth};
+    use telemetry::{BEND_SENSORS, SEGMENTS, Sample};
+
+    use super::{HostNs, Truth, read_sample, read_truth, sample, truth};
+
+    #[test]
+    fn a_sample_is_read_back_to_the_bit() {
+        let mut bend = [None; BEND_SENSORS];
+        (bend[0], bend[11]) = (Some(4095), Some(0));
+        let mut imu = [None; SEGMENTS];
+        (imu[0], imu[5]) = (Some([16384, 0, -1, i16::MIN]), Some([0; 4]));
+        let sent = Sample { tick: 7, time_us: 1 << 40, tare_epoch: 255, bend, imu };
+        assert_eq!(read_sample(&sample(HostNs(5), &sent)), Some(sent));
+    }
 
     #[test]
     fn truth_is_read_back_to_the_bit() {

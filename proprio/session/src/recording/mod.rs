@@ -8,24 +8,36 @@
 //! | `writer.rs`, `topics.rs` | writes a recording; the topics of its channels |
 //! | `reader.rs`, `read_error.rs` | reads bytes, truth and marks |
 //! | `rows.rs` | the rows of a recording |
-//! | `recover.rs` | recovery of a file that was cut |
+//! | `recover.rs` | recovery of a file that was cut or damaged |
+//! | `scanner.rs`, `window.rs`, `form.rs`, `hole.rs` | whole records of a damaged file, and its holes |
+//! | `decompress.rs`, `summary.rs` | compressed chunks; the index at a file's end |
 //! | `messages.rs`, `schema.rs`, `cdr.rs` | ROS 2 messages |
 
 mod cdr;
+#[cfg(test)]
+mod damage_tests;
+mod decompress;
+mod form;
+mod hole;
 mod messages;
 mod read_error;
 mod reader;
 mod recover;
 
 mod rows;
+mod scanner;
 mod schema;
+mod summary;
 pub mod topics;
+mod window;
 mod writer;
 
+pub use hole::{Hole, HoleTimes};
 pub use messages::chip_number;
 pub use read_error::ReadError;
 pub use reader::{Item, RawReader, Reader, is_recording};
 pub use recover::{RecoverError, Recovery, recover};
+pub(crate) use summary::Summary;
 
 pub(crate) use rows::RecordedRows;
 pub use writer::Recorder;

@@ -2,8 +2,9 @@
 
 use std::io;
 
-use mcap::McapError;
 use telemetry::PROTOCOL_VERSION;
+
+use super::topics::{RAW, SAMPLES};
 
 /// An error that ends the reading of a recording.
 #[derive(Debug, thiserror::Error)]
@@ -14,9 +15,12 @@ pub enum ReadError {
     /// It ends in the middle.
     #[error("the recording was cut: it has no end")]
     Cut,
-    /// It is compressed.
-    #[error("the recording is compressed with {0}, which proprio does not read")]
-    Compressed(String),
+    /// It is of another kind.
+    #[error("it is no MCAP file")]
+    NoMcap,
+    /// It is an MCAP file of another program.
+    #[error("is an MCAP file without a board's samples: {RAW} and {SAMPLES} are missing, {}", topics(.0))]
+    Foreign(Vec<String>),
     /// It is of a firmware whose messages have another layout.
     #[error("the messages of its firmware, version {0}, have another form than this proprio reads")]
     OtherForm(String),
@@ -28,13 +32,7 @@ pub enum ReadError {
     Damaged(String),
 }
 
-impl From<McapError> for ReadError {
-    fn from(error: McapError) -> Self {
-        match error {
-            McapError::Io(error) => Self::Read(error),
-            McapError::UnexpectedEof | McapError::UnexpectedEoc => Self::Cut,
-            McapError::UnsupportedCompression(name) => Self::Compressed(name),
-            other => Self::Damaged(other.to_string()),
-        }
-    }
+/// The topics of a file, for its reader.
+fn topics(names: &[String]) -> String {
+    if names.is_empty() { "as are all other topics".to_owned() } else { format!("it has {}", names.join(", ")) }
 }

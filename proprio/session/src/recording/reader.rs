@@ -1,28 +1,32 @@
 //! Reads a recording from its begin to its end, in memory that does not grow with its length.
 
+use std::collections::BTreeMap;
 use std::io::{self, Read};
 
-use mcap::io::MessageReader;
-use mcap::sans_io::LinearReaderOptions;
-use mcap::{McapError, Message};
+use mcap::records::{Record, op};
+use telemetry::Sample;
 
+use super::hole::Hole;
 use super::messages;
 use super::read_error::ReadError;
-use super::topics::{MARKS, RAW, TRUTH};
+use super::scanner::{Part, Scanner};
+use super::summary::Summary;
+use super::topics::{MARKS, RAW, SAMPLES, TRUTH};
 use crate::{HostNs, Truth};
-
-/// Longest record that is read, bytes; a longer one has a damaged length.
-const MAX_RECORD: usize = 1 << 28;
 
 /// A part of a recording that a session uses.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Item {
     /// Received bytes, and the time of their arrival.
     Bytes(HostNs, Vec<u8>),
+    /// A decoded sample and the time of its arrival, in a recording without the received bytes.
+    Sample(HostNs, Sample),
     /// The truth of the sample with this tick, which is before it.
     Truth(u32, Vec<Option<Truth>>),
     /// A mark that a person has set: its time and text.
     Mark(HostNs, String),
+    /// A damaged part, which is left out.
+    Hole(Hole),
 }
 
 /// True where `begin` is that of an MCAP file.
@@ -31,20 +35,76 @@ pub fn is_recording(begin: &[u8]) -> bool {
     begin.starts_with(mcap::MAGIC)
 }
 
-/// Options of MCAP readers: messages of a damaged chunk are refused.
-pub(super) fn options() -> LinearReaderOptions {
-    LinearReaderOptions::default().with_prevalidate_chunk_crcs(true).with_record_length_limit(MAX_RECORD)
-}
-
-/// Reader of a recording.
+/// Reader of a recording. Damaged parts are [`Item::Hole`].
 pub struct Reader<R> {
-    messages: MessageReader<R>,
+    scanner: Scanner<R>,
+    /// Topics of the channels.
+    topics: BTreeMap<u16, String>,
+    has_messages: bool,
+    has_damage: bool,
+    at_end: bool,
 }
 
 impl<R: Read> Reader<R> {
     /// Begins at the file's first byte.
     pub fn new(source: R) -> Self {
-        Self { messages: MessageReader::new_with_options(source, options()) }
+        Self::with_summary(source, Summary::default())
+    }
+
+    /// Begins at the file's first byte. `summary` has the channels where the first chunk is damaged.
+    pub(crate) fn with_summary(source: R, summary: Summary) -> Self {
+        let topics = summary.channels.into_iter().map(|(id, channel)| (id, channel.topic)).collect();
+        Self { scanner: Scanner::new(source), topics, has_messages: false, has_damage: false, at_end: false }
+    }
+
+    fn next_item(&mut self) -> Result<Option<Item>, ReadError> {
+        while let Some(part) = self.scanner.next_part()? {
+            let (opcode, body) = match part {
+                Part::Record(opcode, body) => (opcode, self.scanner.body(body)),
+                Part::Hole(hole) => {
+                    self.has_damage = true;
+                    return Ok(Some(Item::Hole(hole)));
+                }
+                // No part of the session.
+                Part::DamagedAbout => continue,
+            };
+            if !matches!(opcode, op::CHANNEL | op::MESSAGE) {
+                continue;
+            }
+            match mcap::parse_record(opcode, body) {
+                Ok(Record::Channel(channel)) => {
+                    self.topics.insert(channel.id, channel.topic);
+                }
+                Ok(Record::Message { header, data }) => {
+                    let Some(topic) = self.topics.get(&header.channel_id) else { continue };
+                    let has_raw = || self.topics.values().any(|topic| topic == RAW);
+                    if topic == SAMPLES && has_raw() {
+                        continue;
+                    }
+                    self.has_messages |= topic == RAW || topic == SAMPLES;
+                    if let Some(item) = item(topic, HostNs(header.log_time), header.sequence, &data)? {
+                        return Ok(Some(item));
+                    }
+                }
+                _ => {}
+            }
+        }
+        self.check_end()?;
+        Ok(None)
+    }
+
+    fn check_end(&self) -> Result<(), ReadError> {
+        if self.scanner.is_cut() {
+            return Err(ReadError::Cut);
+        }
+        let is_ours = self.topics.values().any(|topic| topic == RAW || topic == SAMPLES);
+        if is_ours || self.has_messages || self.has_damage {
+            return Ok(());
+        }
+        let mut topics: Vec<String> = self.topics.values().cloned().collect();
+        topics.sort();
+        topics.dedup();
+        Err(ReadError::Foreign(topics))
     }
 }
 
@@ -52,25 +112,25 @@ impl<R: Read> Iterator for Reader<R> {
     type Item = Result<Item, ReadError>;
 
     fn next(&mut self) -> Option<Self::Item> {
-        self.messages.by_ref().find_map(|message| item(message).transpose())
+        if self.at_end {
+            return None;
+        }
+        let item = self.next_item().transpose();
+        self.at_end = !matches!(item, Some(Ok(_)));
+        item
     }
 }
 
 /// The item in a message; `None` on other channels.
-fn item(message: Result<Message<'static>, McapError>) -> Result<Option<Item>, ReadError> {
-    let message = message?;
-    match message.channel.topic.as_str() {
-        RAW => Ok(Some(Item::Bytes(HostNs(message.log_time), message.data.into_owned()))),
-        TRUTH => match messages::read_truth(&message.data) {
-            Some(ends) => Ok(Some(Item::Truth(message.sequence, ends))),
-            None => Err(ReadError::Damaged(format!("a message on {TRUTH} is no truth"))),
-        },
-        MARKS => match messages::read_mark(&message.data) {
-            Some(text) => Ok(Some(Item::Mark(HostNs(message.log_time), text))),
-            None => Err(ReadError::Damaged(format!("a message on {MARKS} is no text"))),
-        },
-        _ => Ok(None),
-    }
+fn item(topic: &str, at: HostNs, sequence: u32, data: &[u8]) -> Result<Option<Item>, ReadError> {
+    let item = match topic {
+        RAW => Some(Item::Bytes(at, data.to_vec())),
+        SAMPLES => messages::read_sample(data).map(|sample| Item::Sample(at, sample)),
+        TRUTH => messages::read_truth(data).map(|ends| Item::Truth(sequence, ends)),
+        MARKS => messages::read_mark(data).map(|text| Item::Mark(at, text)),
+        _ => return Ok(None),
+    };
+    item.map(Some).ok_or_else(|| ReadError::Damaged(format!("a message on {topic} cannot be decoded")))
 }
 
 /// Reader of a raw file: received bytes without times.

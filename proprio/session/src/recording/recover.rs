@@ -1,27 +1,56 @@
-//! Recovery of a recording that was cut.
+//! Recovery of a recording that was cut or damaged.
 
-use std::io::{self, Read, Write};
+use std::collections::BTreeSet;
+use std::io::{self, Read, Seek, Write};
 
 use mcap::records::Record;
-use mcap::sans_io::{LinearReadEvent, LinearReader};
 use mcap::write::NoSeek;
 use mcap::{Attachment, McapError, WriteOptions};
 
+use super::hole::Hole;
 use super::read_error::ReadError;
-use super::reader::options;
+use super::scanner::{Part, Scanner};
+use super::summary::Summary;
 use super::writer::io_error;
 
 /// Result of a recovery.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Recovery {
     /// Number of recovered messages.
     pub messages: u64,
+    /// Number of messages of the source by its index; `None` where that is damaged or absent.
+    pub recorded: Option<u64>,
     /// Times of the first and the last message, ns since 1970.
     pub times_ns: Option<(u64, u64)>,
-    /// Bytes of the source up to its cut.
+    /// Begin of the recording, ns since 1970: its first message, also where that is damaged and the index is whole.
+    pub start_ns: u64,
+    /// Bytes of the source.
     pub bytes: u64,
     /// The source was cut.
     pub was_cut: bool,
+    /// The source's index is damaged, which is made again.
+    pub index_was_damaged: bool,
+    /// The damaged parts, which are left out.
+    pub holes: Vec<Hole>,
+    /// Number of damaged attachments and metadata, which are left out.
+    pub lost_attachments: u64,
+    /// Number of messages that are left out as their channel is damaged.
+    pub lost_messages: u64,
+}
+
+impl Recovery {
+    /// True where a part of the data between the begin and the end of the source is lost.
+    #[must_use]
+    pub fn has_loss(&self) -> bool {
+        !self.holes.is_empty() || self.lost_attachments > 0 || self.lost_messages > 0
+    }
+
+    /// Share of the source's bytes that are not in a hole.
+    #[must_use]
+    pub fn kept(&self) -> f64 {
+        let lost: u64 = self.holes.iter().map(|hole| hole.bytes).sum();
+        1.0 - lost as f64 / self.bytes.max(1) as f64
+    }
 }
 
 /// An error that ends a recovery.
@@ -30,7 +59,7 @@ pub enum RecoverError {
     /// The source cannot be read.
     #[error("cannot be read: {0}")]
     Read(io::Error),
-    /// The source is no recording, or has no complete chunk.
+    /// The source is no recording.
     #[error(transparent)]
     Source(#[from] ReadError),
     /// The sink cannot be written.
@@ -38,56 +67,56 @@ pub enum RecoverError {
     Sink(io::Error),
 }
 
-/// Copies a recording, chunk by chunk, until its end or to where it was cut or is damaged.
+/// Copies the whole parts of a recording, uncompressed and with a new index, to its end or to where it was cut.
 ///
 /// # Errors
 /// [`RecoverError`].
-pub fn recover(mut source: impl Read, sink: impl Write) -> Result<Recovery, RecoverError> {
+pub fn recover(mut source: impl Read + Seek, sink: impl Write) -> Result<Recovery, RecoverError> {
+    let summary = Summary::of(&mut source).map_err(RecoverError::Read)?;
     let library = format!("proprio {} recover", env!("CARGO_PKG_VERSION"));
     let options_out = WriteOptions::new().compression(None).library(library).disable_seeking(true);
-    let mut copy = Copy { mcap: options_out.create(NoSeek::new(sink)).map_err(sink_error)?, done: Recovery::default() };
-    let mut reader = LinearReader::new_with_options(options());
-    while let Some(event) = reader.next_event() {
-        match event {
-            Ok(LinearReadEvent::ReadRequest(need)) => {
-                let count = read(&mut source, reader.insert(need)).map_err(RecoverError::Read)?;
-                copy.done.bytes += count as u64;
-                reader.notify_read(count);
-            }
-            Ok(LinearReadEvent::Record { opcode, data }) => match mcap::parse_record(opcode, data) {
-                // The index follows. It is written again for the copy, also where the source was cut before it.
-                Ok(Record::DataEnd(_)) => {}
+    let mcap = options_out.create(NoSeek::new(sink)).map_err(sink_error)?;
+    let statistics = summary.statistics.as_ref();
+    let recorded = statistics.map(|statistics| statistics.message_count);
+    let start_ns = statistics.map(|statistics| statistics.message_start_time);
+    let done = Recovery { recorded, ..Recovery::default() };
+    let mut copy = Copy { mcap, summary, channels: BTreeSet::new(), done };
+    let mut scanner = Scanner::new(source);
+    while let Some(part) = scanner.next_part().map_err(source_error)? {
+        match part {
+            Part::Record(opcode, body) => match mcap::parse_record(opcode, scanner.body(body)) {
                 Ok(record) => copy.record(record).map_err(sink_error)?,
-                Err(_) => copy.done.was_cut = true,
+                Err(_) => copy.done.lost_messages += 1,
             },
-            Err(McapError::BadMagic) if copy.done.bytes <= mcap::MAGIC.len() as u64 => {
-                return Err(ReadError::Damaged("it is no MCAP file".to_owned()).into());
-            }
-            Err(_) => {
-                copy.done.was_cut = true;
-                break;
-            }
+            Part::Hole(hole) => copy.done.holes.push(hole),
+            Part::DamagedAbout => copy.done.lost_attachments += 1,
         }
     }
     copy.mcap.finish().map_err(sink_error)?;
-    Ok(copy.done)
+    let mut done = copy.done;
+    done.bytes = scanner.bytes();
+    done.was_cut = scanner.is_cut();
+    done.index_was_damaged = scanner.index_is_damaged();
+    done.start_ns = start_ns.or(done.times_ns.map(|(first, _)| first)).unwrap_or_default();
+    Ok(done)
+}
+
+fn source_error(error: ReadError) -> RecoverError {
+    match error {
+        ReadError::Read(error) => RecoverError::Read(error),
+        error => RecoverError::Source(error),
+    }
 }
 
 fn sink_error(error: McapError) -> RecoverError {
     RecoverError::Sink(io_error(error))
 }
 
-fn read(source: &mut impl Read, buffer: &mut [u8]) -> io::Result<usize> {
-    loop {
-        match source.read(buffer) {
-            Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
-            read => return read,
-        }
-    }
-}
-
 struct Copy<W: Write> {
     mcap: mcap::Writer<NoSeek<W>>,
+    summary: Summary,
+    /// The channels of the copy.
+    channels: BTreeSet<u16>,
     done: Recovery,
 }
 
@@ -95,14 +124,18 @@ impl<W: Write> Copy<W> {
     fn record(&mut self, record: Record<'_>) -> Result<(), McapError> {
         match record {
             Record::Schema { header, data } => {
-                self.mcap.add_schema_with_id(header.id, &header.name, &header.encoding, &data).map(|_| ())
+                let added = self.mcap.add_schema_with_id(header.id, &header.name, &header.encoding, &data);
+                unless_damaged(added).map(|_| ())
             }
-            Record::Channel(channel) => {
-                let (id, schema) = (channel.id, channel.schema_id);
-                let (topic, encoding) = (&channel.topic, &channel.message_encoding);
-                self.mcap.add_channel_with_id(id, schema, topic, encoding, &channel.metadata).map(|_| ())
-            }
+            Record::Channel(channel) => self.channel(&channel),
             Record::Message { header, data } => {
+                if !self.channels.contains(&header.channel_id) {
+                    self.channel_of_index(header.channel_id)?;
+                }
+                if !self.channels.contains(&header.channel_id) {
+                    self.done.lost_messages += 1;
+                    return Ok(());
+                }
                 let (first, last) = self.done.times_ns.unwrap_or((header.log_time, header.log_time));
                 self.done.times_ns = Some((first.min(header.log_time), last.max(header.log_time)));
                 self.done.messages += 1;
@@ -118,5 +151,32 @@ impl<W: Write> Copy<W> {
             Record::Metadata(metadata) => self.mcap.write_metadata(&metadata),
             _ => Ok(()),
         }
+    }
+
+    fn channel(&mut self, channel: &mcap::records::Channel) -> Result<(), McapError> {
+        let (id, schema) = (channel.id, channel.schema_id);
+        let (topic, encoding) = (&channel.topic, &channel.message_encoding);
+        if unless_damaged(self.mcap.add_channel_with_id(id, schema, topic, encoding, &channel.metadata))?.is_some() {
+            self.channels.insert(id);
+        }
+        Ok(())
+    }
+
+    /// Adds a channel of the index, as the source's own is damaged.
+    fn channel_of_index(&mut self, id: u16) -> Result<(), McapError> {
+        let Some(channel) = self.summary.channels.get(&id).cloned() else { return Ok(()) };
+        if let Some((header, data)) = self.summary.schemas.get(&channel.schema_id) {
+            unless_damaged(self.mcap.add_schema_with_id(header.id, &header.name, &header.encoding, data))?;
+        }
+        self.channel(&channel)
+    }
+}
+
+/// The result of an addition; `None` where a damaged source does not allow it.
+fn unless_damaged<T>(added: Result<T, McapError>) -> Result<Option<T>, McapError> {
+    match added {
+        Ok(added) => Ok(Some(added)),
+        Err(McapError::Io(error)) => Err(McapError::Io(error)),
+        Err(_) => Ok(None),
     }
 }

@@ -4,6 +4,7 @@ use std::collections::VecDeque;
 
 use telemetry::{DecodeError, Decoder, Hello, Message};
 
+use super::hole::HoleTimes;
 use super::read_error::ReadError;
 use super::reader::Item;
 use crate::clock::HostNs;
@@ -17,6 +18,11 @@ pub(crate) struct RecordedRows<I> {
     assembler: RowAssembler,
     complete: VecDeque<Row>,
     marks: Vec<Mark>,
+    holes: Vec<HoleTimes>,
+    /// Number of holes.
+    gaps: u32,
+    /// Time of the last row that was returned, s.
+    last_s: Option<f64>,
     at_end: bool,
 }
 
@@ -28,6 +34,9 @@ impl<I: Iterator<Item = Result<Item, ReadError>>> RecordedRows<I> {
             assembler: RowAssembler::default(),
             complete: VecDeque::new(),
             marks: Vec::new(),
+            holes: Vec::new(),
+            gaps: 0,
+            last_s: None,
             at_end: false,
         }
     }
@@ -42,10 +51,22 @@ impl<I: Iterator<Item = Result<Item, ReadError>>> RecordedRows<I> {
         &self.marks
     }
 
+    /// The holes of a damaged recording that were read so far, by the times of the rows.
+    pub fn holes(&self) -> &[HoleTimes] {
+        &self.holes
+    }
+
     /// The next row, or `None` at the end.
     pub fn next_row(&mut self) -> Result<Option<Row>, ReadError> {
         loop {
             if let Some(row) = self.complete.pop_front() {
+                let time_s = row.sample.time_us as f64 / 1e6;
+                if let Some(hole) =
+                    self.holes.last_mut().filter(|hole| hole.from_s.is_none_or(|from_s| from_s < time_s))
+                {
+                    hole.to_s.get_or_insert(time_s);
+                }
+                self.last_s = Some(time_s);
                 return Ok(Some(row));
             }
             if self.at_end {
@@ -57,6 +78,11 @@ impl<I: Iterator<Item = Result<Item, ReadError>>> RecordedRows<I> {
                         self.push(at, byte)?;
                     }
                 }
+                Some(Item::Sample(at, sample)) => {
+                    let row = self.assembler.message(at, &Message::Sample(sample), self.gaps)?;
+                    self.complete.extend(row);
+                }
+                Some(Item::Hole(_)) => self.hole(),
                 Some(Item::Truth(tick, ends)) => self.assembler.truth(tick, &ends),
                 Some(Item::Mark(at, text)) => {
                     self.marks.push(Mark { time_us: self.assembler.row_time_us(at), text });
@@ -69,10 +95,20 @@ impl<I: Iterator<Item = Result<Item, ReadError>>> RecordedRows<I> {
         }
     }
 
+    /// Notes a hole behind the last row. An estimator of the board has had samples in it that a replay does not have.
+    fn hole(&mut self) {
+        self.complete.extend(self.assembler.take_last());
+        self.gaps += 1;
+        let from_s = self.complete.back().map(|row| row.sample.time_us as f64 / 1e6).or(self.last_s);
+        if self.holes.last().is_none_or(|hole| hole.from_s != from_s) {
+            self.holes.push(HoleTimes { from_s, to_s: None });
+        }
+    }
+
     fn push(&mut self, at: HostNs, byte: u8) -> Result<(), ReadError> {
         match self.decoder.push(byte) {
             Some(Ok(message)) => {
-                let row = self.assembler.message(at, &message, self.decoder.counts().lost)?;
+                let row = self.assembler.message(at, &message, self.decoder.counts().lost.saturating_add(self.gaps))?;
                 self.complete.extend(row);
                 Ok(())
             }

@@ -1,0 +1,82 @@
+//! Recordings that are damaged: a flipped bit loses its chunk alone, and the loss is named.
+
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{Rng, SeedableRng};
+use serde_json::Value;
+
+use super::board::SyntheticBoard;
+use super::common::{Folder, error_of, json, table};
+use super::recording_files::{record, recorded, ticks};
+
+fn flipped(recording: &[u8], at: usize, bit: u32) -> Vec<u8> {
+    let mut damaged = recording.to_vec();
+    damaged[at] ^= 1 << (bit % 8);
+    damaged
+}
+
+#[test]
+fn a_flipped_bit_loses_no_more_than_a_second_and_the_hole_is_named() {
+    let recording = record(ticks(SyntheticBoard::new(1, 20.0)));
+    let mut random = ChaCha8Rng::seed_from_u64(7);
+    let mut losses = 0;
+    for _ in 0..24 {
+        let at = 8 + random.next_u32() as usize % (recording.len() - 8);
+        let folder = Folder::with("damaged.mcap", flipped(&recording, at, random.next_u32()));
+        let run = folder.run(&["recover", "damaged.mcap", "-o", "whole.mcap"]);
+        assert!(!run.stderr.contains("cut"), "byte {at}: {}", run.stderr);
+        let is_loss = run.stderr.contains("is damaged and left out");
+        assert_eq!(run.code, Some(is_loss.into()), "byte {at}: {}", run.stderr);
+        losses += u32::from(is_loss);
+        assert_eq!(is_loss, run.stderr.contains("% of its messages are kept"), "byte {at}: {}", run.stderr);
+        for name in ["whole.mcap", "damaged.mcap"] {
+            let run = folder.done(&["replay", name, "--table", table(), "--json"]);
+            let session = &json(&run)["sessions"][0];
+            let samples = session["samples"].as_u64().expect("a count");
+            assert!(samples >= 1900, "{name}, byte {at}: {samples}");
+            assert_eq!(session["recorded"]["first_difference"], Value::Null, "{name}, byte {at}: {}", run.stderr);
+            let is_named =
+                run.stderr.contains("s is damaged and left out") || run.stderr.contains("the end is damaged");
+            assert_eq!(is_named, is_loss && name == "damaged.mcap", "{name}, byte {at}: {}", run.stderr);
+        }
+    }
+    assert!(losses > 10, "most of a recording is chunks: {losses} losses");
+}
+
+#[test]
+fn a_loss_is_told_with_its_times_and_share() {
+    let recording = record(ticks(SyntheticBoard::new(1, 20.0)));
+    let folder = Folder::with("damaged.mcap", flipped(&recording, recording.len() / 2, 4));
+    let run = folder.run(&["recover", "damaged.mcap", "-o", "whole.mcap"]);
+    assert_eq!(run.code, Some(1), "{}", run.stderr);
+    let warning = run.stderr.lines().next().expect("a warning");
+    let (from, to) = warning.split_once(" s to ").expect("two times");
+    let from: f64 = from.rsplit(' ').next().expect("a time").parse().expect("a number");
+    let to: f64 = to.split(' ').next().expect("a time").parse().expect("a number");
+    assert!((9.0..11.0).contains(&from) && to > from + 0.5 && to < from + 1.1, "{warning}");
+    let (recorded, stderr) = recorded(&folder, "damaged.mcap");
+    assert!(recorded["not_compared"].as_u64().expect("a count") > 800, "{stderr}");
+    assert!(stderr.contains("compared from the next tare on"), "{stderr}");
+}
+
+#[test]
+fn a_long_line_is_refused_by_its_number() {
+    let text = format!("time_s,imu1_deg\n0,1\n{}", ",".repeat(3 << 20));
+    let folder = Folder::with("session.csv", text);
+    let run = folder.run(&["convert", "session.csv", "session.mcap"]);
+    assert_eq!(run.code, Some(2), "{}", run.stderr);
+    let error = error_of(&run.stderr);
+    assert!(error.contains("session.csv, line 3: the line is longer than 1024 kB"), "{error}");
+}
+
+#[test]
+fn a_foreign_file_is_refused_with_its_topics() {
+    let folder = Folder::new();
+    let file = std::fs::File::create(folder.path("foreign.mcap")).expect("a temporary folder can be written to");
+    let mut writer = mcap::WriteOptions::new().compression(None).create(file).expect("it can be written");
+    let id = writer.add_channel(0, "/tf", "json", &std::collections::BTreeMap::new()).expect("it can be written");
+    let header = mcap::records::MessageHeader { channel_id: id, sequence: 0, log_time: 1, publish_time: 1 };
+    writer.write_to_known_channel(&header, b"{}").expect("it can be written");
+    writer.finish().expect("it can be written");
+    let error = folder.refused(&["replay", "foreign.mcap", "--table", table()]);
+    assert!(error.contains("/proprio/raw and /proprio/samples are missing, it has /tf"), "{error}");
+}
