@@ -2,6 +2,7 @@
 
 mod align;
 mod calibrate;
+mod check;
 mod completions;
 mod convert;
 mod drive;
@@ -17,12 +18,16 @@ mod simulate;
 mod status;
 mod tune;
 
+use std::process::ExitCode;
+
 use crate::args::Command;
 use crate::error::Error;
 
 impl Command {
-    pub fn run(self) -> Result<(), Error> {
+    /// Runs the command; its exit status is 0 but for a [`check`] with findings.
+    pub fn run(self) -> Result<ExitCode, Error> {
         match self {
+            Self::Check(args) => return check::run(&args),
             Self::Align(args) => align::run(&args),
             Self::Calibrate(args) => calibrate::run(&args),
             Self::Tune(args) => tune::run(&args),
@@ -38,6 +43,7 @@ impl Command {
             Self::Convert(args) => convert::run(&args),
             Self::Recover(args) => recover::run(&args),
             Self::Completions(args) => completions::run(&args),
-        }
+        }?;
+        Ok(ExitCode::SUCCESS)
     }
 }
