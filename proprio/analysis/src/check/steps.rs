@@ -20,13 +20,13 @@ const STEPS: f64 = 20.0;
 /// Least root mean square of a segment's steps, deg; its square is added to the denominator of q.
 const MOTION: f64 = 2.0;
 /// Misfit above which a segment's sensors disagree.
-const MISFIT: f64 = 0.7;
+const MISFIT: f64 = 0.8;
 /// Misfit below which a supposed fault explains a segment.
 const EXPLAINED: f64 = 0.45;
 /// Gains of an IMU outside which its scale is wrong.
 const GAINS: [f64; 2] = [0.6, 1.6];
 /// Correlation from which on two sensors agree.
-const AGREES: f64 = 0.6;
+const AGREES: f64 = 0.4;
 
 type Matrix = [[f64; MAX_SEGMENTS]; MAX_SEGMENTS];
 

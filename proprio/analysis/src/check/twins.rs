@@ -8,7 +8,7 @@ use super::frame::{Frame, difference};
 /// Duration of a mean, s.
 const SECONDS: f64 = 10.0;
 /// Least difference of the twins, deg, and as a multiple of the deviation of half their difference in the calibration.
-const ANGLE: f64 = 20.0;
+const ANGLE: f64 = 30.0;
 const DEVIATIONS: f64 = 6.0;
 /// The sensor that stays is nearer to the IMU than this share of the difference.
 const NEAR: f64 = 0.35;
