@@ -12,6 +12,9 @@ const GAP_SECONDS: f64 = 0.5;
 /// and of 1 Hz, with tables for 10 Hz.
 const SLOWER: f64 = 20.0;
 const FASTER: f64 = 1.0 / 110.0;
+/// Minutes instead of seconds, and the tolerance of this factor.
+const MINUTES: f64 = 1.0 / 60.0;
+const TOLERANCE: f64 = 0.02;
 /// Share of rows with the time of the row before, from which on they are a finding.
 const EQUAL_SHARE: f64 = 0.001;
 
@@ -99,7 +102,7 @@ impl Clock {
         }
         let mut push = |rows, kind, figure| findings.push(Finding { sensor: Source::Time, rows, kind, figure });
         let factor = self.usual_s.map_or(1.0, |usual_s| self.rate_hz * usual_s);
-        if !(FASTER..=SLOWER).contains(&factor) {
+        if !(FASTER..=SLOWER).contains(&factor) || (factor / MINUTES - 1.0).abs() < TOLERANCE {
             push(self.all, Kind::TimeUnit, factor);
             return false;
         }

@@ -123,6 +123,28 @@ pub struct Finding {
     pub figure: f64,
 }
 
+impl Finding {
+    /// True for a finding about the bend sensors of a segment, from 1.
+    pub(super) fn is_about_bend(&self, number: usize) -> bool {
+        match self.sensor {
+            Source::Bend { segment, .. } => segment == number,
+            Source::TwoBends { segment, other } => segment == number || other == number,
+            Source::AllBend => true,
+            _ => false,
+        }
+    }
+
+    /// True for a finding about the IMU of a segment, from 1.
+    pub(super) fn is_about_imu(&self, number: usize) -> bool {
+        match self.sensor {
+            Source::Imu { segment } => segment == number,
+            Source::TwoImus { segment, other } => segment == number || other == number,
+            Source::AllImus => true,
+            _ => false,
+        }
+    }
+}
+
 /// Kind of a fault, with the meaning of the finding's figure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "snake_case")]
@@ -141,10 +163,13 @@ pub enum Kind {
     Zeros,
     /// Two IMUs give the same readings; share of the changed readings, %.
     SameReadings,
-    /// The IMU's heading is counted in the other direction; slope of its steps over those of the bend sensors.
+    /// The IMU's heading is counted in the other direction; slope of its steps over those of the bend sensors. A
+    /// bend sensor: its angle is; correlation of its steps.
     Inverted,
     /// The IMU's steps are too small or too large; slope of its steps over those of the bend sensors.
     Scale,
+    /// No heading is above a whole turn in radians, and the steps do not fit; largest heading.
+    Radians,
     /// The IMU's steps are those of another segment; share of their variance that the exchange explains, %.
     Exchanged,
     /// The steps of the sensor are not those of the other sensors; correlation, %.
@@ -177,8 +202,12 @@ impl fmt::Display for Finding {
             Kind::Frozen => write!(f, "the last value is repeated while the other sensors move by {figure:.0}°"),
             Kind::Zeros => write!(f, "{figure:.0} readings are exactly 0, away from those before and after"),
             Kind::SameReadings => write!(f, "both give the same value in {figure:.0} % of the changed readings"),
+            Kind::Inverted if matches!(sensor, Source::Bend { .. }) => {
+                write!(f, "the bend angle turns opposite to the IMUs (correlation {figure:.2})")
+            }
             Kind::Inverted => write!(f, "the heading turns opposite to the bend sensors (slope {figure:.2})"),
             Kind::Scale => write!(f, "the heading's steps are {figure:.4} times those of the bend sensors"),
+            Kind::Radians => write!(f, "no heading is above {figure:.3}°, as from radians in a column of degrees"),
             Kind::Exchanged => write!(f, "each follows the segment of the other ({figure:.0} % explained)"),
             Kind::Unrelated => write!(f, "the steps are not those of the other sensors (correlation {figure:.0} %)"),
             Kind::NewZero => {

@@ -7,6 +7,10 @@ use proprio_session::{Error, LoadedTable, Row};
 /// Readings of an ADC of 12 bits.
 const COUNTS: usize = 4096;
 
+/// Step of a heading from row to row that is a jump, deg, where the bend sensors show less than this share of it.
+const JUMP: f64 = 25.0;
+const STILL: f64 = 0.4;
+
 /// Angles of a row, deg.
 #[derive(Debug, Clone)]
 pub(super) struct Frame {
@@ -21,8 +25,12 @@ pub(super) struct Frame {
     pub theta: [f64; MAX_SEGMENTS],
     /// Sum of `theta` from the base: heading of a segment's end by the bend sensors.
     pub bend_heading: [f64; MAX_SEGMENTS],
+    /// Heading by the IMU as it was read, 0 to 360.
+    pub reading: [f64; MAX_SEGMENTS],
     /// Heading by the IMU, unwrapped.
     pub heading: [f64; MAX_SEGMENTS],
+    /// The IMU was not read, or its heading has jumped while the bend sensors show no motion.
+    pub broken: [bool; MAX_SEGMENTS],
     /// The estimator starts before this row.
     pub starts: bool,
 }
@@ -34,6 +42,8 @@ type Angles = Box<[f32]>;
 pub(super) struct Decoder {
     maps: Vec<[Option<Angles>; 2]>,
     last: [f64; MAX_SEGMENTS],
+    /// Heading by the bend sensors in the row before.
+    last_bend: [f64; MAX_SEGMENTS],
     pub frame: Frame,
 }
 
@@ -58,15 +68,17 @@ impl Decoder {
             bend: [[f64::NAN; 2]; MAX_SEGMENTS],
             theta: unknown,
             bend_heading: unknown,
+            reading: unknown,
             heading: unknown,
+            broken: [false; MAX_SEGMENTS],
             starts: false,
         };
-        Ok(Self { maps: maps.collect(), last: [0.0; MAX_SEGMENTS], frame })
+        Ok(Self { maps: maps.collect(), last: [0.0; MAX_SEGMENTS], last_bend: unknown, frame })
     }
 
     /// Converts the next row.
     pub fn update(&mut self, row: &Row) {
-        let Self { maps, last, frame } = self;
+        let Self { maps, last, last_bend, frame } = self;
         frame.row += 1;
         frame.time_s = row.sample.time_us as f64 / 1e6;
         frame.starts = row.starts;
@@ -87,10 +99,15 @@ impl Decoder {
             sum += frame.theta[i];
             frame.bend_heading[i] = sum;
             frame.headings[i] = row.sample.imu[i].and_then(|reading| reading.heading());
-            frame.heading[i] = frame.headings[i].map_or(f64::NAN, |heading| {
-                last[i] += wrapped(heading.rad().to_degrees() - last[i]);
-                last[i]
-            });
+            let reading = frame.headings[i].map_or(f64::NAN, |heading| heading.rad().to_degrees());
+            frame.reading[i] = reading.rem_euclid(360.0);
+            let step = wrapped(reading - last[i]);
+            let bend_step = std::mem::replace(&mut last_bend[i], sum) - sum;
+            frame.broken[i] = step.is_nan() || step.abs() > JUMP && bend_step.abs() < STILL * step.abs();
+            if !step.is_nan() {
+                last[i] += step;
+            }
+            frame.heading[i] = if reading.is_nan() { reading } else { last[i] };
         }
     }
 }

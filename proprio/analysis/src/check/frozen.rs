@@ -6,7 +6,7 @@ use super::finding::{Finding, Kind, Rows, Source};
 use super::frame::{Frame, difference};
 
 /// Least motion of the other sensors during the repeats, deg: both references of a sensor must show it.
-const MOTION: f64 = 10.0;
+const MOTION: f64 = 20.0;
 /// Least duration of the repeats, s, and their least number.
 const SECONDS: f64 = 1.0;
 const REPEATS: u64 = 5;

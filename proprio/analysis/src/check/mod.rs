@@ -101,13 +101,14 @@ impl SessionCheck {
         if !self.clock.finish(&mut findings) {
             return findings;
         }
-        self.tare.finish(&mut findings);
+        // A rule leaves out the sensors that an earlier one has found.
         self.bend_range.finish(&mut findings);
         self.frozen.finish(&mut findings);
         self.same_imus.finish(&mut findings);
-        self.new_zero.finish(&mut findings);
-        self.twins.finish(&mut findings);
         self.steps.finish(&mut findings);
+        self.new_zero.finish(&mut findings);
+        self.tare.finish(&mut findings);
+        self.twins.finish(&mut findings);
         findings
     }
 }

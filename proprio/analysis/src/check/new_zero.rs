@@ -5,8 +5,9 @@ use calibration_tables::MAX_SEGMENTS;
 use super::finding::{Finding, Kind, Rows, Source};
 use super::frame::{Frame, wrapped};
 
-/// Least jump of the heading against the bend sensors, deg.
-const JUMP: f64 = 25.0;
+/// Least jump of the heading against the bend sensors, deg: after missing readings, and from one reading to the next.
+const JUMP_AFTER_GAP: f64 = 25.0;
+const JUMP: f64 = 40.0;
 /// Least jump of a reading of exactly 0, deg.
 const ZERO_JUMP: f64 = 10.0;
 /// Readings after which a jump is another zero, and no single wrong reading.
@@ -21,7 +22,8 @@ struct Jumps {
     after: Rows,
     /// Readings of exactly 0 among them.
     zero: Rows,
-    was_absent: bool,
+    /// Limit of a jump, deg.
+    limit: f64,
     new_zero: Rows,
     jump: f64,
     zeros: Rows,
@@ -35,7 +37,7 @@ impl NewZero {
     pub fn new() -> Self {
         let rows = Rows::default();
         let last = [f64::NAN; 2];
-        let none = Jumps { last, after: rows, zero: rows, was_absent: false, new_zero: rows, jump: 0.0, zeros: rows };
+        let none = Jumps { last, after: rows, zero: rows, limit: JUMP, new_zero: rows, jump: 0.0, zeros: rows };
         Self([none; MAX_SEGMENTS])
     }
 
@@ -47,11 +49,10 @@ impl NewZero {
             }
             let now = [frame.heading[i], frame.bend_heading[i]];
             if now[0].is_nan() {
-                jumps.was_absent = true;
+                jumps.limit = JUMP_AFTER_GAP;
             } else if !now[1].is_nan() {
                 let is_zero = frame.headings[i].is_some_and(|heading| heading.bits() == 0);
                 jumps.update(frame, now, is_zero);
-                jumps.was_absent = false;
             }
         }
     }
@@ -59,6 +60,11 @@ impl NewZero {
     pub fn finish(&self, findings: &mut Vec<Finding>) {
         for (i, jumps) in self.0.iter().enumerate() {
             let sensor = Source::Imu { segment: i + 1 };
+            // The jumps of an IMU that turns otherwise than the arm are no other zeros.
+            let is_blamed = findings.iter().any(|found| found.is_about_imu(i + 1));
+            if is_blamed {
+                continue;
+            }
             if jumps.new_zero.count > 0 {
                 findings.push(Finding { sensor, rows: jumps.new_zero, kind: Kind::NewZero, figure: jumps.jump });
             }
@@ -74,15 +80,14 @@ impl Jumps {
     fn update(&mut self, frame: &Frame, now: [f64; 2], is_zero: bool) {
         let [step, bend_step] = [wrapped(now[0] - self.last[0]), now[1] - self.last[1]];
         let jump = wrapped(step - bend_step);
-        let limit = if is_zero { ZERO_JUMP } else { JUMP };
+        let limit = if is_zero { ZERO_JUMP } else { self.limit };
         // A step of a bend sensor is no jump of the IMU.
         let is_jump = jump.abs() > limit && step.abs() > bend_step.abs();
         if !is_jump {
             if self.zero.count > 0 {
                 self.zeros.append(&self.zero);
             }
-            (self.after, self.zero) = (Rows::default(), Rows::default());
-            self.last = now;
+            self.settle(now);
             return;
         }
         self.after.add(frame);
@@ -91,12 +96,17 @@ impl Jumps {
         }
         if self.after.count >= PERSISTS {
             let row = Rows { count: 1, last: self.after.first, to_s: self.after.from_s, ..self.after };
-            if jump.abs() > JUMP {
+            if jump.abs() > self.limit {
                 self.new_zero.append(&row);
                 self.jump = if jump.abs() > self.jump.abs() { jump } else { self.jump };
             }
-            (self.after, self.zero) = (Rows::default(), Rows::default());
-            self.last = now;
+            self.settle(now);
         }
+    }
+
+    fn settle(&mut self, now: [f64; 2]) {
+        (self.after, self.zero) = (Rows::default(), Rows::default());
+        self.last = now;
+        self.limit = JUMP;
     }
 }

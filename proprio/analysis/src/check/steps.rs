@@ -13,20 +13,21 @@ use super::frame::{Frame, difference};
 /// Shortest and longest interval of a step, s. Sessions at less than 1 Hz have their own interval.
 const INTERVAL_S: f64 = 0.999;
 const LONGEST_S: f64 = 3.0;
-/// Larger steps of a heading are no motion, deg.
-const LARGEST: f64 = 90.0;
 /// Least number of steps.
 const STEPS: f64 = 20.0;
 /// Least root mean square of a segment's steps, deg; its square is added to the denominator of q.
 const MOTION: f64 = 2.0;
 /// Misfit above which a segment's sensors disagree.
-const MISFIT: f64 = 0.8;
+const MISFIT: f64 = 0.6;
 /// Misfit below which a supposed fault explains a segment.
-const EXPLAINED: f64 = 0.45;
+const EXPLAINED: f64 = 0.35;
 /// Gains of an IMU outside which its scale is wrong.
 const GAINS: [f64; 2] = [0.6, 1.6];
-/// Correlation from which on two sensors agree.
+/// Largest heading in radians.
+const WHOLE_TURN_RAD: f64 = 6.284;
+/// Correlation from which on two sensors agree, and size from which on they follow one another.
 const AGREES: f64 = 0.4;
+const FOLLOWS: f64 = 0.75;
 
 type Matrix = [[f64; MAX_SEGMENTS]; MAX_SEGMENTS];
 
@@ -65,8 +66,12 @@ struct At {
 #[derive(Debug)]
 pub(super) struct Steps {
     segments: usize,
+    /// IMUs that were not read, or have jumped, since the last step.
+    broken: [bool; MAX_SEGMENTS],
     at: Option<At>,
     rows: Rows,
+    /// Largest heading as it was read, deg.
+    largest: f64,
     /// Steps of IMUs by steps of IMUs, of IMUs by bend angles, of bend angles.
     imu_imu: Moments,
     imu_bend: Moments,
@@ -81,6 +86,7 @@ struct Wiring {
     imu: [usize; MAX_SEGMENTS],
     gain: [f64; MAX_SEGMENTS],
     bend: [usize; MAX_SEGMENTS],
+    bend_sign: [f64; MAX_SEGMENTS],
 }
 
 /// A supposed fault.
@@ -89,6 +95,7 @@ enum Fault {
     Gain(Option<usize>, f64),
     Imus(usize, usize),
     Bends(usize, usize),
+    BendSign(usize),
 }
 
 impl Wiring {
@@ -98,6 +105,7 @@ impl Wiring {
             Fault::Gain(Some(i), gain) => self.gain[i] *= gain,
             Fault::Imus(i, j) => self.imu.swap(i, j),
             Fault::Bends(i, j) => self.bend.swap(i, j),
+            Fault::BendSign(i) => self.bend_sign[i] = -self.bend_sign[i],
         }
         self
     }
@@ -108,8 +116,10 @@ impl Steps {
         let moments = Moments { sum: ZERO, count: ZERO };
         Self {
             segments,
+            broken: [false; MAX_SEGMENTS],
             at: None,
             rows: Rows::default(),
+            largest: 0.0,
             imu_imu: moments.clone(),
             imu_bend: moments.clone(),
             bend_bend: moments,
@@ -119,11 +129,13 @@ impl Steps {
 
     pub fn update(&mut self, frame: &Frame) {
         self.rows.add(frame);
+        self.largest = frame.reading.iter().copied().fold(self.largest, f64::max);
         let at = At { time_s: frame.time_s, heading: frame.heading, theta: frame.theta, bend: frame.bend };
         let Some(from) = self.at.as_ref().filter(|_| !frame.starts) else {
             self.at = Some(at);
             return;
         };
+        self.broken.iter_mut().zip(frame.broken).for_each(|(broken, now)| *broken |= now);
         let seconds = at.time_s - from.time_s;
         if seconds < INTERVAL_S {
             return;
@@ -131,14 +143,13 @@ impl Steps {
         if seconds <= LONGEST_S {
             self.add(&from.clone(), &at);
         }
+        self.broken = [false; MAX_SEGMENTS];
         self.at = Some(at);
     }
 
     fn add(&mut self, from: &At, to: &At) {
-        let heading: [f64; MAX_SEGMENTS] = std::array::from_fn(|i| {
-            let step = to.heading[i] - from.heading[i];
-            if step.abs() > LARGEST { f64::NAN } else { step }
-        });
+        let heading: [f64; MAX_SEGMENTS] =
+            std::array::from_fn(|i| if self.broken[i] { f64::NAN } else { to.heading[i] - from.heading[i] });
         let theta: [f64; MAX_SEGMENTS] = std::array::from_fn(|i| to.theta[i] - from.theta[i]);
         for i in 0..self.segments {
             for j in 0..self.segments {
@@ -178,20 +189,8 @@ impl Judge {
                 imu_imu[j][i] = imu_imu[i][j];
             }
         }
-        let is_imu_blamed = |i: usize| {
-            findings.iter().any(|finding| match finding.sensor {
-                Source::Imu { segment } => segment == i + 1,
-                Source::TwoImus { segment, other } => segment == i + 1 || other == i + 1,
-                _ => false,
-            })
-        };
-        let is_bend_blamed = |i: usize| {
-            findings.iter().any(|finding| match finding.sensor {
-                Source::Bend { segment, .. } => segment == i + 1,
-                Source::AllBend => true,
-                _ => false,
-            })
-        };
+        let is_imu_blamed = |i: usize| findings.iter().any(|finding| finding.is_about_imu(i + 1));
+        let is_bend_blamed = |i: usize| findings.iter().any(|finding| finding.is_about_bend(i + 1));
         let mut judge =
             Self { imu_imu, imu_bend: steps.imu_bend.mean(), bend_bend: steps.bend_bend.mean(), segments: Vec::new() };
         let has_steps = |i: usize| {
@@ -217,7 +216,7 @@ impl Judge {
                 gain_before * (gain_before * self.imu_imu[before][before] - 2.0 * gain * self.imu_imu[own][before]);
             product -= gain_before * self.imu_bend[before][bend];
         }
-        [square, product]
+        [square, wiring.bend_sign[i] * product]
     }
 
     fn misfit(&self, wiring: &Wiring, i: usize) -> f64 {
@@ -247,6 +246,7 @@ impl Judge {
         let mut faults = vec![Fault::Gain(None, self.common_gain(wiring))];
         let last = self.segments.last().map_or(0, |last| last + 1);
         faults.extend((0..last).map(|i| Fault::Gain(Some(i), self.gain(i) / wiring.gain[i])));
+        faults.extend(self.segments.iter().map(|i| Fault::BendSign(*i)));
         for i in 0..last {
             faults.extend((0..i).flat_map(|j| [Fault::Imus(j, i), Fault::Bends(j, i)]));
         }
@@ -255,9 +255,14 @@ impl Judge {
 
     fn run(&self, steps: &Steps, findings: &mut Vec<Finding>) {
         let in_order = std::array::from_fn(|i| i);
-        let mut wiring = Wiring { imu: in_order, gain: [1.0; MAX_SEGMENTS], bend: in_order };
+        let mut wiring =
+            Wiring { imu: in_order, gain: [1.0; MAX_SEGMENTS], bend: in_order, bend_sign: [1.0; MAX_SEGMENTS] };
+        self.lone_sensors(steps, findings);
+        let lone: Vec<usize> =
+            (1..=steps.segments).filter(|i| findings.iter().any(|found| found.is_about_bend(*i))).collect();
         let bad = |wiring: &Wiring| -> Vec<usize> {
-            self.segments.iter().copied().filter(|i| self.misfit(wiring, *i) > MISFIT).collect()
+            let is_lone = |i: &usize| lone.contains(&(i + 1));
+            self.segments.iter().copied().filter(|i| !is_lone(i) && self.misfit(wiring, *i) > MISFIT).collect()
         };
         loop {
             let now = bad(&wiring);
@@ -278,7 +283,7 @@ impl Judge {
             }
             let (before, after) = (self.misfits(&wiring), self.misfits(&then));
             let explained = 100.0 * (1.0 - after / before);
-            findings.push(self.finding(steps, fault, explained));
+            Self::report(steps, fault, explained, findings);
             wiring = then;
         }
         let now = bad(&wiring);
@@ -289,50 +294,69 @@ impl Judge {
                 .fold([0.0; 2], |sum, by| [sum[0] + by[0], sum[1] + by[1]]);
             let bend: f64 = now.iter().map(|i| self.bend_bend[*i][*i]).sum();
             let figure = 100.0 * product / (square * bend).sqrt().max(f64::MIN_POSITIVE);
-            findings.push(Finding { sensor: Source::AllImus, rows: steps.rows, kind: Kind::Unrelated, figure });
+            let kind = if steps.largest <= WHOLE_TURN_RAD { Kind::Radians } else { Kind::Unrelated };
+            let figure = if kind == Kind::Radians { steps.largest } else { figure };
+            findings.push(Finding { sensor: Source::AllImus, rows: steps.rows, kind, figure });
             return;
         }
         for i in &now {
-            self.blame(steps, *i, now.contains(&(i + 1)) || *i + 1 == steps.segments, findings);
+            let source = Source::Imu { segment: *i };
+            let is_before_unrelated =
+                findings.iter().any(|found| found.sensor == source && found.kind == Kind::Unrelated);
+            if !is_before_unrelated {
+                Self::blame(steps, *i, now.contains(&(i + 1)) || *i + 1 == steps.segments, findings);
+            }
         }
     }
 
-    fn finding(&self, steps: &Steps, fault: Fault, explained: f64) -> Finding {
-        let rows = steps.rows;
-        match fault {
+    fn report(steps: &Steps, fault: Fault, explained: f64, findings: &mut Vec<Finding>) {
+        let (sensor, kind, figure) = match fault {
             Fault::Gain(imu, gain) => {
                 let sensor = imu.map_or(Source::AllImus, |i| Source::Imu { segment: i + 1 });
-                let kind = if gain < 0.0 { Kind::Inverted } else { Kind::Scale };
-                Finding { sensor, rows, kind, figure: gain.recip() }
+                (sensor, if gain < 0.0 { Kind::Inverted } else { Kind::Scale }, gain.recip())
             }
-            Fault::Imus(i, j) => {
-                let sensor = Source::TwoImus { segment: i + 1, other: j + 1 };
-                Finding { sensor, rows, kind: Kind::Exchanged, figure: explained }
-            }
-            Fault::Bends(i, j) => {
-                let sensor = Source::TwoBends { segment: i + 1, other: j + 1 };
-                Finding { sensor, rows, kind: Kind::Exchanged, figure: explained }
+            Fault::Imus(i, j) => (Source::TwoImus { segment: i + 1, other: j + 1 }, Kind::Exchanged, explained),
+            Fault::Bends(i, j) => (Source::TwoBends { segment: i + 1, other: j + 1 }, Kind::Exchanged, explained),
+            Fault::BendSign(i) => return Self::blame(steps, i, false, findings),
+        };
+        findings.push(Finding { sensor, rows: steps.rows, kind, figure });
+    }
+
+    /// Finds bend sensors that do not follow the IMUs while their twins do.
+    fn lone_sensors(&self, steps: &Steps, findings: &mut Vec<Finding>) {
+        for i in &self.segments {
+            let correlations = correlations(&steps.places[*i]);
+            for place in 0..2 {
+                if correlations[place] < AGREES && correlations[1 - place] > FOLLOWS {
+                    let sensor = Source::Bend { segment: i + 1, place };
+                    let figure = 100.0 * correlations[place];
+                    findings.push(Finding { sensor, rows: steps.rows, kind: Kind::Unrelated, figure });
+                }
             }
         }
     }
 
-    /// Finds the sensor of a segment in which no supposed fault explains the misfit. An IMU is in the next segment, too.
-    fn blame(&self, steps: &Steps, i: usize, next_is_bad: bool, findings: &mut Vec<Finding>) {
-        let [a, b, a_imu, b_imu, imu] = steps.places[i];
-        let correlations = [a_imu / (a * imu).sqrt(), b_imu / (b * imu).sqrt()];
+    /// Finds the sensor of a segment in which no supposed fault of the wiring explains the misfit. An IMU is in the next segment,
+    /// too.
+    fn blame(steps: &Steps, i: usize, next_is_bad: bool, findings: &mut Vec<Finding>) {
+        let correlations = correlations(&steps.places[i]);
         let rows = steps.rows;
-        let agrees = correlations.iter().any(|correlation| *correlation > AGREES);
-        if next_is_bad && !agrees && correlations.iter().all(|correlation| correlation.abs() < AGREES) {
+        if next_is_bad && correlations.iter().all(|correlation| correlation.abs() < FOLLOWS) {
             let figure = 100.0 * correlations[0];
             findings.push(Finding { sensor: Source::Imu { segment: i + 1 }, rows, kind: Kind::Unrelated, figure });
             return;
         }
         for (place, correlation) in correlations.into_iter().enumerate() {
             if correlation < AGREES {
-                let kind = if correlation < -AGREES { Kind::Inverted } else { Kind::Unrelated };
+                let kind = if correlation < -FOLLOWS { Kind::Inverted } else { Kind::Unrelated };
                 let figure = if kind == Kind::Inverted { correlation } else { 100.0 * correlation };
                 findings.push(Finding { sensor: Source::Bend { segment: i + 1, place }, rows, kind, figure });
             }
         }
     }
+}
+
+/// Correlations of the steps of a segment's bend sensors with those of its IMUs.
+fn correlations([a, b, a_imu, b_imu, imu]: &[f64; 5]) -> [f64; 2] {
+    [a_imu / (a * imu).sqrt(), b_imu / (b * imu).sqrt()]
 }

@@ -90,6 +90,9 @@ impl Tare {
 
     pub fn finish(mut self, findings: &mut Vec<Finding>) {
         self.end();
+        // Bend sensors that are wired wrongly show a bent arm.
+        let is_bend_blamed = (1..=MAX_SEGMENTS).any(|i| findings.iter().any(|finding| finding.is_about_bend(i)));
+        self.findings.retain(|finding| finding.kind != Kind::TareBent || !is_bend_blamed);
         findings.append(&mut self.findings);
     }
 }

@@ -103,9 +103,9 @@ impl Twins {
     pub fn finish(&mut self, findings: &mut Vec<Finding>) {
         self.end();
         for (i, segment) in self.segments.iter().enumerate() {
+            let is_blamed = findings.iter().any(|finding| finding.is_about_bend(i + 1));
             for place in 0..2 {
                 let sensor = Source::Bend { segment: i + 1, place };
-                let is_blamed = findings.iter().any(|finding| finding.sensor == sensor);
                 let rows = segment.left[place];
                 if rows.count > 0 && !is_blamed {
                     findings.push(Finding { sensor, rows, kind: Kind::LeavesTwin, figure: segment.figure[place] });

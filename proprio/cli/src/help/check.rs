@@ -23,7 +23,9 @@ impl Help for Finding {
                 "exchange the sensor's plug with that of its twin, or turn its divider"
             }
             (Kind::Inverted, _) => "mount the IMU with z up, or write headings clockwise positive, seen from above",
-            (Kind::Scale, _) => "check the unit: degrees in _deg, radians in _rad, quaternions as w, x, y, z",
+            (Kind::Scale | Kind::Radians, _) => {
+                "check the unit: degrees in _deg, radians in _rad, quaternions as w, x, y, z"
+            }
             (Kind::Exchanged, Source::TwoBends { .. }) => "exchange the two plugs, or the two columns",
             (Kind::Exchanged, _) => "exchange the two multiplexer channels, or the two columns",
             (Kind::Unrelated, Source::Bend { .. }) => {
@@ -36,12 +38,14 @@ impl Help for Finding {
                 "check the IMU's supply and plug; give the rows from there on another number in column tare, where the arm is straight and at rest"
             }
             (Kind::TareBent | Kind::TareMoves, _) => {
-                "begin the session with the arm in its reference pose and at rest for the table's tare.seconds"
+                "begin the session with the arm in its reference pose and at rest for the table's tare.seconds; where it did, take the table of this arm"
             }
             (Kind::TimeUnit, _) => "give time_s in seconds, and check rate_hz of the table",
             (Kind::EqualTimes, _) => "give every row the time of its readings, with decimals enough",
             (Kind::Gaps, _) => "check the logger and its link for losses, or split the session there",
-            (Kind::LeavesTwin, _) => "check the sensor's mount and plug; leave its cells empty from there on",
+            (Kind::LeavesTwin, _) => {
+                "check the sensor's mount and plug, or leave its cells empty from there on; where many do, take the table of this arm"
+            }
         };
         help.to_owned()
     }
