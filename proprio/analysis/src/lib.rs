@@ -25,9 +25,11 @@
 //! | `metrics.rs`, `consistency.rs`, `error_histogram.rs` | errors against truth, and against the estimates' covariances |
 //! | `agreement.rs` | a board's estimates compared with a replay |
 //! | `session_metrics.rs`, `estimates.rs` | results for people and programs: metrics, and estimates as CSV |
+//! | `check/` | faults of a session's sensors and times |
 //! | `report/` | a page of plots |
 
 pub mod agreement;
+pub mod check;
 pub mod consistency;
 mod error;
 pub mod error_histogram;

@@ -19,7 +19,7 @@ pub const STYLES: Styles = Styles::styled();
 #[derive(Debug, Parser)]
 #[command(version, styles = STYLES, max_term_width = 100)]
 #[command(
-    after_help = "Exit status: 0 done, 2 the input or the command cannot be used, 130 interrupted, 1 a loss in `recover` or a fault of proprio itself."
+    after_help = "Exit status: 0 done, 2 the input or the command cannot be used, 130 interrupted, 1 a finding of `check`, a loss in `recover`, or a fault of proprio itself."
 )]
 pub struct Cli {
     #[command(subcommand)]
@@ -34,6 +34,8 @@ pub enum Command {
     Calibrate(CalibrateArgs),
     /// Tune a table's bias filter, or its Kalman filters, on sessions with truth; Ctrl-C keeps the best so far
     Tune(TuneArgs),
+    /// Check the sensors and the times of sessions; exit status 1 where something is found
+    Check(CheckArgs),
     /// Run sessions through the estimator and compare with truth
     Replay(ReplayArgs),
     /// Make a page of figures of sessions, and their numbers
@@ -125,6 +127,19 @@ pub struct TuneArgs {
     /// Table to write
     #[arg(short, long, value_name = "TABLE.toml")]
     pub output: PathBuf,
+}
+
+#[derive(Debug, Args)]
+pub struct CheckArgs {
+    /// Sessions to check
+    #[arg(required = true, value_name = "SESSION")]
+    pub sessions: Vec<PathBuf>,
+    /// Table of the arm
+    #[arg(long, value_name = "TABLE.toml")]
+    pub table: PathBuf,
+    /// Print the findings as JSON
+    #[arg(long)]
+    pub json: bool,
 }
 
 #[derive(Debug, Args)]

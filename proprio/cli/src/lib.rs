@@ -29,14 +29,14 @@ use clap::Parser;
 
 use crate::help::Help;
 
-/// Runs the command of the program's arguments. Its exit status: 0 done, 1 a finding (a loss, in `recover`) or a fault of proprio,
-/// 2 an input or a command that cannot be used.
+/// Runs the command of the program's arguments. Its exit status: 0 done, 1 a finding of `check`, a loss in `recover`, or a fault of
+/// proprio, 2 an input or a command that cannot be used.
 #[must_use]
 pub fn run() -> ExitCode {
     let command = args::Cli::parse().command;
     interrupt::install();
     match catch_unwind(|| command.run()) {
-        Ok(Ok(code)) => code,
+        Ok(Ok(status)) => status,
         Ok(Err(error)) => {
             let (error_style, help_style) = (args::STYLES.get_error(), args::STYLES.get_valid());
             let help = error.help();

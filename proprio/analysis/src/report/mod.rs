@@ -33,6 +33,7 @@ use self::plot::Figure;
 use self::shapes::Shapes;
 use self::tip_error::TipErrors;
 use self::v_orient::Readings;
+use crate::check::{Finding, SessionCheck};
 use crate::error::Error;
 use crate::metrics::ErrorMetrics;
 use crate::outcome::Outcome;
@@ -56,6 +57,7 @@ struct Session {
     drift: Drift,
     tip_errors: TipErrors,
     shapes: Shapes,
+    findings: Vec<Finding>,
 }
 
 /// A finished report, for [`Report::html`], [`Report::json`] and [`Report::csv`].
@@ -67,7 +69,17 @@ pub struct Report {
     #[serde(flatten)]
     numbers: AllMetrics,
     missing: Vec<String>,
+    findings: Vec<SessionFinding>,
     figures: Vec<Figure>,
+}
+
+/// A finding of the session check.
+#[derive(Debug, Serialize)]
+struct SessionFinding {
+    session: String,
+    text: String,
+    #[serde(flatten)]
+    finding: Finding,
 }
 
 /// Identity of the table.
@@ -99,7 +111,9 @@ impl<'t> ReportBuilder<'t> {
         let mut errors = ErrorMetrics::new(table.length_mm());
         let (mut drift, mut tip_errors, mut shapes) = (Drift::new(table), TipErrors::new(), Shapes::new(table));
         let readings = &mut self.readings;
+        let mut check = SessionCheck::new(self.table)?;
         let visit = |row: &Row, outcome: &Outcome<Q>| {
+            check.update(row);
             errors.add(row, outcome);
             drift.add(row, outcome);
             tip_errors.add(row, outcome);
@@ -114,7 +128,15 @@ impl<'t> ReportBuilder<'t> {
         };
         self.all.append(&errors);
         let name = path.display().to_string();
-        self.sessions.push(Session { name, summary: summary.clone(), errors, drift, tip_errors, shapes });
+        self.sessions.push(Session {
+            name,
+            summary: summary.clone(),
+            errors,
+            drift,
+            tip_errors,
+            shapes,
+            findings: check.finish(),
+        });
         Ok(summary)
     }
 
@@ -149,6 +171,7 @@ impl<'t> ReportBuilder<'t> {
                 length_mm: file.length_mm(),
             },
             missing: self.missing(),
+            findings: self.findings(),
             figures: vec![
                 box_plot::figure(sessions.iter().map(|s| (s.name.as_str(), &s.errors)), all),
                 drift::figure(sessions.iter().map(|s| (s.name.as_str(), s.summary.samples, &s.drift))),
@@ -157,6 +180,16 @@ impl<'t> ReportBuilder<'t> {
                 shapes::figure(sessions.iter().map(|s| (s.name.as_str(), &s.shapes, &s.errors))),
             ],
         })
+    }
+
+    /// Findings of all sessions.
+    fn findings(&self) -> Vec<SessionFinding> {
+        let of_session = |session: &Session| {
+            let name = session.name.clone();
+            let found = session.findings.clone().into_iter();
+            found.map(move |finding| SessionFinding { session: name.clone(), text: finding.to_string(), finding })
+        };
+        self.sessions.iter().flat_map(of_session).collect()
     }
 
     /// Notes about results that are missing, with the reason.

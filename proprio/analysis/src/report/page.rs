@@ -31,6 +31,7 @@ impl Report {
                 body {
                     (self.header(&title))
                     main {
+                        (self.findings())
                         (self.table())
                         (self.covariances())
                         @for (number, figure) in (1..).zip(&self.figures) { (section(number, figure)) }
@@ -66,6 +67,21 @@ impl Report {
                         dt { "Missing" }
                         dd { ul { @for missing in &self.missing { li { (missing) } } } }
                     }
+                }
+            }
+        }
+    }
+
+    /// Faults of the sessions' sensors and times, where there are any.
+    fn findings(&self) -> Markup {
+        html! {
+            @if !self.findings.is_empty() {
+                section #findings {
+                    h2 { "Findings of the session check" }
+                    ul {
+                        @for finding in &self.findings { li { (finding.session) ": " (finding.text) } }
+                    }
+                    p.caption { "The errors and figures below include these rows. " code { "proprio check" } " gives the remedies." }
                 }
             }
         }

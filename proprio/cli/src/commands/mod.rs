@@ -2,6 +2,7 @@
 
 mod align;
 mod calibrate;
+mod check;
 mod completions;
 mod convert;
 mod drive;
@@ -23,9 +24,10 @@ use crate::args::Command;
 use crate::error::Error;
 
 impl Command {
-    /// Runs the command. Its exit status is that of a command that is done, or of a finding.
+    /// Runs the command. Its exit status is 0, but 1 for a [`check`] with findings and a [`recover`] with a loss.
     pub fn run(self) -> Result<ExitCode, Error> {
         match self {
+            Self::Check(args) => return check::run(&args),
             Self::Recover(args) => return recover::run(&args),
             Self::Align(args) => align::run(&args),
             Self::Calibrate(args) => calibrate::run(&args),
@@ -41,7 +43,7 @@ impl Command {
             Self::Monitor(args) => monitor::run(&args),
             Self::Convert(args) => convert::run(&args),
             Self::Completions(args) => completions::run(&args),
-        }
-        .map(|()| ExitCode::SUCCESS)
+        }?;
+        Ok(ExitCode::SUCCESS)
     }
 }

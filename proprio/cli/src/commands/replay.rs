@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use estimator_core::{FusedOps, Q, saturations};
 use proprio_analysis::agreement::Comparison;
+use proprio_analysis::check::{Finding, SessionCheck};
 use proprio_analysis::estimates::EstimateWriter;
 use proprio_analysis::metrics::ErrorMetrics;
 use proprio_analysis::replay::{SessionSummary, replay};
@@ -14,6 +15,7 @@ use proprio_session::{LAST_LINE, LoadedTable, OutputFile, Row};
 
 use crate::args::ReplayArgs;
 use crate::error::Error;
+use crate::help::Help;
 use crate::progress_bar::Bar;
 use crate::terminal;
 use crate::text_tables;
@@ -65,6 +67,11 @@ fn report_agreement(path: &Path, recorded: &Comparison, firmware: Option<&str>) 
     }
 }
 
+/// Reports a finding of the session check with its remedy.
+fn warn_of(path: &Path, finding: &Finding) {
+    terminal::warn(&format_args!("{}: {finding}; {}", path.display(), finding.help()));
+}
+
 /// Compares the board's output of a row.
 type Compare<S> = fn(&mut Comparison, &Row, &Outcome<S>);
 
@@ -81,7 +88,9 @@ fn replay_all<S: FusedOps>(
     for path in &args.sessions {
         let mut errors = ErrorMetrics::new(length_mm);
         let mut comparison = Comparison::default();
+        let mut check = SessionCheck::new(table)?;
         let visit = |row: &Row, outcome: &Outcome<S>| {
+            check.update(row);
             errors.add(row, outcome);
             if let Some(compare) = compare {
                 compare(&mut comparison, row, outcome);
@@ -98,6 +107,7 @@ fn replay_all<S: FusedOps>(
             terminal::warn(&format_args!("{}: {LAST_LINE}", path.display()));
         }
         warn_of_holes(path, &holes);
+        check.finish().iter().for_each(|finding| warn_of(path, finding));
         let recorded = recording.filter(|_| compare.is_some()).map(|recording| {
             comparison.table_matches = recording.table_matches;
             let comparison = comparison.of(recording.recorded_by);

@@ -1,0 +1,224 @@
+//! Findings of a session check.
+
+use std::fmt;
+
+use serde::Serialize;
+
+use super::frame::Frame;
+
+/// The source that a finding is about; segments from 1.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Source {
+    /// The time stamps.
+    Time,
+    /// A bend sensor: its segment, and its place (0 is `a`, 1 is `b`).
+    Bend {
+        /// Segment.
+        segment: usize,
+        /// Place.
+        place: usize,
+    },
+    /// The bend sensors of two segments.
+    TwoBends {
+        /// The first segment.
+        segment: usize,
+        /// The second segment.
+        other: usize,
+    },
+    /// All bend sensors.
+    AllBend,
+    /// The IMU at a segment's end.
+    Imu {
+        /// Segment.
+        segment: usize,
+    },
+    /// Two IMUs.
+    TwoImus {
+        /// Segment of the first.
+        segment: usize,
+        /// Segment of the second.
+        other: usize,
+    },
+    /// All IMUs.
+    AllImus,
+    /// The arm as a whole.
+    Arm,
+}
+
+impl fmt::Display for Source {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Time => f.write_str("time_s"),
+            Self::Bend { segment, place } => write!(f, "bend{segment}{}", ["a", "b"][*place]),
+            Self::TwoBends { segment, other } => write!(f, "bend{segment} and bend{other}"),
+            Self::AllBend => f.write_str("all bend sensors"),
+            Self::Imu { segment } => write!(f, "imu{segment}"),
+            Self::TwoImus { segment, other } => write!(f, "imu{segment} and imu{other}"),
+            Self::AllImus => f.write_str("all IMUs"),
+            Self::Arm => f.write_str("arm"),
+        }
+    }
+}
+
+impl Serialize for Source {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
+    }
+}
+
+/// Rows of a finding. Rows count from 1, without the header.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+pub struct Rows {
+    /// Number of the rows.
+    pub count: u64,
+    /// The first of them.
+    pub first: u64,
+    /// The last of them.
+    pub last: u64,
+    /// Time of the first, s.
+    pub from_s: f64,
+    /// Time of the last, s.
+    pub to_s: f64,
+}
+
+impl Rows {
+    /// Adds a row.
+    pub(super) fn add(&mut self, frame: &Frame) {
+        self.append(&Self { count: 1, first: frame.row, last: frame.row, from_s: frame.time_s, to_s: frame.time_s });
+    }
+
+    /// Appends later rows.
+    pub(super) fn append(&mut self, later: &Self) {
+        if self.count == 0 {
+            *self = *later;
+        } else {
+            *self = Self { count: self.count + later.count, last: later.last, to_s: later.to_s, ..*self };
+        }
+    }
+}
+
+impl fmt::Display for Rows {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { count, first, last, from_s, to_s } = self;
+        if first == last {
+            write!(f, "row {first} ({from_s:.3} s)")
+        } else if *count > last - first {
+            write!(f, "rows {first} to {last} ({from_s:.3} to {to_s:.3} s)")
+        } else {
+            write!(f, "{count} of rows {first} to {last} ({from_s:.3} to {to_s:.3} s)")
+        }
+    }
+}
+
+/// A fault of a session.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Finding {
+    /// The sensor, or the time stamps.
+    pub sensor: Source,
+    /// The rows in which the fault is present.
+    pub rows: Rows,
+    /// Kind of the fault.
+    pub kind: Kind,
+    /// Figure of the fault; [`Kind`] defines it.
+    pub figure: f64,
+}
+
+impl Finding {
+    /// True for a finding about the bend sensors of a segment, from 1.
+    pub(super) fn is_about_bend(&self, number: usize) -> bool {
+        match self.sensor {
+            Source::Bend { segment, .. } => segment == number,
+            Source::TwoBends { segment, other } => segment == number || other == number,
+            Source::AllBend => true,
+            _ => false,
+        }
+    }
+
+    /// True for a finding about the IMU of a segment, from 1.
+    pub(super) fn is_about_imu(&self, number: usize) -> bool {
+        match self.sensor {
+            Source::Imu { segment } => segment == number,
+            Source::TwoImus { segment, other } => segment == number || other == number,
+            Source::AllImus => true,
+            _ => false,
+        }
+    }
+}
+
+/// Kind of a fault, with the meaning of the finding's figure.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Kind {
+    /// Bend readings outside the voltages of the map; the figure is their share, %.
+    OutsideMap,
+    /// Bend readings that are all below 1024 counts, as those of a 10-bit ADC are; largest reading, counts.
+    TenBits,
+    /// Bend readings at either end of the ADC: open or shorted; share, %.
+    Rail,
+    /// The reading never changes while other sensors move; range of the motion, deg.
+    Constant,
+    /// The last value is repeated while other sensors move; range of the motion, deg.
+    Frozen,
+    /// Single readings of exactly 0, away from those before and after; number of them.
+    Zeros,
+    /// Two IMUs give the same readings; share of the changed readings, %.
+    SameReadings,
+    /// The IMU's heading is counted in the other direction; slope of its steps over those of the bend sensors. A
+    /// bend sensor: its angle is; correlation of its steps.
+    Inverted,
+    /// The IMU's steps are too small or too large; slope of its steps over those of the bend sensors.
+    Scale,
+    /// No heading is above a whole turn in radians, and the steps do not fit; largest heading.
+    Radians,
+    /// The IMU's steps are those of another segment; share of their variance that the exchange explains, %.
+    Exchanged,
+    /// The steps of the sensor are not those of the other sensors; correlation, %.
+    Unrelated,
+    /// The IMU's heading continues from another zero; size of the jump, deg.
+    NewZero,
+    /// The arm is not in its reference pose during the tare; largest angle, deg.
+    TareBent,
+    /// The arm moves during the tare; range of the heading, deg.
+    TareMoves,
+    /// The time stamps are not in seconds; factor of the table's rate over the session's.
+    TimeUnit,
+    /// Consecutive rows have the same time; number of them.
+    EqualTimes,
+    /// Rows are missing; longest gap, s.
+    Gaps,
+    /// The bend sensor departs from its twin and from the IMU; angle, deg.
+    LeavesTwin,
+}
+
+impl fmt::Display for Finding {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { sensor, rows, kind, figure } = self;
+        write!(f, "{sensor}, {rows}: ")?;
+        match kind {
+            Kind::OutsideMap => write!(f, "{figure:.1} % of the readings are outside the voltages of the table's map"),
+            Kind::TenBits => write!(f, "no reading is above {figure:.0} counts of 4095, as from a 10-bit ADC"),
+            Kind::Rail => write!(f, "{figure:.1} % of the readings are at an end of the ADC: open or shorted"),
+            Kind::Constant => write!(f, "the reading never changes while the other sensors move by {figure:.0}°"),
+            Kind::Frozen => write!(f, "the last value is repeated while the other sensors move by {figure:.0}°"),
+            Kind::Zeros => write!(f, "{figure:.0} readings are exactly 0, away from those before and after"),
+            Kind::SameReadings => write!(f, "both give the same value in {figure:.0} % of the changed readings"),
+            Kind::Inverted if matches!(sensor, Source::Bend { .. }) => {
+                write!(f, "the bend angle turns opposite to the IMUs (correlation {figure:.2})")
+            }
+            Kind::Inverted => write!(f, "the heading turns opposite to the bend sensors (slope {figure:.2})"),
+            Kind::Scale => write!(f, "the heading's steps are {figure:.4} times those of the bend sensors"),
+            Kind::Radians => write!(f, "no heading is above {figure:.3}°, as from radians in a column of degrees"),
+            Kind::Exchanged => write!(f, "each follows the segment of the other ({figure:.0} % explained)"),
+            Kind::Unrelated => write!(f, "the steps are not those of the other sensors (correlation {figure:.0} %)"),
+            Kind::NewZero => {
+                write!(f, "the heading continues {figure:.0}° off, which the bend sensors do not show: another zero")
+            }
+            Kind::TareBent => write!(f, "{figure:.1}° from the reference pose during the tare"),
+            Kind::TareMoves => write!(f, "moves by {figure:.1}° during the tare"),
+            Kind::TimeUnit => write!(f, "the table's rate is {figure:.4} times the rate of these times"),
+            Kind::EqualTimes => write!(f, "{figure:.0} rows have the time of the row before"),
+            Kind::Gaps => write!(f, "rows are missing, {figure:.2} s at most"),
+            Kind::LeavesTwin => write!(f, "departs by {figure:.0}° from its twin and the IMU"),
+        }
+    }
+}

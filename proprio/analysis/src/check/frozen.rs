@@ -1,0 +1,125 @@
+//! Sensors that repeat a value while others move.
+
+use calibration_tables::MAX_SEGMENTS;
+
+use super::finding::{Finding, Kind, Rows, Source};
+use super::frame::{Frame, difference};
+
+/// Least motion of the other sensors during the repeats, deg: both references of a sensor must show it.
+const MOTION: f64 = 20.0;
+/// Least duration of the repeats, s, and their least number.
+const SECONDS: f64 = 1.0;
+const REPEATS: u64 = 5;
+/// Places of a segment: bend sensors a and b, IMU.
+const PLACES: usize = 3;
+
+/// Range of a value.
+#[derive(Debug, Clone, Copy)]
+struct Span([f64; 2]);
+
+impl Span {
+    const EMPTY: Self = Self([f64::INFINITY, f64::NEG_INFINITY]);
+
+    fn add(&mut self, value: f64) {
+        // `min` and `max` ignore NaN.
+        self.0 = [self.0[0].min(value), self.0[1].max(value)];
+    }
+
+    /// Width; `None` without a value.
+    fn width(&self) -> Option<f64> {
+        (self.0[1] >= self.0[0]).then(|| self.0[1] - self.0[0])
+    }
+}
+
+/// Repeats of one sensor's value, and the motion meanwhile.
+#[derive(Debug, Clone, Copy)]
+struct Repeats {
+    value: Option<i32>,
+    run: Rows,
+    references: [Span; 2],
+    changes: u64,
+    frozen: Rows,
+    motion: f64,
+}
+
+impl Repeats {
+    const NONE: Self = Self {
+        value: None,
+        run: Rows { count: 0, first: 0, last: 0, from_s: 0.0, to_s: 0.0 },
+        references: [Span::EMPTY; 2],
+        changes: 0,
+        frozen: Rows { count: 0, first: 0, last: 0, from_s: 0.0, to_s: 0.0 },
+        motion: 0.0,
+    };
+
+    fn update(&mut self, frame: &Frame, value: Option<i32>, references: [f64; 2]) {
+        let Some(value) = value else { return };
+        if self.value != Some(value) {
+            self.end();
+            self.changes += u64::from(self.value.is_some());
+            self.value = Some(value);
+            self.run = Rows::default();
+            self.references = [Span::EMPTY; 2];
+        }
+        self.run.add(frame);
+        for (span, reference) in self.references.iter_mut().zip(references) {
+            span.add(reference);
+        }
+    }
+
+    fn end(&mut self) {
+        if self.run.count < REPEATS || self.run.to_s - self.run.from_s < SECONDS {
+            return;
+        }
+        let motion = self.references.iter().filter_map(Span::width).reduce(f64::min).unwrap_or(0.0);
+        if motion >= MOTION {
+            self.frozen.append(&self.run);
+            self.motion = self.motion.max(motion);
+        }
+    }
+}
+
+/// The rule.
+#[derive(Debug)]
+pub(super) struct Frozen {
+    sensors: [[Repeats; PLACES]; MAX_SEGMENTS],
+    segments: usize,
+}
+
+impl Frozen {
+    pub fn new(segments: usize) -> Self {
+        Self { sensors: [[Repeats::NONE; PLACES]; MAX_SEGMENTS], segments }
+    }
+
+    pub fn update(&mut self, frame: &Frame) {
+        // Headings by the sensors a alone, and by the sensors b alone.
+        let mut sums = [0.0; 2];
+        for (i, [a, b, imu]) in self.sensors.iter_mut().enumerate().take(self.segments) {
+            let [by_a, by_b] = frame.bend[i];
+            sums = [sums[0] + by_a, sums[1] + by_b];
+            let theta = difference(&frame.heading, i);
+            let [of_a, of_b] = frame.counts[i].map(|counts| counts.map(i32::from));
+            a.update(frame, of_a, [by_b, theta]);
+            b.update(frame, of_b, [by_a, theta]);
+            imu.update(frame, frame.headings[i].map(|heading| heading.bits()), sums);
+        }
+    }
+
+    pub fn finish(&mut self, findings: &mut Vec<Finding>) {
+        for (i, sensors) in self.sensors.iter_mut().enumerate() {
+            for (place, repeats) in sensors.iter_mut().enumerate() {
+                repeats.end();
+                if repeats.frozen.count == 0 {
+                    continue;
+                }
+                let segment = i + 1;
+                let sensor = if place < 2 { Source::Bend { segment, place } } else { Source::Imu { segment } };
+                let is_at_rail = findings.iter().any(|finding| finding.sensor == sensor && finding.kind == Kind::Rail);
+                if !is_at_rail {
+                    let kind = if repeats.changes == 0 { Kind::Constant } else { Kind::Frozen };
+                    findings.push(Finding { sensor, rows: repeats.frozen, kind, figure: repeats.motion });
+                }
+            }
+        }
+    }
+}

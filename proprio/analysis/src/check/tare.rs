@@ -1,0 +1,98 @@
+//! A tare in which the arm is bent or moves.
+
+use calibration_tables::{ArmFile, MAX_SEGMENTS};
+
+use super::finding::{Finding, Kind, Rows, Source};
+use super::frame::{Frame, difference};
+
+/// Limit of a segment's bend angle against the reference pose, deg.
+const BENT: f64 = 12.0;
+/// Limit of the range of a heading, deg.
+const MOVES: f64 = 3.0;
+
+/// Readings during the tare.
+#[derive(Debug, Clone, Copy)]
+struct Segment {
+    sum: f64,
+    count: f64,
+    first_heading: f64,
+    range: [f64; 2],
+}
+
+const EMPTY: Segment = Segment { sum: 0.0, count: 0.0, first_heading: f64::NAN, range: [0.0; 2] };
+
+/// The rule.
+#[derive(Debug)]
+pub(super) struct Tare {
+    seconds: f64,
+    reference: [f64; MAX_SEGMENTS],
+    ends_s: f64,
+    rows: Rows,
+    segments: [Segment; MAX_SEGMENTS],
+    findings: Vec<Finding>,
+}
+
+impl Tare {
+    pub fn new(table: &ArmFile) -> Self {
+        let mut headings = [0.0; MAX_SEGMENTS];
+        headings.iter_mut().zip(&table.tare.heading_deg).for_each(|(heading, given)| *heading = *given);
+        Self {
+            seconds: table.tare.seconds,
+            reference: std::array::from_fn(|i| difference(&headings, i)),
+            ends_s: f64::NEG_INFINITY,
+            rows: Rows::default(),
+            segments: [EMPTY; MAX_SEGMENTS],
+            findings: Vec::new(),
+        }
+    }
+
+    pub fn update(&mut self, frame: &Frame) {
+        if frame.starts {
+            self.end();
+            self.ends_s = frame.time_s + self.seconds;
+        }
+        if frame.time_s >= self.ends_s {
+            self.end();
+            return;
+        }
+        self.rows.add(frame);
+        for (i, segment) in self.segments.iter_mut().enumerate() {
+            if !frame.theta[i].is_nan() {
+                segment.sum += frame.theta[i];
+                segment.count += 1.0;
+            }
+            let heading = frame.heading[i];
+            if segment.first_heading.is_nan() {
+                segment.first_heading = heading;
+            }
+            let turn = heading - segment.first_heading;
+            segment.range = [segment.range[0].min(turn), segment.range[1].max(turn)];
+        }
+    }
+
+    fn end(&mut self) {
+        if self.rows.count == 0 {
+            return;
+        }
+        let rows = std::mem::take(&mut self.rows);
+        let segments = std::mem::replace(&mut self.segments, [EMPTY; MAX_SEGMENTS]);
+        let ranges = segments.map(|segment| segment.range[1] - segment.range[0]);
+        let moves = ranges.into_iter().fold(0.0, f64::max);
+        if moves > MOVES {
+            self.findings.push(Finding { sensor: Source::Arm, rows, kind: Kind::TareMoves, figure: moves });
+        }
+        let angles = segments.iter().zip(self.reference).map(|(segment, angle)| segment.sum / segment.count - angle);
+        let bent = angles.filter(|angle| !angle.is_nan()).fold(0.0, |most: f64, angle| most.max(angle.abs()));
+        if bent > BENT {
+            self.findings.push(Finding { sensor: Source::Arm, rows, kind: Kind::TareBent, figure: bent });
+        }
+    }
+
+    pub fn finish(mut self, findings: &mut Vec<Finding>) {
+        self.end();
+        // Bend sensors that are wired wrongly show a bent arm.
+        let is_bend_blamed = (1..=MAX_SEGMENTS).any(|i| findings.iter().any(|finding| finding.is_about_bend(i)));
+        self.findings.retain(|finding| finding.kind != Kind::TareBent || !is_bend_blamed);
+        findings.append(&mut self.findings);
+    }
+}

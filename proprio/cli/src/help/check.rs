@@ -1,0 +1,52 @@
+//! Remedies of the findings of a session check.
+
+use proprio_analysis::check::{Finding, Kind, Source};
+
+use super::Help;
+
+impl Help for Finding {
+    fn help(&self) -> String {
+        let help = match (self.kind, self.sensor) {
+            (Kind::OutsideMap, _) => {
+                "check the sensor, its divider and the ADC's reference (3.3 V), and that the table is that of this arm and these plugs"
+            }
+            (Kind::TenBits, _) => "record with 12 bits (analogReadResolution(12)), or multiply the counts by 4",
+            (Kind::Rail, _) => "check the sensor's wires and its divider; leave the cells of a dead sensor empty",
+            (Kind::Constant | Kind::Frozen, _) => {
+                "restart the sensor or its driver, and check its wires; leave the cells of the repeats empty"
+            }
+            (Kind::Zeros, _) => "leave the cell of a failed reading empty",
+            (Kind::SameReadings, _) => {
+                "both readings are of one multiplexer channel: check the multiplexer's wires and addresses"
+            }
+            (Kind::Inverted, Source::Bend { .. }) => {
+                "exchange the sensor's plug with that of its twin, or turn its divider"
+            }
+            (Kind::Inverted, _) => "mount the IMU with z up, or write headings clockwise positive, seen from above",
+            (Kind::Scale | Kind::Radians, _) => {
+                "check the unit: degrees in _deg, radians in _rad, quaternions as w, x, y, z"
+            }
+            (Kind::Exchanged, Source::TwoBends { .. }) => "exchange the two plugs, or the two columns",
+            (Kind::Exchanged, _) => "exchange the two multiplexer channels, or the two columns",
+            (Kind::Unrelated, Source::Bend { .. }) => {
+                "check the sensor's mount and wires, and that the table is that of this arm"
+            }
+            (Kind::Unrelated, _) => {
+                "check the IMU's mount (z up) and the columns: headings clockwise in degrees, quaternions as w, x, y, z"
+            }
+            (Kind::NewZero, _) => {
+                "check the IMU's supply and plug; give the rows from there on another number in column tare, where the arm is straight and at rest"
+            }
+            (Kind::TareBent | Kind::TareMoves, _) => {
+                "begin the session with the arm in its reference pose and at rest for the table's tare.seconds; where it did, take the table of this arm"
+            }
+            (Kind::TimeUnit, _) => "give time_s in seconds, and check rate_hz of the table",
+            (Kind::EqualTimes, _) => "give every row the time of its readings, with decimals enough",
+            (Kind::Gaps, _) => "check the logger and its link for losses, or split the session there",
+            (Kind::LeavesTwin, _) => {
+                "check the sensor's mount and plug, or leave its cells empty from there on; where many do, take the table of this arm"
+            }
+        };
+        help.to_owned()
+    }
+}
