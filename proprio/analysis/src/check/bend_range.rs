@@ -8,9 +8,9 @@ use super::finding::{Finding, Kind, Rows, Source};
 use super::frame::Frame;
 
 /// Width outside the range that an arm in use reaches, as a share of the range.
-const MARGIN: f64 = 0.2;
+const MARGIN: f64 = 0.25;
 /// Least share of readings outside, %.
-const SHARE: f64 = 2.0;
+const SHARE: f64 = 10.0;
 /// Readings at either end of the ADC, counts.
 const RAILS: [u16; 2] = [10, 4085];
 /// Largest reading of an ADC of 10 bits.

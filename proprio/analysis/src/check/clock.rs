@@ -61,13 +61,12 @@ impl Clock {
         if step.seconds <= 0.0 {
             self.equal.add(frame);
         }
-        match self.usual_s {
-            Some(usual_s) => self.add(step, usual_s),
-            None => {
-                self.first.push(step);
-                if self.first.len() == FIRST {
-                    self.find_usual();
-                }
+        if let Some(usual_s) = self.usual_s {
+            self.add(step, usual_s);
+        } else {
+            self.first.push(step);
+            if self.first.len() == FIRST {
+                self.find_usual();
             }
         }
     }
@@ -78,7 +77,9 @@ impl Clock {
         sorted.sort_unstable_by(f64::total_cmp);
         let Some(usual_s) = sorted.get(sorted.len() / 2).copied() else { return };
         self.usual_s = Some(usual_s);
-        steps.into_iter().for_each(|step| self.add(step, usual_s));
+        for step in steps {
+            self.add(step, usual_s);
+        }
     }
 
     fn add(&mut self, step: Step, usual_s: f64) {

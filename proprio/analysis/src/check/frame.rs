@@ -86,8 +86,8 @@ impl Decoder {
         for (i, map) in maps.iter().enumerate() {
             frame.counts[i] = row.sample.bend[i];
             let mut mean = (0.0, 0.0);
-            for place in 0..2 {
-                let angles = row.sample.bend[i][place].zip(map[place].as_ref());
+            for (place, angles) in map.iter().enumerate() {
+                let angles = row.sample.bend[i][place].zip(angles.as_ref());
                 let angle = angles.map_or(f64::NAN, |(counts, angles)| f64::from(angles[usize::from(counts)]));
                 frame.bend[i][place] = angle;
                 if !angle.is_nan() {

@@ -101,7 +101,7 @@ impl Frozen {
             let [of_a, of_b] = frame.counts[i].map(|counts| counts.map(i32::from));
             a.update(frame, of_a, [by_b, theta]);
             b.update(frame, of_b, [by_a, theta]);
-            imu.update(frame, frame.headings[i].map(|heading| heading.bits()), sums);
+            imu.update(frame, frame.headings[i].map(estimator_core::Phase::bits), sums);
         }
     }
 

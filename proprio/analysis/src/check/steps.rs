@@ -183,12 +183,8 @@ struct Judge {
 
 impl Judge {
     fn new(steps: &Steps, findings: &[Finding]) -> Self {
-        let mut imu_imu = steps.imu_imu.mean();
-        for i in 0..steps.segments {
-            for j in 0..i {
-                imu_imu[j][i] = imu_imu[i][j];
-            }
-        }
+        let half = steps.imu_imu.mean();
+        let imu_imu = std::array::from_fn(|i| std::array::from_fn(|j| half[i.max(j)][i.min(j)]));
         let is_imu_blamed = |i: usize| findings.iter().any(|finding| finding.is_about_imu(i + 1));
         let is_bend_blamed = |i: usize| findings.iter().any(|finding| finding.is_about_bend(i + 1));
         let mut judge =

@@ -5,6 +5,9 @@ use proprio_session::recording::ReadError;
 
 use super::Help;
 
+/// Time after which a clock of 32 bits wraps that counts microseconds, s.
+const MICROS_WRAP_S: f64 = 4294.967296;
+
 impl Help for SessionProblem {
     fn help(&self) -> String {
         let help = match self {
@@ -49,6 +52,9 @@ impl Help for SessionProblem {
             Self::TooManySegments(_) => "keep it as CSV",
             Self::NoTruth => "give a session with the camera's truth (docs/reference/files.md)",
             Self::Heading(_) => "write headings from 0 up to a full turn: 360 in _deg, 2π in _rad",
+            Self::Backwards { from_s, to_s } if (from_s - to_s - MICROS_WRAP_S).abs() < 1.0 => {
+                "the clock's 32 bits of microseconds have wrapped: add 4294.967296 s from here on; do not sort"
+            }
             Self::Backwards { .. } => "sort the rows by time; two sessions in one file must be split",
             Self::PartialQuaternion | Self::NotUnit(_) => {
                 "write unit quaternions w, x, y, z, and leave all four cells of a missing reading empty"

@@ -9,6 +9,7 @@ mod board;
 mod calibrate;
 mod calibrate_faults;
 mod calibrate_gaps;
+mod check;
 mod common;
 mod convert;
 mod damaged_recordings;
