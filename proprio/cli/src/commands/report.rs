@@ -29,7 +29,11 @@ pub fn run(args: &ReportArgs) -> Result<(), Error> {
     let mut progress = Bar::new();
     let mut builder = ReportBuilder::new(&table);
     for path in &args.sessions {
-        if !builder.add(path, &mut progress)?.ends_with_line {
+        let summary = builder.add(path, &mut progress)?;
+        for hole in &summary.holes {
+            terminal::warn(&format_args!("{}: {hole}", path.display()));
+        }
+        if !summary.ends_with_line {
             terminal::warn(&format_args!("{}: {LAST_LINE}", path.display()));
         }
     }

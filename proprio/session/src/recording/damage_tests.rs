@@ -289,7 +289,7 @@ fn any_bytes_behind_the_magic_ones_are_refused_without_a_panic() {
     };
     for _ in 0..60 {
         let mut damaged = recording.clone();
-        for _ in 0..1 + next() % 200 {
+        for _ in 0..=next() % 200 {
             let at = mcap::MAGIC.len() + next() % (damaged.len() - mcap::MAGIC.len());
             damaged[at] = next() as u8;
         }

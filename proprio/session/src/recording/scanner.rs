@@ -70,7 +70,8 @@ pub struct Scanner<R> {
     is_chunked: bool,
     last_ns: Option<u64>,
     hole: Option<Hole>,
-    about_is_damaged: bool,
+    /// Damaged attachments and metadata that are not reported yet.
+    damaged_about: u32,
     is_cut: bool,
     index_is_damaged: bool,
 }
@@ -85,7 +86,7 @@ impl<R: Read> Scanner<R> {
             is_chunked: false,
             last_ns: None,
             hole: None,
-            about_is_damaged: false,
+            damaged_about: 0,
             is_cut: false,
             index_is_damaged: false,
         }
@@ -126,7 +127,8 @@ impl<R: Read> Scanner<R> {
                 self.next = body.end;
                 return Ok(Some(Part::Record(opcode, body)));
             }
-            if std::mem::take(&mut self.about_is_damaged) {
+            if self.damaged_about > 0 {
+                self.damaged_about -= 1;
                 return Ok(Some(Part::DamagedAbout));
             }
             match self.place {
@@ -330,7 +332,7 @@ impl<R: Read> Scanner<R> {
         let hole = Hole { offset, bytes: self.window.offset() - offset, from_ns: self.last_ns, to_ns: None };
         match content {
             Content::Messages => self.hole = Some(self.hole.map_or(hole, |before| before.with(&hole))),
-            Content::About => self.about_is_damaged = true,
+            Content::About => self.damaged_about += 1,
             Content::Index => self.index_is_damaged = true,
         }
         Ok(())

@@ -67,7 +67,7 @@ mod tests {
 
     #[test]
     fn a_claimed_length_takes_no_more_memory_than_the_file() {
-        let file = [7; 22_000];
+        let file = vec![7; 22_000];
         let mut window = Window::new(&file[..]);
         assert_eq!(window.peek(0, 1 << 40).expect("memory can be read").len(), file.len());
         assert!(window.bytes.capacity() <= 4 * PIECE, "{} bytes", window.bytes.capacity());
