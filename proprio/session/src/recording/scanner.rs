@@ -59,7 +59,6 @@ enum Place {
 }
 
 /// Reader of the records of a file.
-#[expect(clippy::struct_excessive_bools, reason = "independent properties of a file")]
 pub struct Scanner<R> {
     window: Window<R>,
     place: Place,
