@@ -6,7 +6,7 @@ use proprio_session::recording::ReadError;
 use super::Help;
 
 /// Time after which a clock of 32 bits wraps that counts microseconds, s.
-const MICROS_WRAP_S: f64 = 4294.967296;
+const MICROS_WRAP_S: f64 = 4_294.967_296;
 
 impl Help for SessionProblem {
     fn help(&self) -> String {
