@@ -119,7 +119,9 @@ fn monitor_prints_a_line_a_second_for_a_terminal() {
     let mut command = proprio(&folder, &["monitor", "--plain", "--virtual", "--firmware", "firmware"]);
     let mut monitor = Running(command.stdout(Stdio::piped()).spawn().expect("the tool starts"));
     let lines = BufReader::new(monitor.0.stdout.take().expect("a pipe")).lines().map_while(Result::ok);
-    let line = lines.take(60).find(|line| line.starts_with("θ ")).expect("the board estimates within a minute");
+    // The first lines may be from before the first `Health`.
+    let is_complete = |line: &String| line.starts_with("θ ") && line.contains(" load ");
+    let line = lines.take(60).find(is_complete).expect("the board sends estimates and its health within a minute");
     for part in ["°  tip ", " mm  ", " samples/s  0 lost  0 damaged  load "] {
         assert!(line.contains(part), "{line}");
     }
