@@ -80,7 +80,7 @@ fn program() -> Option<PathBuf> {
 
 /// Path of the firmware that cargo has built: in the target folder of the program, or below the current folder.
 fn built_firmware(program: &Path) -> PathBuf {
-    let below: PathBuf = ["thumbv7m-none-eabi", "release", "firmware"].iter().collect();
+    let below: PathBuf = ["thumbv7m-none-eabi", "firmware", "firmware"].iter().collect();
     let targets = program.parent().and_then(Path::parent).map(Path::to_owned);
     let current = PathBuf::from(env::var_os("CARGO_TARGET_DIR").unwrap_or_else(|| OsString::from("target")));
     let found =

@@ -34,7 +34,7 @@ enum Command {
 struct Arguments {
     /// The firmware: an ELF file, as linked for the Due's flash.
     ///
-    /// Cargo leaves it as target/thumbv7m-none-eabi/release/NAME; the Arduino tools as NAME.ino.elf, next to the .bin (with
+    /// Cargo leaves it as target/thumbv7m-none-eabi/PROFILE/NAME; the Arduino tools as NAME.ino.elf, next to the .bin (with
     /// `arduino-cli compile --fqbn arduino:sam:arduino_due_x_dbg --output-dir DIR`, in DIR).
     firmware: PathBuf,
     /// Motion of the arm until the firmware drives its regulators.
