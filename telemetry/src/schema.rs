@@ -16,15 +16,8 @@ pub const EARLIER_SCHEMAS: [u32; 1] = [0x03c8_8117];
 
 /// Returns whether messages of this `schema` have the layout that this crate reads.
 #[must_use]
-pub const fn is_same_layout(schema: u32) -> bool {
-    let mut i = 0;
-    while i < EARLIER_SCHEMAS.len() {
-        if schema == EARLIER_SCHEMAS[i] {
-            return true;
-        }
-        i += 1;
-    }
-    schema == SCHEMA
+pub fn is_same_layout(schema: u32) -> bool {
+    schema == SCHEMA || EARLIER_SCHEMAS.contains(&schema)
 }
 
 /// Hashes the layout of a type's postcard form.
