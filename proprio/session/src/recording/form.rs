@@ -73,6 +73,13 @@ pub fn head(bytes: &[u8]) -> Option<(u8, u64)> {
     Some((*bytes.first()?, u64_at(bytes, 1)?))
 }
 
+/// Opcode and body of the first record, and the bytes behind it; `None` where they are fewer than its length.
+pub fn split_record(bytes: &[u8]) -> Option<(u8, &[u8], &[u8])> {
+    let (opcode, length) = head(bytes)?;
+    let (body, behind) = bytes[HEAD..].split_at_checked(usize::try_from(length).ok()?)?;
+    Some((opcode, body, behind))
+}
+
 /// The opcode of a record's body: `opcode`, or where that does not fit the body, one that differs in one bit and does. In a
 /// file with chunks, a message outside of them is the least likely.
 pub fn opcode_of(opcode: u8, body: &[u8], is_chunked: bool) -> Option<u8> {
@@ -137,14 +144,11 @@ pub fn own_length(opcode: u8, body: &[u8]) -> Option<usize> {
 pub fn is_chain(content: &[u8]) -> bool {
     let mut rest = content;
     while !rest.is_empty() {
-        let Some((opcode, length)) = head(rest) else { return false };
-        let Some(body) = usize::try_from(length).ok().and_then(|length| rest[HEAD..].get(..length)) else {
-            return false;
-        };
+        let Some((opcode, body, behind)) = split_record(rest) else { return false };
         if matches!(opcode, op::SCHEMA | op::CHANNEL | op::MESSAGE) && !fits(opcode, body) {
             return false;
         }
-        rest = &rest[HEAD + body.len()..];
+        rest = behind;
     }
     true
 }

@@ -35,9 +35,8 @@ impl Summary {
     fn new(index: &[u8]) -> Self {
         let mut summary = Self::default();
         let mut rest = index;
-        while let Some((opcode, length)) = form::head(rest) {
-            let Some(body) = usize::try_from(length).ok().and_then(|length| rest[HEAD..].get(..length)) else { break };
-            rest = &rest[HEAD + body.len()..];
+        while let Some((opcode, body, behind)) = form::split_record(rest) {
+            rest = behind;
             if !matches!(opcode, op::SCHEMA | op::CHANNEL | op::STATISTICS) {
                 continue;
             }
