@@ -125,7 +125,7 @@ pub struct Finding {
 
 impl Finding {
     /// True for a finding about the bend sensors of a segment, from 1.
-    pub(super) fn is_about_bend(&self, number: usize) -> bool {
+    fn is_about_bend(&self, number: usize) -> bool {
         match self.sensor {
             Source::Bend { segment, .. } => segment == number,
             Source::TwoBends { segment, other } => segment == number || other == number,
@@ -135,7 +135,7 @@ impl Finding {
     }
 
     /// True for a finding about the IMU of a segment, from 1.
-    pub(super) fn is_about_imu(&self, number: usize) -> bool {
+    fn is_about_imu(&self, number: usize) -> bool {
         match self.sensor {
             Source::Imu { segment } => segment == number,
             Source::TwoImus { segment, other } => segment == number || other == number,
@@ -143,6 +143,16 @@ impl Finding {
             _ => false,
         }
     }
+}
+
+/// True where a finding is about the bend sensors of a segment, from 1.
+pub(super) fn is_bend_blamed(findings: &[Finding], number: usize) -> bool {
+    findings.iter().any(|finding| finding.is_about_bend(number))
+}
+
+/// True where a finding is about the IMU of a segment, from 1.
+pub(super) fn is_imu_blamed(findings: &[Finding], number: usize) -> bool {
+    findings.iter().any(|finding| finding.is_about_imu(number))
 }
 
 /// Kind of a fault, with the meaning of the finding's figure.

@@ -2,7 +2,7 @@
 
 use calibration_tables::MAX_SEGMENTS;
 
-use super::finding::{Finding, Kind, Rows, Source};
+use super::finding::{Finding, Kind, Rows, Source, is_imu_blamed};
 use super::frame::{Frame, wrapped};
 
 /// Least jump of the heading against the bend sensors, deg: after missing readings, and from one reading to the next.
@@ -61,8 +61,7 @@ impl NewZero {
         for (i, jumps) in self.0.iter().enumerate() {
             let sensor = Source::Imu { segment: i + 1 };
             // The jumps of an IMU that turns otherwise than the arm are no other zeros.
-            let is_blamed = findings.iter().any(|found| found.is_about_imu(i + 1));
-            if is_blamed {
+            if is_imu_blamed(findings, i + 1) {
                 continue;
             }
             if jumps.new_zero.count > 0 {

@@ -7,7 +7,7 @@
 
 use calibration_tables::MAX_SEGMENTS;
 
-use super::finding::{Finding, Kind, Rows, Source};
+use super::finding::{Finding, Kind, Rows, Source, is_bend_blamed, is_imu_blamed};
 use super::frame::{Frame, difference};
 
 /// Shortest and longest interval of a step, s. Sessions at less than 1 Hz have their own interval.
@@ -185,8 +185,6 @@ impl Judge {
     fn new(steps: &Steps, findings: &[Finding]) -> Self {
         let half = steps.imu_imu.mean();
         let imu_imu = std::array::from_fn(|i| std::array::from_fn(|j| half[i.max(j)][i.min(j)]));
-        let is_imu_blamed = |i: usize| findings.iter().any(|finding| finding.is_about_imu(i + 1));
-        let is_bend_blamed = |i: usize| findings.iter().any(|finding| finding.is_about_bend(i + 1));
         let mut judge =
             Self { imu_imu, imu_bend: steps.imu_bend.mean(), bend_bend: steps.bend_bend.mean(), segments: Vec::new() };
         let has_steps = |i: usize| {
@@ -194,7 +192,9 @@ impl Judge {
             steps.imu_bend.count[i][i].min(before) >= STEPS
         };
         let can_be_judged = |i: &usize| {
-            let are_blamed = is_imu_blamed(*i) || *i > 0 && is_imu_blamed(*i - 1) || is_bend_blamed(*i);
+            let are_blamed = is_imu_blamed(findings, i + 1)
+                || *i > 0 && is_imu_blamed(findings, *i)
+                || is_bend_blamed(findings, i + 1);
             has_steps(*i) && judge.bend_bend[*i][*i] >= MOTION * MOTION && !are_blamed
         };
         judge.segments = (0..steps.segments).filter(can_be_judged).collect();
@@ -227,9 +227,14 @@ impl Judge {
 
     /// The gain of all IMUs by which they fit best.
     fn common_gain(&self, wiring: &Wiring) -> f64 {
-        let sums = self.segments.iter().map(|i| self.by_imus(wiring, *i));
-        let [square, product] = sums.fold([0.0; 2], |sum, [square, product]| [sum[0] + square, sum[1] + product]);
+        let [square, product] = self.sum_by_imus(wiring, &self.segments);
         product / square
+    }
+
+    /// Sums of [`Self::by_imus`] over these segments.
+    fn sum_by_imus(&self, wiring: &Wiring, segments: &[usize]) -> [f64; 2] {
+        let each = segments.iter().map(|i| self.by_imus(wiring, *i));
+        each.fold([0.0; 2], |sum, [square, product]| [sum[0] + square, sum[1] + product])
     }
 
     /// The gain of one IMU by which its heading fits the bend angles up to it best.
@@ -250,20 +255,26 @@ impl Judge {
     }
 
     fn run(&self, steps: &Steps, findings: &mut Vec<Finding>) {
+        self.lone_sensors(steps, findings);
+        let judged: Vec<usize> = self.segments.iter().copied().filter(|i| !is_bend_blamed(findings, i + 1)).collect();
+        let wiring = self.explain(steps, &judged, findings);
+        self.report_unexplained(steps, &wiring, &self.bad(&judged, &wiring), findings);
+    }
+
+    /// The segments of these whose sensors disagree.
+    fn bad(&self, judged: &[usize], wiring: &Wiring) -> Vec<usize> {
+        judged.iter().copied().filter(|i| self.misfit(wiring, *i) > MISFIT).collect()
+    }
+
+    /// Supposes the fault that explains most, as long as one explains a segment; returns the wiring with all of them.
+    fn explain(&self, steps: &Steps, judged: &[usize], findings: &mut Vec<Finding>) -> Wiring {
         let in_order = std::array::from_fn(|i| i);
         let mut wiring =
             Wiring { imu: in_order, gain: [1.0; MAX_SEGMENTS], bend: in_order, bend_sign: [1.0; MAX_SEGMENTS] };
-        self.lone_sensors(steps, findings);
-        let lone: Vec<usize> =
-            (1..=steps.segments).filter(|i| findings.iter().any(|found| found.is_about_bend(*i))).collect();
-        let bad = |wiring: &Wiring| -> Vec<usize> {
-            let is_lone = |i: &usize| lone.contains(&(i + 1));
-            self.segments.iter().copied().filter(|i| !is_lone(i) && self.misfit(wiring, *i) > MISFIT).collect()
-        };
         loop {
-            let now = bad(&wiring);
+            let now = self.bad(judged, &wiring);
             if now.is_empty() {
-                return;
+                return wiring;
             }
             let is_allowed = |fault: &Fault| match fault {
                 Fault::Gain(_, gain) => gain.is_finite() && !(GAINS[0]..=GAINS[1]).contains(gain),
@@ -271,36 +282,39 @@ impl Judge {
             };
             let cost = |fault: &Fault| self.misfits(&wiring.with(*fault));
             let best = self.faults(&wiring).into_iter().filter(is_allowed).min_by(|a, b| cost(a).total_cmp(&cost(b)));
-            let Some(fault) = best else { break };
+            let Some(fault) = best else { return wiring };
             let then = wiring.with(fault);
-            let explains = now.iter().any(|i| self.misfit(&then, *i) < EXPLAINED) && bad(&then).len() < now.len();
+            let explains =
+                now.iter().any(|i| self.misfit(&then, *i) < EXPLAINED) && self.bad(judged, &then).len() < now.len();
             if !explains {
-                break;
+                return wiring;
             }
-            let (before, after) = (self.misfits(&wiring), self.misfits(&then));
-            let explained = 100.0 * (1.0 - after / before);
+            let explained = 100.0 * (1.0 - self.misfits(&then) / self.misfits(&wiring));
             Self::report(steps, fault, explained, findings);
             wiring = then;
         }
-        let now = bad(&wiring);
-        if now.len() == self.segments.len() && now.len() > 1 {
-            let [square, product] = now
-                .iter()
-                .map(|i| self.by_imus(&wiring, *i))
-                .fold([0.0; 2], |sum, by| [sum[0] + by[0], sum[1] + by[1]]);
-            let bend: f64 = now.iter().map(|i| self.bend_bend[*i][*i]).sum();
-            let figure = 100.0 * product / (square * bend).sqrt().max(f64::MIN_POSITIVE);
-            let kind = if steps.largest <= WHOLE_TURN_RAD { Kind::Radians } else { Kind::Unrelated };
-            let figure = if kind == Kind::Radians { steps.largest } else { figure };
+    }
+
+    /// Reports the segments that no fault of the wiring explains: all of them by one cause, or each.
+    fn report_unexplained(&self, steps: &Steps, wiring: &Wiring, bad: &[usize], findings: &mut Vec<Finding>) {
+        if bad.len() == self.segments.len() && bad.len() > 1 {
+            let [square, product] = self.sum_by_imus(wiring, bad);
+            let bend: f64 = bad.iter().map(|i| self.bend_bend[*i][*i]).sum();
+            let correlation = 100.0 * product / (square * bend).sqrt().max(f64::MIN_POSITIVE);
+            let (kind, figure) = if steps.largest <= WHOLE_TURN_RAD {
+                (Kind::Radians, steps.largest)
+            } else {
+                (Kind::Unrelated, correlation)
+            };
             findings.push(Finding { sensor: Source::AllImus, rows: steps.rows, kind, figure });
             return;
         }
-        for i in &now {
+        for i in bad {
             let source = Source::Imu { segment: *i };
             let is_before_unrelated =
                 findings.iter().any(|found| found.sensor == source && found.kind == Kind::Unrelated);
             if !is_before_unrelated {
-                Self::blame(steps, *i, now.contains(&(i + 1)) || *i + 1 == steps.segments, findings);
+                Self::blame(steps, *i, bad.contains(&(i + 1)) || *i + 1 == steps.segments, findings);
             }
         }
     }

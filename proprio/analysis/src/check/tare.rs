@@ -2,7 +2,7 @@
 
 use calibration_tables::{ArmFile, MAX_SEGMENTS};
 
-use super::finding::{Finding, Kind, Rows, Source};
+use super::finding::{Finding, Kind, Rows, Source, is_bend_blamed};
 use super::frame::{Frame, difference};
 
 /// Limit of a segment's bend angle against the reference pose, deg.
@@ -91,8 +91,8 @@ impl Tare {
     pub fn finish(mut self, findings: &mut Vec<Finding>) {
         self.end();
         // Bend sensors that are wired wrongly show a bent arm.
-        let is_bend_blamed = (1..=MAX_SEGMENTS).any(|i| findings.iter().any(|finding| finding.is_about_bend(i)));
-        self.findings.retain(|finding| finding.kind != Kind::TareBent || !is_bend_blamed);
+        let is_any_blamed = (1..=MAX_SEGMENTS).any(|i| is_bend_blamed(findings, i));
+        self.findings.retain(|finding| finding.kind != Kind::TareBent || !is_any_blamed);
         findings.append(&mut self.findings);
     }
 }
