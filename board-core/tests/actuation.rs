@@ -188,13 +188,13 @@ fn each_change_of_state_is_reported_once() {
     let mut actuator = armed();
     assert_eq!(actuator.event(), Some(Event::Actuation(Actuation::Armed)));
     actuator.set(&request(100), 0).unwrap();
-    let mut said = Vec::new();
+    let mut events = Vec::new();
     for ms in 0..2 * u64::from(VENTED_MS) {
         actuator.advance(ms * MS);
-        said.extend(actuator.event());
+        events.extend(actuator.event());
     }
     let states = [Actuation::Holding, Actuation::Ramping, Actuation::Disarmed];
-    assert_eq!(said, states.map(Event::Actuation));
+    assert_eq!(events, states.map(Event::Actuation));
 }
 
 #[test]

@@ -100,7 +100,7 @@ impl Board {
         let frame = self.encoder.encode(&request, &mut buffer).expect("every request fits");
         let now = self.machine.now();
         let line = self.machine.world_mut();
-        // Ends a frame that noise may have begun.
+        // Ends a frame that noise may have started.
         line.send(UART, &[0], now);
         line.send(UART, frame, now);
     }

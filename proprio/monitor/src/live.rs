@@ -130,7 +130,7 @@ impl<'t> Live<'t> {
         Some(BoardTime { zero_ms, drift: self.clock.drift() })
     }
 
-    /// Contact has begun or ended. The next uncertainty has the same, up to a quarter of a second later.
+    /// Takes the begin or end of contact. The next uncertainty has the same, up to a quarter of a second later.
     fn contact(&mut self, touched: [bool; SEGMENTS]) {
         let segments = self.uncertainty.iter_mut().flat_map(|uncertainty| &mut uncertainty.segments);
         segments.zip(touched).for_each(|(segment, touched)| segment.in_contact = touched);

@@ -29,9 +29,9 @@ fn a_reset_of_the_board_is_distinguished_from_lost_frames() {
     let state = link.state();
     assert_eq!((state.restarts, state.counts.lost, state.reopened), (1, 0, 0));
     assert_eq!(state.hello.map(|hello| hello.boot), Some(2));
-    let told =
+    let restarts =
         std::iter::from_fn(|| events.next(Duration::ZERO)).filter(|event| matches!(event.kind, EventKind::Restarted));
-    assert_eq!(told.count(), 1);
+    assert_eq!(restarts.count(), 1);
 }
 
 /// A port that vanishes and returns under the same name, as udev's links do, with a board that has lost its power meanwhile:

@@ -31,9 +31,9 @@ fn the_rehearsal_runs_and_prints_the_output_in_the_guide() {
     for command in ["simulate", "align", "calibrate", "tune", "replay", "report"] {
         assert!(commands.iter().any(|run| run == command), "{command} is part of the way: {commands:?}");
     }
-    let said: Vec<&str> = blocks(section, "text").into_iter().flat_map(str::lines).collect();
-    assert!(said.len() >= 10, "{said:?}");
-    for line in said {
+    let expected: Vec<&str> = blocks(section, "text").into_iter().flat_map(str::lines).collect();
+    assert!(expected.len() >= 10, "{expected:?}");
+    for line in expected {
         assert!(printed.lines().any(|found| found == line), "{line:?} is not in\n{printed}");
     }
 }

@@ -36,7 +36,7 @@ fn without_the_emulator_the_error_names_the_command_that_builds_it() {
     let mut command = std::process::Command::new(tool);
     command.args(["status", "--virtual"]).env("PATH", "").env_remove("PROPRIO_VIRTUAL_DUE");
     let output = command.output().expect("the tool starts");
-    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    let message = String::from_utf8_lossy(&output.stderr).into_owned();
     assert_eq!(output.status.code(), Some(2));
-    assert!(said.contains("cargo virtual-due --version"), "{said}");
+    assert!(message.contains("cargo virtual-due --version"), "{message}");
 }

@@ -121,8 +121,11 @@ fn an_uncertainty_that_differs_by_a_bit_is_reported() {
         }
     });
     assert_eq!((&recorded["equal"], &recorded["first_difference"]), (&500.into(), &Value::Null));
-    let told = &recorded["uncertainties"];
-    assert_eq!((&told["compared"], &told["equal"], &told["first_difference"]), (&20.into(), &19.into(), &300.into()));
+    let compared = &recorded["uncertainties"];
+    assert_eq!(
+        (&compared["compared"], &compared["equal"], &compared["first_difference"]),
+        (&20.into(), &19.into(), &300.into())
+    );
     assert!(stderr.contains("1 of 20 uncertainties are not, the first: tick 300"), "{stderr}");
 }
 
@@ -136,8 +139,11 @@ fn a_recorded_contact_that_the_replay_lacks_is_reported() {
             *message = Message::Event(Event::Contact(health.tick, [true; SEGMENTS]));
         }
     });
-    let told = &recorded["contacts"];
-    assert_eq!((&told["compared"], &told["equal"], &told["first_difference"]), (&1.into(), &0.into(), &340.into()));
+    let compared = &recorded["contacts"];
+    assert_eq!(
+        (&compared["compared"], &compared["equal"], &compared["first_difference"]),
+        (&1.into(), &0.into(), &340.into())
+    );
     assert!(stderr.contains("1 of 1 changes of contact are not, the first: tick 340"), "{stderr}");
 }
 

@@ -45,10 +45,10 @@ fn play(folder: &Folder, seconds: f64, done: impl FnOnce(&mut Child)) -> String 
         done(&mut child);
         stop.store(true, Ordering::Relaxed);
     });
-    let mut said = String::new();
-    child.stderr.take().expect("a pipe").read_to_string(&mut said).expect("the tool writes UTF-8");
+    let mut messages = String::new();
+    child.stderr.take().expect("a pipe").read_to_string(&mut messages).expect("the tool writes UTF-8");
     child.wait().expect("it has ended");
-    said
+    messages
 }
 
 /// Waits until the recording has so many bytes.
@@ -85,14 +85,14 @@ fn a_recording_that_is_killed_is_recovered_and_replays_bit_for_bit() {
 #[test]
 fn an_interrupt_ends_a_recording_well() {
     let folder = Folder::new();
-    let said = play(&folder, 60.0, |child| {
+    let messages = play(&folder, 60.0, |child| {
         wait_for_bytes(&folder, 200_000);
         let id = child.id().to_string();
         let sent = std::process::Command::new("kill").args(["-INT", &id]).status().expect("kill starts");
         assert!(sent.success());
         assert_eq!(child.wait().expect("it ends").code(), Some(0));
     });
-    assert!(said.starts_with("a.mcap: 0:00:") && said.contains(" 0 frames lost, 0 damaged"), "{said}");
+    assert!(messages.starts_with("a.mcap: 0:00:") && messages.contains(" 0 frames lost, 0 damaged"), "{messages}");
     let (recorded, stderr) = recorded(&folder, "a.mcap");
     assert_eq!(recorded["equal"], recorded["estimates"], "{stderr}");
 }

@@ -102,8 +102,8 @@ fn the_hysteresis_of_a_sweep_in_which_the_board_restarted_is_corrected_as_well()
 
 #[test]
 fn a_sweep_in_which_the_board_restarted_has_no_other_warning() {
-    let said = |session: &Csv| Calibration::of(session).run.stderr;
-    assert_eq!(said(&restarted(sweep(), &[2000, 3333])), said(&sweep()));
+    let warnings = |session: &Csv| Calibration::of(session).run.stderr;
+    assert_eq!(warnings(&restarted(sweep(), &[2000, 3333])), warnings(&sweep()));
 }
 
 #[test]

@@ -9,10 +9,10 @@ use super::line::{Line, hello, text};
 /// The checksum of the table that was flashed: the one in `hello`.
 const FLASHED: u32 = 7;
 
-fn judged(says: Hello, flashed: u32) -> Result<Hello, FlashError> {
+fn judged(sent: Hello, flashed: u32) -> Result<Hello, FlashError> {
     let line = Line::new();
     let (link, events) = Link::start(Box::new(line.clone()), Some(flashed)).expect("memory opens");
-    line.board().send(&Message::Hello(says));
+    line.board().send(&Message::Hello(sent));
     verify(&link, &events)
 }
 

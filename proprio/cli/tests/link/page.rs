@@ -176,8 +176,8 @@ fn what_is_recorded_from_the_page_is_all_that_came_even_if_no_page_keeps_up() {
     line.board().restart(1);
     // A page that never reads.
     let _slow = page.socket(Some(&page.origin())).expect("its own page");
-    let begun = page.post("/record", r#"{"on":true}"#);
-    assert_eq!(begun.status, 200, "{}", begun.text());
+    let started = page.post("/record", r#"{"on":true}"#);
+    assert_eq!(started.status, 200, "{}", started.text());
     assert_eq!(page.post("/mark", r#"{"text":"push"}"#).status, 200);
     for round in 0..20 {
         send_ticks(&line, round * 1000..round * 1000 + 1000);
@@ -251,8 +251,8 @@ fn drift_and_innovations_of_a_live_board_are_those_of_its_recording() {
     let simulation = Simulation::new(Scenario::Push, 7, 10.0, 100.0).expect("a valid run");
     for (tick, read) in (0..).zip(simulation) {
         let time_us = u64::from(tick) * 10_000;
-        let said = Sample { tick, time_us, tare_epoch: 0, bend: read.counts, imu: read.quaternions };
-        line.board().send(&Message::Sample(said));
+        let sample = Sample { tick, time_us, tare_epoch: 0, bend: read.counts, imu: read.quaternions };
+        line.board().send(&Message::Sample(sample));
     }
     page.wait_for_status(|status| status["recording"]["samples"] == 1000);
     page.wait_for_status(|_| page.get("/history").about()["rows"] == 999);

@@ -10,7 +10,7 @@ use crate::figure::Figure;
 const CYCLES_PER_US: f64 = CYCLES_PER_SECOND as f64 / 1e6;
 const CYCLES_PER_MS: Cycles = CYCLES_PER_SECOND / 1000;
 
-/// Time after a tick at which its work is over and the next has not begun.
+/// Time after a tick at which its work is over and the next has not started.
 const TICK: Cycles = CYCLES_PER_SECOND / 100 - CYCLES_PER_MS / 10;
 
 /// The interrupt's handler that runs a task: its first instruction and its last.
@@ -60,9 +60,9 @@ fn longest(handler: &Handler) -> Cycles {
     fault_run::board(|board, ms| {
         let end = board.machine.now() + ms * CYCLES_PER_MS;
         while board.machine.run_to(handler.entry, end) {
-            let begun = board.machine.now();
+            let start = board.machine.now();
             assert!(board.machine.run_to(handler.exit, end + TICK), "a task ends");
-            longest = longest.max(board.machine.now() - begun);
+            longest = longest.max(board.machine.now() - start);
         }
         board.run_ms(0);
     });
@@ -76,9 +76,9 @@ fn longest_tick() -> Cycles {
     fault_run::board(|board, ms| {
         let end = board.machine.now() + ms * CYCLES_PER_MS;
         while board.machine.run_to(tick.entry, end) {
-            let begun = board.machine.now();
-            while board.machine.run_to(estimation.exit, begun + TICK) {
-                longest = longest.max(board.machine.now() - begun);
+            let start = board.machine.now();
+            while board.machine.run_to(estimation.exit, start + TICK) {
+                longest = longest.max(board.machine.now() - start);
             }
         }
         board.run_ms(0);
