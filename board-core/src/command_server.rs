@@ -18,7 +18,7 @@
 //!
 //! The cost of a request is the same few comparisons in every case.
 
-use telemetry::{Command, Outcome, Refusal, Reply, Request};
+use telemetry::{Command, Refusal, Reply, Request, RequestOutcome};
 
 /// Ticks of 10 ms without an executed request after which a `Ping` begins a new session.
 pub const SESSION_TIMEOUT_TICKS: u32 = 150;
@@ -33,7 +33,7 @@ pub const REFILL_PER_TICK: u8 = 2;
 ///
 /// ```
 /// use board_core::CommandServer;
-/// use telemetry::{Command, Outcome, Reply, Request};
+/// use telemetry::{Command, RequestOutcome, Reply, Request};
 ///
 /// let mut server = CommandServer::new();
 /// let mut tares = 0;
@@ -44,7 +44,7 @@ pub const REFILL_PER_TICK: u8 = 2;
 ///         tares += 1;
 ///         Ok(())
 ///     });
-///     assert_eq!(reply, Some(Reply { id: 7, outcome: Outcome::Ack }));
+///     assert_eq!(reply, Some(Reply { id: 7, outcome: RequestOutcome::Ack }));
 /// }
 /// assert_eq!(tares, 1);
 /// ```
@@ -58,7 +58,7 @@ pub struct CommandServer {
 #[derive(Debug)]
 struct LastRequest {
     request: Request,
-    outcome: Outcome,
+    outcome: RequestOutcome,
     tick: u32,
 }
 
@@ -80,7 +80,7 @@ impl CommandServer {
         let outcome = if admission == Admission::Admitted || request.command == Command::Disarm {
             self.outcome(request, tick, execute)
         } else {
-            Outcome::Nack(Refusal::Busy)
+            RequestOutcome::Nack(Refusal::Busy)
         };
         (admission != Admission::Dropped).then_some(Reply { id: request.id, outcome })
     }
@@ -90,17 +90,17 @@ impl CommandServer {
         request: &Request,
         tick: u32,
         execute: impl FnOnce(Command) -> Result<(), Refusal>,
-    ) -> Outcome {
+    ) -> RequestOutcome {
         if let Some(last) = &self.last {
             let new_session = request.command == Command::Ping && tick.wrapping_sub(last.tick) >= SESSION_TIMEOUT_TICKS;
             if !new_session && *request == last.request {
                 return last.outcome;
             }
             if !new_session && request.id <= last.request.id {
-                return Outcome::Nack(Refusal::Late);
+                return RequestOutcome::Nack(Refusal::Late);
             }
         }
-        let outcome = execute(request.command).map_or_else(Outcome::Nack, |()| Outcome::Ack);
+        let outcome = execute(request.command).map_or_else(RequestOutcome::Nack, |()| RequestOutcome::Ack);
         self.last = Some(LastRequest { request: *request, outcome, tick });
         outcome
     }

@@ -2,11 +2,11 @@
 
 use board_core::{BUCKET_SIZE, CommandServer, REFILL_PER_TICK, SESSION_TIMEOUT_TICKS};
 use proptest::prelude::*;
-use telemetry::{Command, Outcome, Refusal, Reply, Request};
+use telemetry::{Command, Refusal, Reply, Request, RequestOutcome};
 
-const LATE: Option<Outcome> = Some(Outcome::Nack(Refusal::Late));
-const BUSY: Option<Outcome> = Some(Outcome::Nack(Refusal::Busy));
-const ACK: Option<Outcome> = Some(Outcome::Ack);
+const LATE: Option<RequestOutcome> = Some(RequestOutcome::Nack(Refusal::Late));
+const BUSY: Option<RequestOutcome> = Some(RequestOutcome::Nack(Refusal::Busy));
+const ACK: Option<RequestOutcome> = Some(RequestOutcome::Ack);
 
 /// A server and the requests that it executed.
 #[derive(Default)]
@@ -17,7 +17,7 @@ struct Board {
 
 impl Board {
     /// Sends a request whose command succeeds.
-    fn send(&mut self, id: u32, command: Command, tick: u32) -> Option<Outcome> {
+    fn send(&mut self, id: u32, command: Command, tick: u32) -> Option<RequestOutcome> {
         let reply = self.server.answer(&Request { id, command }, tick, |command| {
             self.done.push((id, command));
             Ok(())
@@ -51,7 +51,7 @@ fn a_repeated_request_gets_its_reply_again_and_is_executed_once() {
 fn a_repeated_request_that_was_refused_is_not_executed_again() {
     let mut server = CommandServer::new();
     let request = Request { id: 1, command: Command::Arm };
-    let refused = Some(Reply { id: 1, outcome: Outcome::Nack(Refusal::Disarmed) });
+    let refused = Some(Reply { id: 1, outcome: RequestOutcome::Nack(Refusal::Disarmed) });
     assert_eq!(server.answer(&request, 0, |_| Err(Refusal::Disarmed)), refused);
     assert_eq!(server.answer(&request, 1, |_| Ok(())), refused);
 }

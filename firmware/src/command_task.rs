@@ -4,7 +4,7 @@ use atsam3x8e_hal::tc::Mono;
 use atsam3x8e_hal::uart::Rx;
 use board_core::{Actuator, CommandServer, Schedule, Task};
 use rtic::Mutex;
-use telemetry::{Command, DecodeError, Decoder, Message, Outcome, Refusal, Reply, Request};
+use telemetry::{Command, DecodeError, Decoder, Message, Refusal, Reply, Request, RequestOutcome};
 
 use crate::downlink::TelemetrySender;
 use crate::parameters::RECEIVE_BYTES;
@@ -54,7 +54,9 @@ impl CommandTask {
                     log(&request, result);
                     result
                 }),
-                Some(Err(DecodeError::Request(id))) => Some(Reply { id, outcome: Outcome::Nack(Refusal::Unknown) }),
+                Some(Err(DecodeError::Request(id))) => {
+                    Some(Reply { id, outcome: RequestOutcome::Nack(Refusal::Unknown) })
+                }
                 Some(Err(_)) | None => None,
             };
             if let Some(reply) = reply {

@@ -16,7 +16,7 @@
 //! | `estimator.rs` | a [`Sample`] for `estimator-core`, and an [`Estimate`], [`Uncertainty`] and contact from it |
 //!
 //! ```
-//! use telemetry::{Command, DecodeError, Decoder, Encoder, MAX_FRAME, Message, Outcome, Refusal, Reply, Request};
+//! use telemetry::{Command, DecodeError, Decoder, Encoder, MAX_FRAME, Message, RequestOutcome, Refusal, Reply, Request};
 //!
 //! // The host sends a request.
 //! let mut host = Encoder::new();
@@ -29,7 +29,7 @@
 //! let received = frame.iter().find_map(|&byte| requests.push(byte));
 //! assert_eq!(received, Some(Ok(request)));
 //! let mut board = Encoder::new();
-//! let reply = Message::Reply(Reply { id: request.id, outcome: Outcome::Nack(Refusal::Busy) });
+//! let reply = Message::Reply(Reply { id: request.id, outcome: RequestOutcome::Nack(Refusal::Busy) });
 //! let mut line = board.encode(&reply, &mut buffer)?.to_vec();
 //!
 //! // Noise damages the frame that it hits, and no other.

@@ -314,13 +314,13 @@ pub struct Reply {
     /// The request's number.
     pub id: u32,
     /// Outcome of the request.
-    pub outcome: Outcome,
+    pub outcome: RequestOutcome,
 }
 
 /// Outcome of a request.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, Schema)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub enum Outcome {
+pub enum RequestOutcome {
     /// It was executed.
     Ack,
     /// It was refused, and nothing has changed.

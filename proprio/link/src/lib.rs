@@ -1,6 +1,6 @@
 //! The serial link to a board: real, or the emulated one.
 //!
-//! One thread reads bytes, stamps them with the time of their arrival, decodes them, and hands [`Event`]s to every
+//! One thread reads bytes, stamps them with the time of their arrival, decodes them, and hands [`LinkEvent`]s to every
 //! [`Subscription`]. It opens the port again when the cable comes back, begins with a Ping, and sends requests until they
 //! are answered. A subscriber may be slow: each subscription has its own bounded queue, which drops its oldest events
 //! and counts them, and does not delay the others.
@@ -50,7 +50,7 @@ mod virtual_due;
 mod worker;
 
 pub use error::LinkError;
-pub use event::{Event, EventKind, Mismatch};
+pub use event::{EventKind, LinkEvent, Mismatch};
 pub use file_recorder::FileRecorder;
 pub use handle::Link;
 pub use ports::{Port, PortKind, find_due, list};
