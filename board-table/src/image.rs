@@ -88,7 +88,7 @@ impl<const N: usize> BoardTable<N> {
     pub fn read(&mut self, image: &[u8], window: u16) -> Result<(), TableError> {
         self.head = None;
         self.segments.clear();
-        let head = read_image(image, N, window, |segment| {
+        let head = read_image(image, N, window, &mut |segment| {
             // `read_image` has compared the number of segments with N.
             let _ = self.segments.push(segment);
         })?;
@@ -130,14 +130,14 @@ impl<const N: usize> Default for BoardTable<N> {
 /// # Errors
 /// As [`BoardTable::read`].
 pub(crate) fn check(image: &[u8], segments: usize, window: u16) -> Result<(), TableError> {
-    read_image(image, segments, window, |_| {}).map(|_| ())
+    read_image(image, segments, window, &mut |_| {}).map(|_| ())
 }
 
 fn read_image(
     image: &[u8],
     room: usize,
     window: u16,
-    mut visit: impl FnMut(SegmentConfig<Q>),
+    visit: &mut dyn FnMut(SegmentConfig<Q>),
 ) -> Result<Head, TableError> {
     let (head, mut rest) = postcard::take_from_bytes::<Head>(image).map_err(|_| TableError::Image)?;
     if head.segments == 0 || usize::from(head.segments) > room {

@@ -61,22 +61,27 @@ struct Transfer {
 }
 
 /// The two slots of a flash that is mapped to memory: at its start, [`STORE_BYTES`] long.
+///
+/// The slots are examined when the store is made and after each change.
 #[derive(Debug)]
 pub struct TableStore<F> {
     flash: F,
+    states: [SlotState; 2],
     transfer: Option<Transfer>,
 }
 
 impl<F: Storage + AsRef<[u8]>> TableStore<F> {
     /// The store of a flash.
-    pub const fn new(flash: F) -> Self {
-        Self { flash, transfer: None }
+    pub fn new(flash: F) -> Self {
+        let mut store = Self { flash, states: [SlotState::Empty; 2], transfer: None };
+        store.examine();
+        store
     }
 
-    /// State of the store, with the checksums over all of it.
+    /// State of the store.
     pub fn status(&self) -> TableStatus {
-        let [a, b] = self.states();
-        match (newest([a, b]), a, b) {
+        let [a, b] = self.states;
+        match (newest(self.states), a, b) {
             (Some((_, header)), ..) => TableStatus::Whole(header),
             (None, SlotState::Empty, SlotState::Empty) => TableStatus::Missing,
             (None, SlotState::Foreign(_), _) | (None, _, SlotState::Foreign(_)) => TableStatus::Foreign,
@@ -86,7 +91,7 @@ impl<F: Storage + AsRef<[u8]>> TableStore<F> {
 
     /// The table that counts.
     pub fn active(&self) -> Option<StoredTable<'_>> {
-        let (slot, header) = newest(self.states())?;
+        let (slot, header) = newest(self.states)?;
         let body = self.body(slot, header.body_bytes())?;
         let (image, source) = body.split_at_checked(header.image_bytes as usize)?;
         Some(StoredTable { header, image, source })
@@ -105,27 +110,29 @@ impl<F: Storage + AsRef<[u8]>> TableStore<F> {
         if announced.length() > SLOT_BYTES - PAGE_BYTES {
             return Err(TableError::TooLong);
         }
-        let slot = newest(self.states()).map_or(0, |(slot, _)| 1 - slot);
+        let slot = newest(self.states).map_or(0, |(slot, _)| 1 - slot);
         self.program(slot * SLOT_BYTES, &ERASED)?;
+        self.examine();
         self.transfer = Some(Transfer { slot, announced, received: 0, page: ERASED });
         Ok(0)
     }
 
-    /// Takes a chunk of the body, image first. A chunk that was received before is taken again without effect.
+    /// Takes a chunk of the body, image first; returns the number of bytes received so far. A chunk that was received
+    /// before is taken again without effect.
     ///
     /// # Errors
     /// [`TableError::NotBegun`], [`TableError::Order`] or [`TableError::Flash`], which ends the transfer.
-    pub fn write(&mut self, offset: u32, bytes: &[u8]) -> Result<(), TableError> {
-        let transfer = self.transfer.as_mut().ok_or(TableError::NotBegun)?;
-        let end = (offset as usize).saturating_add(bytes.len());
-        if end <= transfer.received {
-            return Ok(());
+    pub fn write(&mut self, offset: u32, bytes: &[u8]) -> Result<u32, TableError> {
+        let transfer = self.transfer.as_ref().ok_or(TableError::NotBegun)?;
+        let (received, end) = (transfer.received, (offset as usize).saturating_add(bytes.len()));
+        if end <= received {
+            return Ok(received as u32);
         }
-        if offset as usize != transfer.received || end > transfer.announced.length() {
+        if offset as usize != received || end > transfer.announced.length() {
             return Err(TableError::Order);
         }
         for byte in bytes {
-            let Some(transfer) = self.transfer.as_mut() else { return Err(TableError::NotBegun) };
+            let transfer = self.transfer.as_mut().ok_or(TableError::NotBegun)?;
             let place = transfer.received % PAGE_BYTES;
             if let Some(cell) = transfer.page.get_mut(place) {
                 *cell = *byte;
@@ -135,7 +142,7 @@ impl<F: Storage + AsRef<[u8]>> TableStore<F> {
                 self.write_page()?;
             }
         }
-        Ok(())
+        Ok(end as u32)
     }
 
     /// Ends a transfer: compares the checksum with what the flash holds, and makes the new table count. `segments` and
@@ -161,12 +168,13 @@ impl<F: Storage + AsRef<[u8]>> TableStore<F> {
         }
         let image = body.get(..announced.image_bytes as usize).ok_or(TableError::Image)?;
         image::check(image, segments, window)?;
-        let generation = newest(self.states()).map_or(1, |(_, header)| header.generation.wrapping_add(1));
+        let generation = newest(self.states).map_or(1, |(_, header)| header.generation.wrapping_add(1));
         let Announcement { image_bytes, source_bytes, crc } = announced;
         let header = Header { generation, image_bytes, source_bytes, crc };
         let mut page = ERASED;
         page.iter_mut().zip(header.to_bytes()).for_each(|(cell, byte)| *cell = byte);
         self.program(slot * SLOT_BYTES, &page)?;
+        self.examine();
         Ok(header)
     }
 
@@ -177,14 +185,16 @@ impl<F: Storage + AsRef<[u8]>> TableStore<F> {
     pub fn erase(&mut self) -> Result<(), TableError> {
         self.transfer = None;
         // The one in use last: a loss of power in between leaves it, and not the one before it.
-        let in_use = newest(self.states()).map_or(0, |(slot, _)| slot);
+        let in_use = newest(self.states).map_or(0, |(slot, _)| slot);
         self.program((1 - in_use) * SLOT_BYTES, &ERASED)?;
-        self.program(in_use * SLOT_BYTES, &ERASED)
+        self.program(in_use * SLOT_BYTES, &ERASED)?;
+        self.examine();
+        Ok(())
     }
 
     /// Programs the page under way, which is the last one before the number of received bytes.
     fn write_page(&mut self) -> Result<(), TableError> {
-        let Some(transfer) = self.transfer.as_mut() else { return Err(TableError::NotBegun) };
+        let transfer = self.transfer.as_mut().ok_or(TableError::NotBegun)?;
         let page = core::mem::replace(&mut transfer.page, ERASED);
         let index = transfer.received.saturating_sub(1) / PAGE_BYTES;
         let offset = transfer.slot * SLOT_BYTES + PAGE_BYTES * (1 + index);
@@ -198,8 +208,9 @@ impl<F: Storage + AsRef<[u8]>> TableStore<F> {
         (held == Some(page)).then_some(()).ok_or(TableError::Flash)
     }
 
-    fn states(&self) -> [SlotState; 2] {
-        [0, 1].map(|slot| self.slot(slot).map_or(SlotState::Empty, SlotState::of))
+    /// Examines both slots, with the checksums over all of them.
+    fn examine(&mut self) {
+        self.states = [0, 1].map(|slot| self.slot(slot).map_or(SlotState::Empty, SlotState::of));
     }
 
     fn slot(&self, slot: usize) -> Option<&[u8]> {
