@@ -21,7 +21,7 @@ pub fn run(args: &ReportArgs) -> Result<(), Error> {
     if let Some(twice) = (1..outputs.len()).find(|i| outputs[..*i].contains(&outputs[*i])) {
         return Err(Error::OutputTwice(outputs[twice].clone()));
     }
-    let create = |path: &PathBuf| OutputFile::create(path, &inputs);
+    let create = |path: &PathBuf| OutputFile::create(path, &inputs, args.force.existing());
     let page = create(&args.output)?;
     let json = args.json.as_ref().map(create).transpose()?;
     let csv = args.csv.as_ref().map(create).transpose()?;
@@ -53,7 +53,10 @@ pub fn run(args: &ReportArgs) -> Result<(), Error> {
         files.push(written(csv, &report.csv())?);
     }
     // The files get their names last, so that a command that fails leaves none.
-    Ok(files.into_iter().try_for_each(OutputFile::finish)?)
+    for file in files {
+        terminal::eprint_line(&file.finish()?);
+    }
+    Ok(())
 }
 
 fn written(mut file: OutputFile, text: &str) -> Result<OutputFile, Error> {

@@ -29,7 +29,8 @@ impl Help for proprio_session::Error {
             Self::Session(error) => return error.problem.help(),
             Self::Table { source, .. } => return source.help(),
             Self::Output { .. } => "choose a folder that exists, can be written to and has room",
-            Self::Overwrite(_) | Self::Exists(_) => "give the output another name",
+            Self::Overwrite(_) | Self::RecordingExists(_) => "give the output another name",
+            Self::Exists(_) => "give the output another name, or replace the file with --force",
             Self::OutputKind(_) => "give the output one of these endings",
             Self::SameKind(_) => "copy the file, or give the output another ending",
         };
