@@ -137,7 +137,7 @@ impl Monitor {
     /// Ends the monitor: vents the board, where a page could have driven it, and completes the recording. Returns its path.
     ///
     /// # Errors
-    /// [`Error::File`] of a recording.
+    /// [`Error::File`] and [`Error::RecorderPanicked`] of a recording.
     pub fn finish(self) -> Result<Option<String>, Error> {
         if let (Some(link), Some(_)) = (&self.shared.link, &self.shared.token) {
             // A board that does not answer vents at its own deadline.

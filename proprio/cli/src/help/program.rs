@@ -66,6 +66,10 @@ impl Help for proprio_monitor::Error {
         match self {
             Self::File(error) => error.help(),
             Self::Link(error) => error.help(),
+            Self::RecorderPanicked(_) => {
+                "save it with `proprio recover`, and report the fault, with the message above and the command"
+                    .to_owned()
+            }
             Self::Listen { .. } => "give another with --listen; is a monitor running already?".to_owned(),
             Self::Random(_) => "run the monitor without --allow-control".to_owned(),
         }
