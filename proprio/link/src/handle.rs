@@ -1,13 +1,14 @@
 //! Handle of a link: its state, requests and subscriptions.
 
-use std::sync::Arc;
 use std::sync::mpsc::{Sender, channel};
+use std::sync::{Arc, Weak};
 use std::thread::JoinHandle;
+use std::time::Instant;
 
 use telemetry::Command;
 
 use crate::error::LinkError;
-use crate::requests::RequestError;
+use crate::requests::{Answer, RequestError, TIME_LIMIT};
 use crate::shared::{LinkRequest, LinkState, SharedLink, Subscription};
 use crate::source::Source;
 use crate::worker::Worker;
@@ -56,7 +57,17 @@ impl Link {
     /// # Errors
     /// [`RequestError`]: refused, not answered within two seconds, or interrupted by a restart.
     pub fn request(&self, command: Command) -> Result<(), LinkError> {
-        let (answer, answered) = channel();
+        let asker = Arc::new(());
+        self.request_of(&Arc::downgrade(&asker), command)
+    }
+
+    /// The same for an asker who may leave earlier: once it is dropped, the request is not sent any more.
+    ///
+    /// # Errors
+    /// [`RequestError`].
+    pub fn request_of(&self, asker: &Weak<()>, command: Command) -> Result<(), LinkError> {
+        let (sender, answered) = channel();
+        let answer = Answer { sender, asker: asker.clone(), deadline: Instant::now() + TIME_LIMIT };
         let sent = self.requests.send(LinkRequest::Command(command, answer));
         let outcome = sent.ok().and_then(|()| answered.recv().ok()).unwrap_or(Err(RequestError::Interrupted));
         outcome.map_err(LinkError::Request)
