@@ -11,6 +11,7 @@ use telemetry::SetPressures;
 
 use crate::event::{Event, EventKind};
 use crate::handle::Link;
+use crate::history::ReceivedBytes;
 use crate::shared::Subscription;
 
 /// Recording of a link to a new file, or to standard output.
@@ -33,6 +34,16 @@ impl FileRecorder {
             recorder.attach_table(clock.now(), toml).map_err(failed)?;
         }
         Ok(Self { recorder, path: path.to_owned(), clock })
+    }
+
+    /// Writes the bytes that were received before the first event, so that a replay begins with the state of the board's
+    /// estimator.
+    ///
+    /// # Errors
+    /// [`Error::Output`].
+    pub fn history(&mut self, history: Vec<ReceivedBytes>) -> Result<(), Error> {
+        let written = history.into_iter().try_for_each(|(at, bytes)| self.recorder.history(at, &bytes));
+        self.named(written)
     }
 
     /// Its file.

@@ -8,6 +8,7 @@ use std::time::Instant;
 use telemetry::Command;
 
 use crate::error::LinkError;
+use crate::history::ReceivedBytes;
 use crate::requests::{Answer, RequestError, TIME_LIMIT};
 use crate::shared::{LinkRequest, LinkState, SharedLink, Subscription};
 use crate::source::Source;
@@ -27,9 +28,28 @@ impl Link {
     ///
     /// # Errors
     /// [`LinkError`] where the line cannot be opened the first time.
-    pub fn start(mut source: Box<dyn Source>, table: Option<u32>) -> Result<(Self, Subscription), LinkError> {
+    pub fn start(source: Box<dyn Source>, table: Option<u32>) -> Result<(Self, Subscription), LinkError> {
+        Self::start_with(source, table, SharedLink::default())
+    }
+
+    /// The same for a link of which recordings may begin later: it holds the bytes since the last start of the board's
+    /// estimator, up to 256 MB.
+    ///
+    /// # Errors
+    /// [`LinkError`] where the line cannot be opened the first time.
+    pub fn start_with_history(source: Box<dyn Source>, table: Option<u32>) -> Result<(Self, Subscription), LinkError> {
+        let shared = SharedLink::default();
+        shared.keep_history();
+        Self::start_with(source, table, shared)
+    }
+
+    fn start_with(
+        mut source: Box<dyn Source>,
+        table: Option<u32>,
+        shared: SharedLink,
+    ) -> Result<(Self, Subscription), LinkError> {
         let (name, transport) = source.open()?;
-        let shared = Arc::new(SharedLink::default());
+        let shared = Arc::new(shared);
         let (requests, received) = channel();
         shared.state().port = Some(name.clone());
         let subscription = shared.subscribe();
@@ -43,6 +63,13 @@ impl Link {
     #[must_use]
     pub fn subscribe(&self) -> Subscription {
         self.shared.subscribe()
+    }
+
+    /// Subscribes to all events from now on, and returns the bytes from the last start of the board's estimator until now;
+    /// `None` where they are not all held.
+    #[must_use]
+    pub fn subscribe_with_history(&self) -> (Subscription, Option<Vec<ReceivedBytes>>) {
+        self.shared.subscribe_with_history()
     }
 
     /// Current state of the link.

@@ -8,7 +8,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-use proprio_link::{FileRecorder, Link, Subscription};
+use proprio_link::{FileRecorder, Link, ReceivedBytes, Subscription};
 use proprio_session::{HostClock, HostNs};
 use serde::Serialize;
 
@@ -21,6 +21,8 @@ const CHECK_PERIOD: Duration = Duration::from_millis(50);
 #[derive(Debug, Clone, Serialize)]
 pub(super) struct RecordingProgress {
     pub file: String,
+    /// A replay of it begins with the state of the board's estimator; otherwise it has another until the next tare.
+    pub is_comparable: bool,
     pub samples: u64,
     pub marks: u64,
     /// Events that were dropped because this machine was too slow.
@@ -47,6 +49,7 @@ struct MarkRequest {
 
 #[derive(Debug, Default)]
 struct Counts {
+    is_comparable: bool,
     samples: AtomicU64,
     marks: AtomicU64,
     dropped: AtomicU64,
@@ -58,17 +61,19 @@ impl Recording {
     pub fn begin(link: &Link, folder: &Path, table: Option<&[u8]>, clock: HostClock) -> Result<Self, Error> {
         let path = folder.join(format!("{}.mcap", name(clock.now())));
         let recorder = FileRecorder::create(&path, link, clock, table)?;
-        let events = link.subscribe();
-        Self::start(path, move |marks, counts| Work { recorder, events, marks, counts }.run())
+        let (events, history) = link.subscribe_with_history();
+        let counts = Counts { is_comparable: history.is_some(), ..Counts::default() };
+        Self::start(path, counts, move |marks, counts| Work { recorder, events, marks, counts }.run(history))
     }
 
     /// Starts the thread, which does `work`.
     fn start(
         path: PathBuf,
+        counts: Counts,
         work: impl FnOnce(Receiver<MarkRequest>, Arc<Counts>) -> Result<(), Error> + Send + 'static,
     ) -> Result<Self, Error> {
         let (marks, received) = channel();
-        let counts = Arc::new(Counts::default());
+        let counts = Arc::new(counts);
         let shared = Arc::clone(&counts);
         let run = move || {
             let done = catch_unwind(AssertUnwindSafe(|| work(received, Arc::clone(&shared))));
@@ -89,9 +94,10 @@ impl Recording {
     }
 
     pub fn progress(&self) -> RecordingProgress {
-        let Counts { samples, marks, dropped, failed } = self.counts.as_ref();
+        let Counts { is_comparable, samples, marks, dropped, failed } = self.counts.as_ref();
         RecordingProgress {
             file: self.path.display().to_string(),
+            is_comparable: *is_comparable,
             samples: samples.load(Ordering::Relaxed),
             marks: marks.load(Ordering::Relaxed),
             dropped_events: dropped.load(Ordering::Relaxed),
@@ -128,8 +134,8 @@ struct Work {
 }
 
 impl Work {
-    fn run(mut self) -> Result<(), Error> {
-        let done = self.work();
+    fn run(mut self, history: Option<Vec<ReceivedBytes>>) -> Result<(), Error> {
+        let done = self.work(history.unwrap_or_default());
         if let Err(error) = &done {
             // The page shows the file's name with the reason.
             self.counts.fail(match error {
@@ -140,7 +146,8 @@ impl Work {
         done.and_then(|()| Ok(self.recorder.finish()?))
     }
 
-    fn work(&mut self) -> Result<(), Error> {
+    fn work(&mut self, history: Vec<ReceivedBytes>) -> Result<(), Error> {
+        self.recorder.history(history)?;
         loop {
             match self.events.next(CHECK_PERIOD) {
                 Some(event) => self.recorder.event(&event)?,
@@ -189,12 +196,12 @@ mod tests {
     use std::path::PathBuf;
     use std::sync::atomic::Ordering;
 
-    use super::{HostNs, Recording, name};
+    use super::{Counts, HostNs, Recording, name};
     use crate::error::Error;
 
     #[test]
     fn a_panic_of_the_recorder_is_shown_and_fails_the_recording() {
-        let recording = Recording::start(PathBuf::from("a.mcap"), |marks, _| {
+        let recording = Recording::start(PathBuf::from("a.mcap"), Counts::default(), |marks, _| {
             let _ = marks.recv();
             panic!("a fault, on purpose");
         });
@@ -211,7 +218,7 @@ mod tests {
 
     #[test]
     fn the_progress_at_the_end_is_that_of_the_finished_file() {
-        let recording = Recording::start(PathBuf::from("a.mcap"), |marks, counts| {
+        let recording = Recording::start(PathBuf::from("a.mcap"), Counts::default(), |marks, counts| {
             // The end of the marks is the end of the recording; events that wait are written after it.
             while marks.recv().is_ok() {}
             counts.samples.store(7, Ordering::Relaxed);

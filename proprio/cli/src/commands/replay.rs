@@ -7,7 +7,7 @@ use proprio_analysis::agreement::Comparison;
 use proprio_analysis::check::{Finding, SessionCheck};
 use proprio_analysis::estimates::EstimateWriter;
 use proprio_analysis::metrics::ErrorMetrics;
-use proprio_analysis::replay::{SessionSummary, replay};
+use proprio_analysis::replay::{NotComparable, SessionSummary, replay};
 use proprio_analysis::session_metrics::{AllMetrics, ByMethod, SessionMetrics};
 use proprio_analysis::{Outcome, smooth};
 use proprio_session::recording::HoleTimes;
@@ -105,7 +105,11 @@ fn replay_all<S: FusedOps>(
         } else {
             replay(path, table, progress, visit)
         };
-        let SessionSummary { samples, seconds, ends_with_line, holes, recording } = summary?;
+        let summary = summary?;
+        if summary.not_comparable > 0 {
+            terminal::warn(&format_args!("{}: {}", path.display(), NotComparable(&summary)));
+        }
+        let SessionSummary { samples, seconds, ends_with_line, holes, recording, .. } = summary;
         if !ends_with_line {
             terminal::warn(&format_args!("{}: {LAST_LINE}", path.display()));
         }

@@ -4,6 +4,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use estimator_core::saturations;
+use proprio_analysis::replay::NotComparable;
 use proprio_analysis::report::ReportBuilder;
 use proprio_session::{LAST_LINE, LoadedTable, OutputFile};
 
@@ -30,6 +31,9 @@ pub fn run(args: &ReportArgs) -> Result<(), Error> {
     let mut builder = ReportBuilder::new(&table);
     for path in &args.sessions {
         let summary = builder.add(path, &mut progress)?;
+        if summary.not_comparable > 0 {
+            terminal::warn(&format_args!("{}: {}", path.display(), NotComparable(&summary)));
+        }
         for hole in &summary.holes {
             terminal::warn(&format_args!("{}: {hole}", path.display()));
         }

@@ -82,7 +82,7 @@ fn extract(input: &Path, mut file: OutputFile, has_truth: bool) -> Result<(Outpu
     let (mut encoder, mut holes) = (Encoder::new(), 0);
     for item in Reader::with_summary(source.into_bytes()?, summary) {
         let result = match item.map_err(|error| fail(SessionProblem::Recording(error)))? {
-            Item::Bytes(_, bytes) => file.write_all(&bytes),
+            Item::Bytes(_, bytes) | Item::History(_, bytes) => file.write_all(&bytes),
             Item::Sample(_, sample) => {
                 let mut buffer = [0; MAX_FRAME];
                 let frame = encoder.encode(&Message::Sample(sample), &mut buffer).expect("every sample fits a frame");
