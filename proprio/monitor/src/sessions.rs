@@ -118,7 +118,7 @@ impl Sessions {
         let file = &table.file;
         let segments = file.segments.len();
         let mut reader = SessionReader::open(path, &table.required_columns()?)?;
-        let compiled = table.compile::<Q>(reader.rate_hz(file.rate_hz))?;
+        let compiled = table.compile::<Q>(reader.rate_hz(file.rate_hz)?)?;
         let compiled = compiled.config();
         let mut replica = HostReplica::new(&compiled);
         let mut history = History::new(page_row::names(segments).len());

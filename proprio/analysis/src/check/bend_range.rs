@@ -30,7 +30,7 @@ struct Sensor {
 }
 
 /// The rule.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct BendRange([[Sensor; 2]; MAX_SEGMENTS]);
 
 impl BendRange {

@@ -30,7 +30,7 @@ mod twins;
 
 use std::path::Path;
 
-use proprio_session::{LoadedTable, Progress, Row};
+use proprio_session::{FileDefects, LoadedTable, Progress, RequiredColumns, Row, SessionReader};
 
 pub use finding::{Finding, Kind, Rows, Source};
 
@@ -44,11 +44,16 @@ use self::steps::Steps;
 use self::tare::Tare;
 use self::twins::Twins;
 use crate::error::Error;
-use crate::replay::{SessionRows, SessionSummary};
 
 /// A check of one session, row by row.
 pub struct SessionCheck {
     decoder: Decoder,
+    rules: Rules,
+}
+
+/// The rules, each with what it has seen so far.
+#[derive(Debug, Clone)]
+struct Rules {
     clock: Clock,
     tare: Tare,
     bend_range: BendRange,
@@ -60,43 +65,50 @@ pub struct SessionCheck {
 }
 
 impl SessionCheck {
-    /// A check before the first row.
+    /// A check before the first row, with a table; with an arm description, by the rules that need no map: times, tare, IMUs that
+    /// never change, and IMUs with the same readings.
     ///
     /// # Errors
-    /// [`Error::File`] on an arm description.
+    /// [`Error::File`].
     pub fn new(table: &LoadedTable) -> Result<Self, Error> {
         let decoder = Decoder::new(table)?;
         let segments = table.file.segments.len();
-        Ok(Self {
-            decoder,
+        let rules = Rules {
             clock: Clock::new(table.file.rate_hz),
             tare: Tare::new(&table.file),
             bend_range: BendRange::new(&table.file),
-            frozen: Frozen::new(segments),
+            frozen: Frozen::new(segments, decoder.has_maps()),
             same_imus: SameImus::new(segments),
             new_zero: NewZero::new(),
             steps: Steps::new(segments),
             twins: Twins::new(&table.file),
-        })
+        };
+        Ok(Self { decoder, rules })
     }
 
     /// Checks the next row.
     pub fn update(&mut self, row: &Row) {
         self.decoder.update(row);
-        let frame = &self.decoder.frame;
-        self.clock.update(frame);
-        self.tare.update(frame);
-        self.bend_range.update(frame);
-        self.frozen.update(frame);
-        self.same_imus.update(frame);
-        self.new_zero.update(frame);
-        self.steps.update(frame);
-        self.twins.update(frame);
+        let (frame, rules) = (&self.decoder.frame, &mut self.rules);
+        rules.clock.update(frame);
+        rules.tare.update(frame);
+        rules.bend_range.update(frame);
+        rules.frozen.update(frame);
+        rules.same_imus.update(frame);
+        rules.new_zero.update(frame);
+        rules.steps.update(frame);
+        rules.twins.update(frame);
     }
 
-    /// The findings, after the last row.
+    /// The findings in the rows so far.
     #[must_use]
-    pub fn finish(mut self) -> Vec<Finding> {
+    pub fn findings(&self) -> Vec<Finding> {
+        self.rules.clone().finish()
+    }
+}
+
+impl Rules {
+    fn finish(mut self) -> Vec<Finding> {
         let mut findings = Vec::new();
         // The other rules take times for seconds.
         if !self.clock.finish(&mut findings) {
@@ -114,19 +126,35 @@ impl SessionCheck {
     }
 }
 
-/// Checks a session.
+/// A session that was checked.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CheckedSession {
+    /// Number of rows.
+    pub samples: u64,
+    /// The file's defects, past which it was read.
+    pub defects: FileDefects,
+    /// The findings.
+    pub findings: Vec<Finding>,
+}
+
+/// Checks a session with a table, or with an arm description as [`SessionCheck::new`] says.
 ///
 /// # Errors
 /// Errors of the session and the table.
-pub fn check(
-    session: &Path,
-    table: &LoadedTable,
-    progress: &mut dyn Progress,
-) -> Result<(SessionSummary, Vec<Finding>), Error> {
+pub fn check(session: &Path, table: &LoadedTable, progress: &mut dyn Progress) -> Result<CheckedSession, Error> {
     let mut check = SessionCheck::new(table)?;
-    let mut rows = SessionRows::open(session, table, "checking", progress)?;
-    while let Some(row) = rows.next_row()? {
+    let needs = if check.decoder.has_maps() {
+        table.required_columns()?
+    } else {
+        RequiredColumns { truth: false, ..RequiredColumns::of_calibration(&table.file) }
+    };
+    let mut reader = SessionReader::open(session, &needs)?;
+    let work = format!("checking {}", session.display());
+    let mut samples = 0;
+    while let Some(row) = reader.next_row()? {
         check.update(&row);
+        samples += 1;
+        progress.advance(&work, reader.progress());
     }
-    Ok((rows.summary(table)?, check.finish()))
+    Ok(CheckedSession { samples, defects: reader.defects(), findings: check.findings() })
 }

@@ -30,7 +30,7 @@ struct Jumps {
 }
 
 /// The rule.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct NewZero([Jumps; MAX_SEGMENTS]);
 
 impl NewZero {

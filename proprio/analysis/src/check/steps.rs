@@ -63,7 +63,7 @@ struct At {
 }
 
 /// The rule.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct Steps {
     segments: usize,
     /// IMUs that were not read, or have jumped, since the last step.

@@ -22,7 +22,7 @@ struct Segment {
 const EMPTY: Segment = Segment { sum: 0.0, count: 0.0, first_heading: f64::NAN, range: [0.0; 2] };
 
 /// The rule.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct Tare {
     seconds: f64,
     reference: [f64; MAX_SEGMENTS],

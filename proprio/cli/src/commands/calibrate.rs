@@ -3,9 +3,10 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use proprio_calibration::calibrate::{CalibrationOptions, HysteresisMode, MapMode, calibrate};
+use proprio_calibration::calibrate::{Calibration, CalibrationOptions, HysteresisMode, MapMode, calibrate};
 use proprio_session::{LoadedTable, OutputFile};
 
+use super::warnings::{checked, warn_of_defects};
 use crate::args::{CalibrateArgs, HysteresisName, MapName};
 use crate::error::Error;
 use crate::progress_bar::Bar;
@@ -17,7 +18,14 @@ pub fn run(args: &CalibrateArgs) -> Result<(), Error> {
     let inputs: Vec<&Path> = args.sessions.iter().chain([&args.arm]).map(PathBuf::as_path).collect();
     let mut file = OutputFile::create(&args.output, &inputs)?;
     let options = CalibrationOptions { maps: args.map.into(), hysteresis: args.hysteresis.into() };
-    let calibration = calibrate(&args.sessions, &arm, options, &mut Bar::new())?;
+    let calibration = calibrate(&args.sessions, &arm, options, &mut Bar::new());
+    let calibration = checked(calibration, &args.sessions, |made: Option<&Calibration>| match made {
+        Some(Calibration { table, .. }) => LoadedTable { file: table.clone(), path: &args.output },
+        None => arm,
+    })?;
+    for (path, defects) in args.sessions.iter().zip(&calibration.defects) {
+        warn_of_defects(path, defects);
+    }
     let names: Vec<String> = args.sessions.iter().map(|session| session.display().to_string()).collect();
     for warning in &calibration.warnings {
         terminal::warn(&format_args!("{}: {warning}", names.join(", ")));

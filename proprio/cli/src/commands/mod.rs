@@ -17,6 +17,7 @@ mod report;
 mod simulate;
 mod status;
 mod tune;
+mod warnings;
 
 use std::process::ExitCode;
 

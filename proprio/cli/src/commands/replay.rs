@@ -4,18 +4,17 @@ use std::path::{Path, PathBuf};
 
 use estimator_core::{FusedOps, Q, saturations};
 use proprio_analysis::agreement::Comparison;
-use proprio_analysis::check::{Finding, SessionCheck};
+use proprio_analysis::check::SessionCheck;
 use proprio_analysis::estimates::EstimateWriter;
 use proprio_analysis::metrics::ErrorMetrics;
 use proprio_analysis::replay::{SessionSummary, replay};
 use proprio_analysis::session_metrics::{AllMetrics, ByMethod, SessionMetrics};
 use proprio_analysis::{Outcome, smooth};
-use proprio_session::recording::HoleTimes;
-use proprio_session::{LAST_LINE, LoadedTable, OutputFile, Row};
+use proprio_session::{LoadedTable, OutputFile, Row};
 
+use super::warnings::{warn_of_defects, warn_of_findings};
 use crate::args::ReplayArgs;
 use crate::error::Error;
-use crate::help::Help;
 use crate::progress_bar::Bar;
 use crate::terminal;
 use crate::text_tables;
@@ -46,16 +45,6 @@ pub fn run(args: &ReplayArgs) -> Result<(), Error> {
     Ok(out.map_or(Ok(()), EstimateWriter::finish)?)
 }
 
-/// Warns of the damaged parts of a recording.
-fn warn_of_holes(path: &Path, holes: &[HoleTimes]) {
-    for hole in holes {
-        terminal::warn(&format_args!(
-            "{}: {hole}; what the board has estimated behind it is compared from the next tare on",
-            path.display()
-        ));
-    }
-}
-
 /// Reports the agreement of the board's estimates with the replay.
 fn report_agreement(path: &Path, recorded: &Comparison, firmware: Option<&str>) {
     let line = format!("{}: {recorded}", path.display());
@@ -65,11 +54,6 @@ fn report_agreement(path: &Path, recorded: &Comparison, firmware: Option<&str>) 
         // Another release may differ in the last bits.
         terminal::warn(&format_args!("{line}; the board ran firmware {}", firmware.unwrap_or("of an unknown version")));
     }
-}
-
-/// Reports a finding of the session check with its remedy.
-fn warn_of(path: &Path, finding: &Finding) {
-    terminal::warn(&format_args!("{}: {finding}; {}", path.display(), finding.help()));
 }
 
 /// Compares the board's output of a row.
@@ -102,12 +86,15 @@ fn replay_all<S: FusedOps>(
         } else {
             replay(path, table, progress, visit)
         };
-        let SessionSummary { samples, seconds, ends_with_line, holes, recording } = summary?;
-        if !ends_with_line {
-            terminal::warn(&format_args!("{}: {LAST_LINE}", path.display()));
+        let SessionSummary { samples, seconds, defects, recording } = summary?;
+        warn_of_defects(path, &defects);
+        warn_of_findings(path, &check.findings());
+        if !defects.holes.is_empty() && compare.is_some() {
+            terminal::warn(&format_args!(
+                "{}: the board's estimates behind a damaged part are compared from the next tare on",
+                path.display()
+            ));
         }
-        warn_of_holes(path, &holes);
-        check.finish().iter().for_each(|finding| warn_of(path, finding));
         let recorded = recording.filter(|_| compare.is_some()).map(|recording| {
             comparison.table_matches = recording.table_matches;
             let comparison = comparison.of(recording.recorded_by);

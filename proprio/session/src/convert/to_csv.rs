@@ -38,7 +38,7 @@ pub fn write(
     if estimates > 0 {
         left_out.push(format!("the board's {estimates} estimates are left out; `proprio replay` makes them again"));
     }
-    left_out.extend(reader.holes().iter().map(HoleTimes::to_string));
+    left_out.extend(reader.defects().holes.iter().map(HoleTimes::to_string));
     Ok((file, left_out))
 }
 
