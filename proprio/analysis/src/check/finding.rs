@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use proprio_session::SENSOR_NAMES;
 use serde::Serialize;
 
 use super::frame::Frame;
@@ -24,6 +25,13 @@ pub enum Source {
         segment: usize,
         /// The second segment.
         other: usize,
+    },
+    /// A bend sensor of each of two segments: their places as in [`Self::Bend`].
+    TwoPlugs {
+        /// The segments.
+        segments: [usize; 2],
+        /// The places.
+        places: [usize; 2],
     },
     /// All bend sensors.
     AllBend,
@@ -49,7 +57,10 @@ impl fmt::Display for Source {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Time => f.write_str("time_s"),
-            Self::Bend { segment, place } => write!(f, "bend{segment}{}", ["a", "b"][*place]),
+            Self::Bend { segment, place } => write!(f, "bend{segment}{}", SENSOR_NAMES[*place]),
+            Self::TwoPlugs { segments: [segment, other], places: [place, of] } => {
+                write!(f, "bend{segment}{} and bend{other}{}", SENSOR_NAMES[*place], SENSOR_NAMES[*of])
+            }
             Self::TwoBends { segment, other } => write!(f, "bend{segment} and bend{other}"),
             Self::AllBend => f.write_str("all bend sensors"),
             Self::Imu { segment } => write!(f, "imu{segment}"),
@@ -129,6 +140,7 @@ impl Finding {
         match self.sensor {
             Source::Bend { segment, .. } => segment == number,
             Source::TwoBends { segment, other } => segment == number || other == number,
+            Source::TwoPlugs { segments, .. } => segments.contains(&number),
             Source::AllBend => true,
             _ => false,
         }
@@ -145,9 +157,37 @@ impl Finding {
     }
 }
 
+/// Factors of the counts by another ADC, and the reason.
+const COUNTS: [(f64, &str); 6] = [
+    (1.0 / 16.0, "8 bits in place of 12"),
+    (1.0 / 4.0, "10 bits in place of 12"),
+    (1.0 / 2.0, "11 bits in place of 12"),
+    (3.3 / 5.0, "a reference of 5 V in place of 3.3 V"),
+    (5.0 / 3.3, "a reference of 3.3 V in place of 5 V"),
+    (4.0, "14 bits in place of 12"),
+];
+/// Tolerance of such a factor, which is found by sensors that drift.
+const TOLERANCE: f64 = 0.08;
+
+/// The reason of a factor of the counts, if it is known.
+fn counts_reason(factor: f64) -> Option<&'static str> {
+    COUNTS.iter().find(|(known, _)| (factor / known - 1.0).abs() < TOLERANCE).map(|(_, reason)| *reason)
+}
+
 /// True where a finding is about the bend sensors of a segment, from 1.
 pub(super) fn is_bend_blamed(findings: &[Finding], number: usize) -> bool {
     findings.iter().any(|finding| finding.is_about_bend(number))
+}
+
+/// True for a bend sensor whose plug is exchanged.
+pub(super) fn is_exchanged(findings: &[Finding], sensor: Source) -> bool {
+    findings.iter().any(|finding| match (finding.sensor, sensor) {
+        (Source::TwoBends { segment, other }, Source::Bend { segment: of, .. }) => segment == of || other == of,
+        (Source::TwoPlugs { segments, places }, Source::Bend { segment, place }) => {
+            (0..2).any(|k| (segments[k], places[k]) == (segment, place))
+        }
+        _ => false,
+    })
 }
 
 /// True where a finding is about the IMU of a segment, from 1.
@@ -163,6 +203,8 @@ pub enum Kind {
     OutsideMap,
     /// Bend readings that are all below 1024 counts, as those of a 10-bit ADC are; largest reading, counts.
     TenBits,
+    /// The counts of all bend sensors are those of the table times a factor, the figure.
+    Counts,
     /// Bend readings at either end of the ADC: open or shorted; share, %.
     Rail,
     /// The reading never changes while other sensors move; range of the motion, deg.
@@ -207,6 +249,10 @@ impl fmt::Display for Finding {
         match kind {
             Kind::OutsideMap => write!(f, "{figure:.1} % of the readings are outside the voltages of the table's map"),
             Kind::TenBits => write!(f, "no reading is above {figure:.0} counts of 4095, as from a 10-bit ADC"),
+            Kind::Counts => {
+                write!(f, "the counts are {figure:.3} times those of the table")?;
+                counts_reason(*figure).map_or(Ok(()), |reason| write!(f, ", as with {reason}"))
+            }
             Kind::Rail => write!(f, "{figure:.1} % of the readings are at an end of the ADC: open or shorted"),
             Kind::Constant => write!(f, "the reading never changes while the other sensors move by {figure:.0}°"),
             Kind::Frozen => write!(f, "the last value is repeated while the other sensors move by {figure:.0}°"),

@@ -76,6 +76,11 @@ impl Decoder {
         Ok(Self { is_table, maps, last: [0.0; MAX_SEGMENTS], last_bend: unknown, frame })
     }
 
+    /// Bend angle of every reading of a sensor; `None` without a map.
+    pub fn angles(&self, segment: usize, place: usize) -> Option<&[f32]> {
+        self.maps[segment][place].as_deref()
+    }
+
     /// True with a table, false with an arm description.
     pub fn has_maps(&self) -> bool {
         self.is_table

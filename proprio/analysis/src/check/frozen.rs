@@ -127,11 +127,8 @@ impl Frozen {
                     continue;
                 }
                 let sensor = source(i + 1, place);
-                let is_at_rail = findings.iter().any(|finding| finding.sensor == sensor && finding.kind == Kind::Rail);
-                if !is_at_rail {
-                    let kind = if repeats.changes == 0 { Kind::Constant } else { Kind::Frozen };
-                    findings.push(Finding { sensor, rows: repeats.frozen, kind, figure: repeats.motion });
-                }
+                let kind = if repeats.changes == 0 { Kind::Constant } else { Kind::Frozen };
+                findings.push(Finding { sensor, rows: repeats.frozen, kind, figure: repeats.motion });
             }
         }
     }

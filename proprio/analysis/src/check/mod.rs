@@ -11,6 +11,7 @@
 //! | `clock.rs` | unit of the times, equal times, gaps |
 //! | `tare.rs` | a tare that is bent or moves |
 //! | `bend_range.rs` | bend readings outside the voltages of the map |
+//! | `plugs.rs` | exchanged plugs of bend sensors, counts of another ADC |
 //! | `frozen.rs` | values that are repeated while other sensors move |
 //! | `same_imus.rs` | two IMUs with the same readings |
 //! | `new_zero.rs` | IMUs that continue from another zero, or read 0 |
@@ -23,6 +24,7 @@ mod finding;
 mod frame;
 mod frozen;
 mod new_zero;
+mod plugs;
 mod same_imus;
 mod steps;
 mod tare;
@@ -39,6 +41,7 @@ use self::clock::Clock;
 use self::frame::Decoder;
 use self::frozen::Frozen;
 use self::new_zero::NewZero;
+use self::plugs::Plugs;
 use self::same_imus::SameImus;
 use self::steps::Steps;
 use self::tare::Tare;
@@ -80,7 +83,7 @@ impl SessionCheck {
             frozen: Frozen::new(segments, decoder.has_maps()),
             same_imus: SameImus::new(segments),
             new_zero: NewZero::new(),
-            steps: Steps::new(segments),
+            steps: Steps::new(segments, Plugs::new(&table.file, &decoder)),
             twins: Twins::new(&table.file),
         };
         Ok(Self { decoder, rules })
@@ -115,9 +118,10 @@ impl Rules {
             return findings;
         }
         // A rule leaves out the sensors that an earlier one has found.
-        self.bend_range.finish(&mut findings);
         self.frozen.finish(&mut findings);
         self.same_imus.finish(&mut findings);
+        self.steps.plugs.finish(&mut findings);
+        self.bend_range.finish(&mut findings);
         self.steps.finish(&mut findings);
         self.new_zero.finish(&mut findings);
         self.tare.finish(&mut findings);

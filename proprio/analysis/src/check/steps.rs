@@ -9,6 +9,7 @@ use calibration_tables::MAX_SEGMENTS;
 
 use super::finding::{Finding, Kind, Rows, Source, is_bend_blamed, is_imu_blamed};
 use super::frame::{Frame, difference};
+use super::plugs::Plugs;
 
 /// Shortest and longest interval of a step, s. Sessions at less than 1 Hz have their own interval.
 const INTERVAL_S: f64 = 0.999;
@@ -60,18 +61,20 @@ struct At {
     heading: [f64; MAX_SEGMENTS],
     theta: [f64; MAX_SEGMENTS],
     bend: [[f64; 2]; MAX_SEGMENTS],
+    counts: [[f64; 2]; MAX_SEGMENTS],
 }
 
 /// The rule.
 #[derive(Debug, Clone)]
 pub(super) struct Steps {
     segments: usize,
+    pub plugs: Plugs,
     /// IMUs that were not read, or have jumped, since the last step.
     broken: [bool; MAX_SEGMENTS],
     at: Option<At>,
     rows: Rows,
-    /// Largest heading as it was read, deg.
-    largest: f64,
+    /// Largest heading of each IMU as it was read, deg.
+    largest: [f64; MAX_SEGMENTS],
     /// Steps of IMUs by steps of IMUs, of IMUs by bend angles, of bend angles.
     imu_imu: Moments,
     imu_bend: Moments,
@@ -99,6 +102,11 @@ enum Fault {
 }
 
 impl Wiring {
+    fn in_order() -> Self {
+        let own = std::array::from_fn(|i| i);
+        Self { imu: own, gain: [1.0; MAX_SEGMENTS], bend: own, bend_sign: [1.0; MAX_SEGMENTS] }
+    }
+
     fn with(mut self, fault: Fault) -> Self {
         match fault {
             Fault::Gain(None, gain) => self.gain.iter_mut().for_each(|own| *own *= gain),
@@ -112,14 +120,15 @@ impl Wiring {
 }
 
 impl Steps {
-    pub fn new(segments: usize) -> Self {
+    pub fn new(segments: usize, plugs: Plugs) -> Self {
         let moments = Moments { sum: ZERO, count: ZERO };
         Self {
             segments,
+            plugs,
             broken: [false; MAX_SEGMENTS],
             at: None,
             rows: Rows::default(),
-            largest: 0.0,
+            largest: [0.0; MAX_SEGMENTS],
             imu_imu: moments.clone(),
             imu_bend: moments.clone(),
             bend_bend: moments,
@@ -129,8 +138,11 @@ impl Steps {
 
     pub fn update(&mut self, frame: &Frame) {
         self.rows.add(frame);
-        self.largest = frame.reading.iter().copied().fold(self.largest, f64::max);
-        let at = At { time_s: frame.time_s, heading: frame.heading, theta: frame.theta, bend: frame.bend };
+        self.plugs.update(frame);
+        self.largest.iter_mut().zip(frame.reading).for_each(|(largest, reading)| *largest = largest.max(reading));
+        let counts = frame.counts.map(|pair| pair.map(|counts| counts.map_or(f64::NAN, f64::from)));
+        let Frame { time_s, heading, theta, bend, .. } = *frame;
+        let at = At { time_s, heading, theta, bend, counts };
         let Some(from) = self.at.as_ref().filter(|_| !frame.starts) else {
             self.at = Some(at);
             return;
@@ -151,6 +163,9 @@ impl Steps {
         let heading: [f64; MAX_SEGMENTS] =
             std::array::from_fn(|i| if self.broken[i] { f64::NAN } else { to.heading[i] - from.heading[i] });
         let theta: [f64; MAX_SEGMENTS] = std::array::from_fn(|i| to.theta[i] - from.theta[i]);
+        let by_imu = std::array::from_fn(|i| difference(&heading, i));
+        let counts = std::array::from_fn(|i| [0, 1].map(|place| to.counts[i][place] - from.counts[i][place]));
+        self.plugs.add(&counts, &by_imu);
         for i in 0..self.segments {
             for j in 0..self.segments {
                 self.imu_bend.add(i, j, heading[i] * theta[j]);
@@ -159,7 +174,7 @@ impl Steps {
                     self.bend_bend.add(i, j, theta[i] * theta[j]);
                 }
             }
-            let by_imu = difference(&heading, i);
+            let by_imu = by_imu[i];
             let [a, b] = [0, 1].map(|place| to.bend[i][place] - from.bend[i][place]);
             let products = [a * a, b * b, a * by_imu, b * by_imu, by_imu * by_imu];
             for (sum, product) in self.places[i].iter_mut().zip(products) {
@@ -168,8 +183,8 @@ impl Steps {
         }
     }
 
-    pub fn finish(self, findings: &mut Vec<Finding>) {
-        Judge::new(&self, findings).run(&self, findings);
+    pub fn finish(&self, findings: &mut Vec<Finding>) {
+        Judge::new(self, findings).run(self, findings);
     }
 }
 
@@ -255,10 +270,32 @@ impl Judge {
     }
 
     fn run(&self, steps: &Steps, findings: &mut Vec<Finding>) {
+        self.radians(steps, findings);
+        if findings.iter().any(|found| found.kind == Kind::Radians) {
+            return;
+        }
         self.lone_sensors(steps, findings);
         let judged: Vec<usize> = self.segments.iter().copied().filter(|i| !is_bend_blamed(findings, i + 1)).collect();
         let wiring = self.explain(steps, &judged, findings);
         self.report_unexplained(steps, &wiring, &self.bad(&judged, &wiring), findings);
+    }
+
+    /// Finds IMUs in radians: no heading is above a whole turn in them, and the segments on either side of the IMU disagree.
+    fn radians(&self, steps: &Steps, findings: &mut Vec<Finding>) {
+        let in_order = Wiring::in_order();
+        let disagrees = |i: usize| self.segments.contains(&i) && self.misfit(&in_order, i) > MISFIT;
+        let is_small = |i: usize| (f64::MIN_POSITIVE..=WHOLE_TURN_RAD).contains(&steps.largest[i]);
+        let imus: Vec<usize> =
+            (0..steps.segments).filter(|i| is_small(*i) && (disagrees(*i) || disagrees(i + 1))).collect();
+        let figure = |imus: &[usize]| imus.iter().map(|i| steps.largest[*i]).fold(0.0, f64::max);
+        let (rows, kind) = (steps.rows, Kind::Radians);
+        if imus.len() > 1 && (0..steps.segments).all(is_small) {
+            findings.push(Finding { sensor: Source::AllImus, rows, kind, figure: figure(&imus) });
+        } else {
+            let found =
+                |i: &usize| Finding { sensor: Source::Imu { segment: i + 1 }, rows, kind, figure: figure(&[*i]) };
+            findings.extend(imus.iter().map(found));
+        }
     }
 
     /// The segments of these whose sensors disagree.
@@ -268,9 +305,7 @@ impl Judge {
 
     /// Supposes the fault that explains most, as long as one explains a segment; returns the wiring with all of them.
     fn explain(&self, steps: &Steps, judged: &[usize], findings: &mut Vec<Finding>) -> Wiring {
-        let in_order = std::array::from_fn(|i| i);
-        let mut wiring =
-            Wiring { imu: in_order, gain: [1.0; MAX_SEGMENTS], bend: in_order, bend_sign: [1.0; MAX_SEGMENTS] };
+        let mut wiring = Wiring::in_order();
         loop {
             let now = self.bad(judged, &wiring);
             if now.is_empty() {
@@ -301,12 +336,8 @@ impl Judge {
             let [square, product] = self.sum_by_imus(wiring, bad);
             let bend: f64 = bad.iter().map(|i| self.bend_bend[*i][*i]).sum();
             let correlation = 100.0 * product / (square * bend).sqrt().max(f64::MIN_POSITIVE);
-            let (kind, figure) = if steps.largest <= WHOLE_TURN_RAD {
-                (Kind::Radians, steps.largest)
-            } else {
-                (Kind::Unrelated, correlation)
-            };
-            findings.push(Finding { sensor: Source::AllImus, rows: steps.rows, kind, figure });
+            let (rows, kind) = (steps.rows, Kind::Unrelated);
+            findings.push(Finding { sensor: Source::AllImus, rows, kind, figure: correlation });
             return;
         }
         for i in bad {

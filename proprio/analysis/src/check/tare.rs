@@ -21,6 +21,13 @@ struct Segment {
 
 const EMPTY: Segment = Segment { sum: 0.0, count: 0.0, first_heading: f64::NAN, range: [0.0; 2] };
 
+/// Bend angles of the reference pose, deg.
+pub(super) fn reference_angles(table: &ArmFile) -> [f64; MAX_SEGMENTS] {
+    let mut headings = [0.0; MAX_SEGMENTS];
+    headings.iter_mut().zip(&table.tare.heading_deg).for_each(|(heading, given)| *heading = *given);
+    std::array::from_fn(|i| difference(&headings, i))
+}
+
 /// The rule.
 #[derive(Debug, Clone)]
 pub(super) struct Tare {
@@ -34,11 +41,9 @@ pub(super) struct Tare {
 
 impl Tare {
     pub fn new(table: &ArmFile) -> Self {
-        let mut headings = [0.0; MAX_SEGMENTS];
-        headings.iter_mut().zip(&table.tare.heading_deg).for_each(|(heading, given)| *heading = *given);
         Self {
             seconds: table.tare.seconds,
-            reference: std::array::from_fn(|i| difference(&headings, i)),
+            reference: reference_angles(table),
             ends_s: f64::NEG_INFINITY,
             rows: Rows::default(),
             segments: [EMPTY; MAX_SEGMENTS],

@@ -10,6 +10,9 @@ impl Help for Finding {
             (Kind::OutsideMap, _) => {
                 "check the sensor, its divider and the ADC's reference (3.3 V), and that the table is that of this arm and these plugs"
             }
+            (Kind::Counts, _) => {
+                "check the ADC's reference and its bits, and that the table is that of this arm; or multiply the counts by the factor's reciprocal"
+            }
             (Kind::TenBits, _) => "record with 12 bits (analogReadResolution(12)), or multiply the counts by 4",
             (Kind::Rail, _) => "check the sensor's wires and its divider; leave the cells of a dead sensor empty",
             (Kind::Constant | Kind::Frozen, _) => {
@@ -26,7 +29,9 @@ impl Help for Finding {
             (Kind::Scale | Kind::Radians, _) => {
                 "check the unit: degrees in _deg, radians in _rad, quaternions as w, x, y, z"
             }
-            (Kind::Exchanged, Source::TwoBends { .. }) => "exchange the two plugs, or the two columns",
+            (Kind::Exchanged, Source::TwoBends { .. } | Source::TwoPlugs { .. }) => {
+                "exchange the two plugs, or the two columns"
+            }
             (Kind::Exchanged, _) => "exchange the two multiplexer channels, or the two columns",
             (Kind::Unrelated, Source::Bend { .. }) => {
                 "check the sensor's mount and wires, and that the table is that of this arm"
