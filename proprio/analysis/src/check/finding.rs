@@ -222,6 +222,12 @@ pub enum Kind {
     Scale,
     /// No heading is above a whole turn in radians, and the steps do not fit; largest heading.
     Radians,
+    /// The headings by quaternions as x, y, z, w follow the bend sensors, those as w, x, y, z do not; correlation, %.
+    QuaternionOrder,
+    /// The IMU's x axis is not level, so that it has no good heading; elevation of the axis, deg.
+    OnItsSide,
+    /// The table's `tare.seconds` is 0, by which headings are absolute, and the IMUs' are not; largest angle from the bend sensors, deg.
+    NotAbsolute,
     /// The IMU's steps are those of another segment; share of their variance that the exchange explains, %.
     Exchanged,
     /// The steps of the sensor are not those of the other sensors; correlation, %.
@@ -266,6 +272,19 @@ impl fmt::Display for Finding {
             Kind::Radians => write!(f, "no heading is above {figure:.3}°, as from radians in a column of degrees"),
             Kind::Exchanged => write!(f, "each follows the segment of the other ({figure:.0} % explained)"),
             Kind::Unrelated => write!(f, "the steps are not those of the other sensors (correlation {figure:.0} %)"),
+            Kind::QuaternionOrder => {
+                write!(
+                    f,
+                    "read as x, y, z, w the quaternions follow the bend sensors ({figure:.0} %), as w, x, y, z not"
+                )
+            }
+            Kind::OnItsSide => {
+                write!(f, "the IMU is on its side: its x axis is {figure:.0}° from level, expected about 0°")
+            }
+            Kind::NotAbsolute => write!(
+                f,
+                "the table has tare.seconds = 0, by which headings are absolute; these are up to {figure:.0}° from the bend sensors"
+            ),
             Kind::NewZero => {
                 write!(f, "the heading continues {figure:.0}° off, which the bend sensors do not show: another zero")
             }

@@ -1,7 +1,7 @@
 //! Readings of a row as angles, which the rules share. An unknown angle is NaN, with which no comparison is true.
 
 use calibration_tables::MAX_SEGMENTS;
-use estimator_core::{BendMap, BendSensorConfig, Phase};
+use estimator_core::{BendMap, BendSensorConfig, ImuReading, Phase};
 use proprio_session::{Error, LoadedTable, Row};
 
 /// Readings of an ADC of 12 bits.
@@ -18,6 +18,7 @@ pub(super) struct Frame {
     pub row: u64,
     pub time_s: f64,
     pub counts: [[Option<u16>; 2]; MAX_SEGMENTS],
+    pub imus: [Option<ImuReading>; MAX_SEGMENTS],
     pub headings: [Option<Phase>; MAX_SEGMENTS],
     /// Bend angle by each sensor.
     pub bend: [[f64; 2]; MAX_SEGMENTS],
@@ -64,6 +65,7 @@ impl Decoder {
             row: 0,
             time_s: 0.0,
             counts: [[None; 2]; MAX_SEGMENTS],
+            imus: [None; MAX_SEGMENTS],
             headings: [None; MAX_SEGMENTS],
             bend: [[f64::NAN; 2]; MAX_SEGMENTS],
             theta: unknown,
@@ -92,6 +94,7 @@ impl Decoder {
         frame.row += 1;
         frame.time_s = row.sample.time_us as f64 / 1e6;
         frame.starts = row.starts;
+        frame.imus = row.sample.imu;
         let mut sum = 0.0;
         for (i, map) in maps.iter().enumerate() {
             frame.counts[i] = row.sample.bend[i];

@@ -15,7 +15,8 @@
 //! | `frozen.rs` | values that are repeated while other sensors move |
 //! | `same_imus.rs` | two IMUs with the same readings |
 //! | `new_zero.rs` | IMUs that continue from another zero, or read 0 |
-//! | `steps.rs` | steps of the IMUs against those of the bend sensors |
+//! | `steps.rs`, `wiring.rs` | steps of the IMUs against those of the bend sensors |
+//! | `quaternions.rs` | quaternions in another order, IMUs on their side |
 //! | `twins.rs` | a bend sensor that leaves its twin and the IMU |
 
 mod bend_range;
@@ -25,10 +26,12 @@ mod frame;
 mod frozen;
 mod new_zero;
 mod plugs;
+mod quaternions;
 mod same_imus;
 mod steps;
 mod tare;
 mod twins;
+mod wiring;
 
 use std::path::Path;
 

@@ -6,10 +6,13 @@
 //! equal steps, 1 for unrelated ones, 2 for opposite ones.
 
 use calibration_tables::MAX_SEGMENTS;
+use estimator_core::ImuReading;
 
 use super::finding::{Finding, Kind, Rows, Source, is_bend_blamed, is_imu_blamed};
 use super::frame::{Frame, difference};
 use super::plugs::Plugs;
+use super::quaternions::Quaternions;
+use super::wiring::{Fault, Wiring};
 
 /// Shortest and longest interval of a step, s. Sessions at less than 1 Hz have their own interval.
 const INTERVAL_S: f64 = 0.999;
@@ -62,6 +65,8 @@ struct At {
     theta: [f64; MAX_SEGMENTS],
     bend: [[f64; 2]; MAX_SEGMENTS],
     counts: [[f64; 2]; MAX_SEGMENTS],
+    imus: [Option<ImuReading>; MAX_SEGMENTS],
+    bend_heading: [f64; MAX_SEGMENTS],
 }
 
 /// The rule.
@@ -69,6 +74,7 @@ struct At {
 pub(super) struct Steps {
     segments: usize,
     pub plugs: Plugs,
+    quaternions: Quaternions,
     /// IMUs that were not read, or have jumped, since the last step.
     broken: [bool; MAX_SEGMENTS],
     at: Option<At>,
@@ -83,48 +89,13 @@ pub(super) struct Steps {
     places: [[f64; 5]; MAX_SEGMENTS],
 }
 
-/// Wiring of the IMUs and of the segments' bend sensors.
-#[derive(Debug, Clone, Copy)]
-struct Wiring {
-    imu: [usize; MAX_SEGMENTS],
-    gain: [f64; MAX_SEGMENTS],
-    bend: [usize; MAX_SEGMENTS],
-    bend_sign: [f64; MAX_SEGMENTS],
-}
-
-/// A supposed fault.
-#[derive(Debug, Clone, Copy)]
-enum Fault {
-    Gain(Option<usize>, f64),
-    Imus(usize, usize),
-    Bends(usize, usize),
-    BendSign(usize),
-}
-
-impl Wiring {
-    fn in_order() -> Self {
-        let own = std::array::from_fn(|i| i);
-        Self { imu: own, gain: [1.0; MAX_SEGMENTS], bend: own, bend_sign: [1.0; MAX_SEGMENTS] }
-    }
-
-    fn with(mut self, fault: Fault) -> Self {
-        match fault {
-            Fault::Gain(None, gain) => self.gain.iter_mut().for_each(|own| *own *= gain),
-            Fault::Gain(Some(i), gain) => self.gain[i] *= gain,
-            Fault::Imus(i, j) => self.imu.swap(i, j),
-            Fault::Bends(i, j) => self.bend.swap(i, j),
-            Fault::BendSign(i) => self.bend_sign[i] = -self.bend_sign[i],
-        }
-        self
-    }
-}
-
 impl Steps {
     pub fn new(segments: usize, plugs: Plugs) -> Self {
         let moments = Moments { sum: ZERO, count: ZERO };
         Self {
             segments,
             plugs,
+            quaternions: Quaternions::new(),
             broken: [false; MAX_SEGMENTS],
             at: None,
             rows: Rows::default(),
@@ -141,8 +112,8 @@ impl Steps {
         self.plugs.update(frame);
         self.largest.iter_mut().zip(frame.reading).for_each(|(largest, reading)| *largest = largest.max(reading));
         let counts = frame.counts.map(|pair| pair.map(|counts| counts.map_or(f64::NAN, f64::from)));
-        let Frame { time_s, heading, theta, bend, .. } = *frame;
-        let at = At { time_s, heading, theta, bend, counts };
+        let Frame { time_s, heading, theta, bend, imus, bend_heading, .. } = *frame;
+        let at = At { time_s, heading, theta, bend, counts, imus, bend_heading };
         let Some(from) = self.at.as_ref().filter(|_| !frame.starts) else {
             self.at = Some(at);
             return;
@@ -166,6 +137,8 @@ impl Steps {
         let by_imu = std::array::from_fn(|i| difference(&heading, i));
         let counts = std::array::from_fn(|i| [0, 1].map(|place| to.counts[i][place] - from.counts[i][place]));
         self.plugs.add(&counts, &by_imu);
+        let bend_heading = std::array::from_fn(|i| to.bend_heading[i] - from.bend_heading[i]);
+        self.quaternions.add(&from.imus, &to.imus, &bend_heading);
         for i in 0..self.segments {
             for j in 0..self.segments {
                 self.imu_bend.add(i, j, heading[i] * theta[j]);
@@ -184,6 +157,7 @@ impl Steps {
     }
 
     pub fn finish(&self, findings: &mut Vec<Finding>) {
+        self.quaternions.finish(self.rows, findings);
         Judge::new(self, findings).run(self, findings);
     }
 }
@@ -238,6 +212,22 @@ impl Judge {
 
     fn misfits(&self, wiring: &Wiring) -> f64 {
         self.segments.iter().map(|i| self.misfit(wiring, *i)).sum()
+    }
+
+    /// True where this segment and the next one together fit the IMUs before and behind them, without the IMU between them.
+    fn fits_without(&self, i: usize) -> bool {
+        let next = i + 1;
+        if !self.segments.contains(&next) {
+            return false;
+        }
+        let product = |imu: usize| self.imu_bend[imu][i] + self.imu_bend[imu][next];
+        let (mut square, mut both) = (self.imu_imu[next][next], product(next));
+        if let Some(before) = i.checked_sub(1) {
+            square += self.imu_imu[before][before] - 2.0 * self.imu_imu[next][before];
+            both -= product(before);
+        }
+        let bend = self.bend_bend[i][i] + self.bend_bend[next][next] + 2.0 * self.bend_bend[next][i];
+        (square - 2.0 * both + bend) / (square + bend + MOTION * MOTION) < EXPLAINED
     }
 
     /// The gain of all IMUs by which they fit best.
@@ -325,7 +315,7 @@ impl Judge {
                 return wiring;
             }
             let explained = 100.0 * (1.0 - self.misfits(&then) / self.misfits(&wiring));
-            Self::report(steps, fault, explained, findings);
+            self.report(steps, fault, explained, findings);
             wiring = then;
         }
     }
@@ -345,12 +335,12 @@ impl Judge {
             let is_before_unrelated =
                 findings.iter().any(|found| found.sensor == source && found.kind == Kind::Unrelated);
             if !is_before_unrelated {
-                Self::blame(steps, *i, bad.contains(&(i + 1)) || *i + 1 == steps.segments, findings);
+                self.blame(steps, *i, bad.contains(&(i + 1)) || *i + 1 == steps.segments, findings);
             }
         }
     }
 
-    fn report(steps: &Steps, fault: Fault, explained: f64, findings: &mut Vec<Finding>) {
+    fn report(&self, steps: &Steps, fault: Fault, explained: f64, findings: &mut Vec<Finding>) {
         let (sensor, kind, figure) = match fault {
             Fault::Gain(imu, gain) => {
                 let sensor = imu.map_or(Source::AllImus, |i| Source::Imu { segment: i + 1 });
@@ -358,7 +348,7 @@ impl Judge {
             }
             Fault::Imus(i, j) => (Source::TwoImus { segment: i + 1, other: j + 1 }, Kind::Exchanged, explained),
             Fault::Bends(i, j) => (Source::TwoBends { segment: i + 1, other: j + 1 }, Kind::Exchanged, explained),
-            Fault::BendSign(i) => return Self::blame(steps, i, false, findings),
+            Fault::BendSign(i) => return self.blame(steps, i, false, findings),
         };
         findings.push(Finding { sensor, rows: steps.rows, kind, figure });
     }
@@ -379,10 +369,10 @@ impl Judge {
 
     /// Finds the sensor of a segment in which no supposed fault of the wiring explains the misfit. An IMU is in the next segment,
     /// too.
-    fn blame(steps: &Steps, i: usize, next_is_bad: bool, findings: &mut Vec<Finding>) {
+    fn blame(&self, steps: &Steps, i: usize, next_is_bad: bool, findings: &mut Vec<Finding>) {
         let correlations = correlations(&steps.places[i]);
         let rows = steps.rows;
-        if next_is_bad && correlations.iter().all(|correlation| correlation.abs() < FOLLOWS) {
+        if (next_is_bad || self.fits_without(i)) && correlations.iter().all(|correlation| correlation.abs() < FOLLOWS) {
             let figure = 100.0 * correlations[0];
             findings.push(Finding { sensor: Source::Imu { segment: i + 1 }, rows, kind: Kind::Unrelated, figure });
             return;

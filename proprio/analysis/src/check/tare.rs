@@ -3,12 +3,16 @@
 use calibration_tables::{ArmFile, MAX_SEGMENTS};
 
 use super::finding::{Finding, Kind, Rows, Source, is_bend_blamed};
-use super::frame::{Frame, difference};
+use super::frame::{Frame, difference, wrapped};
 
 /// Limit of a segment's bend angle against the reference pose, deg.
 const BENT: f64 = 12.0;
 /// Limit of the range of a heading, deg.
 const MOVES: f64 = 3.0;
+
+/// Begin of a session without a tare, s, and limit of the angle between an IMU and its bend sensors there, deg.
+const ABSOLUTE_S: f64 = 1.0;
+const NOT_ABSOLUTE: f64 = 30.0;
 
 /// Readings during the tare.
 #[derive(Debug, Clone, Copy)]
@@ -36,6 +40,8 @@ pub(super) struct Tare {
     ends_s: f64,
     rows: Rows,
     segments: [Segment; MAX_SEGMENTS],
+    /// With `tare.seconds` of 0: sum of each IMU's angle less that of its bend sensors at the start, and number.
+    absolute: [[f64; 2]; MAX_SEGMENTS],
     findings: Vec<Finding>,
 }
 
@@ -47,6 +53,7 @@ impl Tare {
             ends_s: f64::NEG_INFINITY,
             rows: Rows::default(),
             segments: [EMPTY; MAX_SEGMENTS],
+            absolute: [[0.0; 2]; MAX_SEGMENTS],
             findings: Vec::new(),
         }
     }
@@ -54,13 +61,17 @@ impl Tare {
     pub fn update(&mut self, frame: &Frame) {
         if frame.starts {
             self.end();
-            self.ends_s = frame.time_s + self.seconds;
+            self.ends_s = frame.time_s + if self.is_absolute() { ABSOLUTE_S } else { self.seconds };
         }
         if frame.time_s >= self.ends_s {
             self.end();
             return;
         }
         self.rows.add(frame);
+        if self.is_absolute() {
+            self.add_absolute(frame);
+            return;
+        }
         for (i, segment) in self.segments.iter_mut().enumerate() {
             if !frame.theta[i].is_nan() {
                 segment.sum += frame.theta[i];
@@ -80,6 +91,10 @@ impl Tare {
             return;
         }
         let rows = std::mem::take(&mut self.rows);
+        if self.is_absolute() {
+            self.end_absolute(rows);
+            return;
+        }
         let segments = std::mem::replace(&mut self.segments, [EMPTY; MAX_SEGMENTS]);
         let ranges = segments.map(|segment| segment.range[1] - segment.range[0]);
         let moves = ranges.into_iter().fold(0.0, f64::max);
@@ -90,6 +105,28 @@ impl Tare {
         let bent = angles.filter(|angle| !angle.is_nan()).fold(0.0, |most: f64, angle| most.max(angle.abs()));
         if bent > BENT {
             self.findings.push(Finding { sensor: Source::Arm, rows, kind: Kind::TareBent, figure: bent });
+        }
+    }
+
+    /// True where the table takes the first heading as it is.
+    fn is_absolute(&self) -> bool {
+        self.seconds == 0.0
+    }
+
+    fn add_absolute(&mut self, frame: &Frame) {
+        for (i, sums) in self.absolute.iter_mut().enumerate() {
+            let angle = wrapped(difference(&frame.heading, i) - frame.theta[i]);
+            if !angle.is_nan() {
+                *sums = [sums[0] + angle.abs(), sums[1] + 1.0];
+            }
+        }
+    }
+
+    fn end_absolute(&mut self, rows: Rows) {
+        let angles = std::mem::take(&mut self.absolute).map(|[sum, number]| sum / number);
+        let largest = angles.into_iter().fold(0.0, f64::max);
+        if largest > NOT_ABSOLUTE {
+            self.findings.push(Finding { sensor: Source::AllImus, rows, kind: Kind::NotAbsolute, figure: largest });
         }
     }
 

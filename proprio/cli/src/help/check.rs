@@ -39,6 +39,11 @@ impl Help for Finding {
             (Kind::Unrelated, _) => {
                 "check the IMU's mount (z up) and the columns: headings clockwise in degrees, quaternions as w, x, y, z"
             }
+            (Kind::QuaternionOrder, _) => "write quaternions as w, x, y, z: the columns are exchanged",
+            (Kind::OnItsSide, _) => "mount the IMU level, with z up",
+            (Kind::NotAbsolute, _) => {
+                "write the seconds at rest in the reference pose into tare.seconds of the table, or headings from the base's direction into the session"
+            }
             (Kind::NewZero, _) => {
                 "check the IMU's supply and plug; give the rows from there on another number in column tare, where the arm is straight and at rest"
             }
