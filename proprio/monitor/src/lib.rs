@@ -41,6 +41,7 @@ use std::thread::JoinHandle;
 
 use calibration_tables::CompiledTable;
 use estimator_core::Q;
+use proprio_analysis::check::Finding;
 use proprio_link::{Link, Subscription};
 use proprio_session::LoadedTable;
 use telemetry::{Command, SEGMENTS, TICK_HZ};
@@ -71,6 +72,8 @@ pub struct Options<'p> {
     pub session: Option<PathBuf>,
     /// Returns the remedy of an error, which the page shows with it.
     pub help: fn(&Error) -> String,
+    /// Returns the text of a finding of the session check, with its remedy.
+    pub finding_text: fn(&Finding) -> String,
 }
 
 /// A server that runs until it is dropped.
@@ -172,13 +175,14 @@ fn shared(link: Option<Link>, options: Options) -> MonitorState {
     arm.opens_sessions = table.is_some();
     let sessions = Sessions::new(options.folder, table, options.session);
     arm.session = sessions.given();
-    MonitorState::new(link, arm, options.token, sessions, options.help)
+    MonitorState::new(link, arm, options.token, sessions, (options.help, options.finding_text))
 }
 
 fn hub(shared: &Arc<MonitorState>, events: Subscription, compiled: Option<&CompiledTable<Q>>, stop: &AtomicBool) {
     let table = compiled.map(CompiledTable::config);
     let table = table.as_ref().filter(|table| table.segments.len() == SEGMENTS);
     if let Some(link) = &shared.link {
-        Hub::new(Arc::clone(shared), events, table).run(link, stop);
+        let check = table.and_then(|_| shared.sessions.check());
+        Hub::new(Arc::clone(shared), events, table, check).run(link, stop);
     }
 }

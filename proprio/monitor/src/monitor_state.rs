@@ -3,6 +3,7 @@
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use axum::extract::ws::Utf8Bytes;
+use proprio_analysis::check::Finding;
 use proprio_link::Link;
 use proprio_session::HostClock;
 use tokio::sync::broadcast;
@@ -27,6 +28,7 @@ pub(super) struct MonitorState {
     pub token: Option<Token>,
     pub sessions: Sessions,
     pub help: fn(&Error) -> String,
+    pub finding_text: fn(&Finding) -> String,
     pub feed: broadcast::Sender<Utf8Bytes>,
     history: Mutex<History>,
     status: Mutex<Utf8Bytes>,
@@ -40,12 +42,13 @@ impl MonitorState {
         arm: ArmDescription,
         token: Option<Token>,
         sessions: Sessions,
-        help: fn(&Error) -> String,
+        (help, finding_text): (fn(&Error) -> String, fn(&Finding) -> String),
     ) -> Self {
         let history = Mutex::new(History::new(arm.columns.len()));
         let (status, latency, recording) = Default::default();
         let (feed, _) = broadcast::channel(CAPACITY);
-        Self { link, clock: HostClock::new(), arm, token, sessions, help, feed, history, status, latency, recording }
+        let clock = HostClock::new();
+        Self { link, clock, arm, token, sessions, help, finding_text, feed, history, status, latency, recording }
     }
 
     pub fn history(&self) -> MutexGuard<'_, History> {

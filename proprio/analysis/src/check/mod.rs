@@ -54,6 +54,8 @@ use crate::error::Error;
 /// A check of one session, row by row.
 pub struct SessionCheck {
     decoder: Decoder,
+    /// The rules before the first row.
+    start: Rules,
     rules: Rules,
 }
 
@@ -89,7 +91,13 @@ impl SessionCheck {
             steps: Steps::new(segments, Plugs::new(&table.file, &decoder)),
             twins: Twins::new(&table.file),
         };
-        Ok(Self { decoder, rules })
+        Ok(Self { decoder, start: rules.clone(), rules })
+    }
+
+    /// Starts again before the next row, which becomes row 1.
+    pub fn restart(&mut self) {
+        self.decoder.frame.row = 0;
+        self.rules = self.start.clone();
     }
 
     /// Checks the next row.

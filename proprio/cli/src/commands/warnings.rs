@@ -19,8 +19,13 @@ pub fn warn_of_defects(path: &Path, defects: &FileDefects) {
 /// Warns of the findings of the session check, each with its remedy.
 pub fn warn_of_findings(path: &Path, findings: &[Finding]) {
     for finding in findings {
-        terminal::warn(&format_args!("{}: {finding}; {}", path.display(), finding.help()));
+        terminal::warn(&format_args!("{}: {}", path.display(), with_remedy(finding)));
     }
+}
+
+/// The text of a finding and its remedy.
+pub fn with_remedy(finding: &Finding) -> String {
+    format!("{finding}; {}", finding.help())
 }
 
 /// Checks the sessions of a calibration, a tuning or an alignment with a table or an arm description and warns of the findings,

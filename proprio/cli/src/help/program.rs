@@ -65,6 +65,7 @@ impl Help for proprio_monitor::Error {
         match self {
             Self::File(error) => error.help(),
             Self::Link(error) => error.help(),
+            Self::Analysis(error) => error.help(),
             Self::Listen { .. } => "give another with --listen; is a monitor running already?".to_owned(),
             Self::Random(_) => "run the monitor without --allow-control".to_owned(),
         }

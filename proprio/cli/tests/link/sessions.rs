@@ -32,6 +32,7 @@ fn page(given: Option<PathBuf>) -> Page {
         token: None,
         session: given,
         help: ToString::to_string,
+        finding_text: ToString::to_string,
     };
     Page { monitor: Monitor::start(None, options).expect("a free port"), folder }
 }
