@@ -162,7 +162,7 @@ pub enum SessionProblem {
 }
 
 fn unit(factor: f64) -> String {
-    time_unit_of(factor).map_or_else(String::new, |unit| format!(", as {unit} are"))
+    time_unit_of(factor).map_or_else(String::new, |(_, name)| format!(", as {name} are"))
 }
 
 impl fmt::Display for SessionError {

@@ -21,8 +21,8 @@ pub fn time_factor(usual_hz: f64, rate_hz: f64) -> Option<f64> {
     is_wrong.then_some(factor)
 }
 
-/// The name of the unit with this [factor](time_factor), if it is one.
+/// The exact factor and the name of the unit with this [factor](time_factor), if it is one.
 #[must_use]
-pub fn time_unit_of(factor: f64) -> Option<&'static str> {
-    UNITS.iter().find(|(unit, _)| (factor / unit - 1.0).abs() < TOLERANCE).map(|(_, name)| *name)
+pub fn time_unit_of(factor: f64) -> Option<(f64, &'static str)> {
+    UNITS.into_iter().find(|(unit, _)| (factor / unit - 1.0).abs() < TOLERANCE)
 }

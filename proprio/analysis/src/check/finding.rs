@@ -179,6 +179,14 @@ pub(super) fn is_bend_blamed(findings: &[Finding], number: usize) -> bool {
     findings.iter().any(|finding| finding.is_about_bend(number))
 }
 
+/// True where the bend angles of the segments up to this one, from 1, are wrong in the whole session.
+pub(super) fn is_chain_wrong(findings: &[Finding], number: usize) -> bool {
+    let is_whole = |finding: &&Finding| {
+        matches!(finding.kind, Kind::Exchanged | Kind::Counts | Kind::TenBits | Kind::Inverted | Kind::Unrelated)
+    };
+    findings.iter().filter(is_whole).any(|finding| (1..=number).any(|segment| finding.is_about_bend(segment)))
+}
+
 /// True for a bend sensor whose plug is exchanged.
 pub(super) fn is_exchanged(findings: &[Finding], sensor: Source) -> bool {
     findings.iter().any(|finding| match (finding.sensor, sensor) {

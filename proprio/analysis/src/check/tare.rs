@@ -2,7 +2,7 @@
 
 use calibration_tables::{ArmFile, MAX_SEGMENTS};
 
-use super::finding::{Finding, Kind, Rows, Source, is_bend_blamed};
+use super::finding::{Finding, Kind, Rows, Source, is_bend_blamed, is_imu_blamed};
 use super::frame::{Frame, difference, wrapped};
 
 /// Limit of a segment's bend angle against the reference pose, deg.
@@ -42,7 +42,18 @@ pub(super) struct Tare {
     segments: [Segment; MAX_SEGMENTS],
     /// With `tare.seconds` of 0: sum of each IMU's angle less that of its bend sensors at the start, and number.
     absolute: [[f64; 2]; MAX_SEGMENTS],
+    tares: Vec<Tared>,
     findings: Vec<Finding>,
+}
+
+/// A tare that has ended.
+#[derive(Debug, Clone)]
+struct Tared {
+    rows: Rows,
+    /// Range of each heading, deg.
+    moves: [f64; MAX_SEGMENTS],
+    /// Largest bend angle against the reference pose, deg.
+    bent: f64,
 }
 
 impl Tare {
@@ -54,6 +65,7 @@ impl Tare {
             rows: Rows::default(),
             segments: [EMPTY; MAX_SEGMENTS],
             absolute: [[0.0; 2]; MAX_SEGMENTS],
+            tares: Vec::new(),
             findings: Vec::new(),
         }
     }
@@ -96,16 +108,10 @@ impl Tare {
             return;
         }
         let segments = std::mem::replace(&mut self.segments, [EMPTY; MAX_SEGMENTS]);
-        let ranges = segments.map(|segment| segment.range[1] - segment.range[0]);
-        let moves = ranges.into_iter().fold(0.0, f64::max);
-        if moves > MOVES {
-            self.findings.push(Finding { sensor: Source::Arm, rows, kind: Kind::TareMoves, figure: moves });
-        }
+        let moves = segments.map(|segment| segment.range[1] - segment.range[0]);
         let angles = segments.iter().zip(self.reference).map(|(segment, angle)| segment.sum / segment.count - angle);
         let bent = angles.filter(|angle| !angle.is_nan()).fold(0.0, |most: f64, angle| most.max(angle.abs()));
-        if bent > BENT {
-            self.findings.push(Finding { sensor: Source::Arm, rows, kind: Kind::TareBent, figure: bent });
-        }
+        self.tares.push(Tared { rows, moves, bent });
     }
 
     /// True where the table takes the first heading as it is.
@@ -134,7 +140,18 @@ impl Tare {
         self.end();
         // Bend sensors that are wired wrongly show a bent arm.
         let is_any_blamed = (1..=MAX_SEGMENTS).any(|i| is_bend_blamed(findings, i));
-        self.findings.retain(|finding| finding.kind != Kind::TareBent || !is_any_blamed);
+        let sensor = Source::Arm;
+        for Tared { rows, moves, bent } in self.tares {
+            // The noise of an IMU that shows no heading is no motion.
+            let seen = (1..).zip(moves).filter(|(i, _)| !is_imu_blamed(findings, *i));
+            let moves = seen.fold(0.0, |most: f64, (_, range)| most.max(range));
+            if moves > MOVES {
+                self.findings.push(Finding { sensor, rows, kind: Kind::TareMoves, figure: moves });
+            }
+            if bent > BENT && !is_any_blamed {
+                self.findings.push(Finding { sensor, rows, kind: Kind::TareBent, figure: bent });
+            }
+        }
         findings.append(&mut self.findings);
     }
 }

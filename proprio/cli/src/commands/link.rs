@@ -3,12 +3,14 @@
 use std::path::Path;
 
 use estimator_core::Q;
+use proprio_link::status::{Status, TIMEOUT_S};
 use proprio_link::{FileRecorder, Link, PortSource, Source, Subscription, VirtualDue};
 use proprio_session::{HostClock, LoadedTable};
 use telemetry::TICK_HZ;
 
 use crate::args::LinkArgs;
 use crate::error::Error;
+use crate::terminal;
 
 /// The given table, a link to the given board, and a subscription to its events.
 pub fn open(args: &LinkArgs) -> Result<(Option<LoadedTable<'_>>, Link, Subscription), Error> {
@@ -21,6 +23,13 @@ pub fn open(args: &LinkArgs) -> Result<(Option<LoadedTable<'_>>, Link, Subscript
     };
     let (link, events) = Link::start(source, checksum)?;
     Ok((table, link, events))
+}
+
+/// The status of the board, with a notice of the wait for it: a port without a board is silent.
+pub fn status(link: &Link, events: &Subscription, table_given: bool) -> Result<Status, Error> {
+    let port = link.state().port.unwrap_or_default();
+    terminal::eprint_line(&format_args!("{port}: waiting for a board's messages, {TIMEOUT_S} s at most"));
+    Ok(Status::of(link, events, table_given)?)
 }
 
 /// Begins a recording of the link in a new file, with the table attached.

@@ -1,7 +1,7 @@
 //! Remedies of errors of sessions.
 
 use proprio_session::recording::ReadError;
-use proprio_session::{FileContent, MissingColumn, MissingReason, SessionProblem};
+use proprio_session::{FileContent, MissingColumn, MissingReason, SessionProblem, time_unit_of};
 
 use super::Help;
 
@@ -71,9 +71,10 @@ impl Help for SessionProblem {
 
 /// Remedy of times in another unit than seconds.
 fn time_unit(rate_hz: f64, factor: f64) -> String {
-    let change = match factor {
-        factor if factor < 1.0 => format!("multiply time_s by {:.0}", factor.recip()),
-        factor => format!("divide time_s by {factor:.0}"),
+    let change = match time_unit_of(factor) {
+        Some((unit, _)) if unit < 1.0 => format!("multiply time_s by {:.0}", unit.recip()),
+        Some((unit, _)) => format!("divide time_s by {unit:.0}"),
+        None => "give time_s in seconds".to_owned(),
     };
     format!("{change}; or if it is in seconds, write rate_hz = {rate_hz:.4} in the table or arm description")
 }
