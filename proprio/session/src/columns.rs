@@ -115,7 +115,8 @@ impl CameraColumns {
 impl PressureColumns {
     /// Finds the columns of all regulators.
     pub fn find(names: &[String]) -> Result<Self, SessionProblem> {
-        let header = Places::of(names, 0, FileContent::Profile)?;
+        // Columns of sensors are those of a session, which lacks the pressures.
+        let header = Places::of(names, usize::MAX, FileContent::Profile)?;
         let time = header.required(TIME)?;
         let regulator = |i: usize| header.in_unit(&format!("pressure{}", i + 1), [("kpa", 1e3), ("pa", 1.0)]);
         let [a, b, c, d, e, f] = [0, 1, 2, 3, 4, 5].map(regulator);

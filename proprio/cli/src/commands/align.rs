@@ -15,7 +15,7 @@ pub fn run(args: &AlignArgs) -> Result<(), Error> {
     let arm = LoadedTable::load(&args.arm)?;
     let mut file = OutputFile::create(&args.output, &[&args.session, &args.camera, &args.arm])?;
     let alignment = align(&args.session, &args.camera, &arm, &mut Bar::new());
-    let alignment = checked(alignment, slice::from_ref(&args.session), |_| arm)?;
+    let alignment = checked(alignment, slice::from_ref(&args.session), |_| arm, |_| true)?;
     for (path, defects) in [&args.session, &args.camera].into_iter().zip(&alignment.defects) {
         warn_of_defects(path, defects);
     }

@@ -3,6 +3,7 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
+use proprio_analysis::check::{Finding, Kind};
 use proprio_calibration::calibrate::{Calibration, CalibrationOptions, HysteresisMode, MapMode, calibrate};
 use proprio_session::{LoadedTable, OutputFile};
 
@@ -19,10 +20,11 @@ pub fn run(args: &CalibrateArgs) -> Result<(), Error> {
     let mut file = OutputFile::create(&args.output, &inputs)?;
     let options = CalibrationOptions { maps: args.map.into(), hysteresis: args.hysteresis.into() };
     let calibration = calibrate(&args.sessions, &arm, options, &mut Bar::new());
-    let calibration = checked(calibration, &args.sessions, |made: Option<&Calibration>| match made {
+    let table = |made: Option<&Calibration>| match made {
         Some(Calibration { table, .. }) => LoadedTable { file: table.clone(), path: &args.output },
         None => arm,
-    })?;
+    };
+    let calibration = checked(calibration, &args.sessions, table, |finding| !is_later_tare(finding))?;
     for (path, defects) in args.sessions.iter().zip(&calibration.defects) {
         warn_of_defects(path, defects);
     }
@@ -38,6 +40,11 @@ pub fn run(args: &CalibrateArgs) -> Result<(), Error> {
         terminal::print(&text_tables::held_out(held_out))?;
     }
     Ok(file.finish()?)
+}
+
+/// True for the tare after a restart of the board: the zeros of a sweep are those of its truth.
+fn is_later_tare(finding: &Finding) -> bool {
+    matches!(finding.kind, Kind::TareBent | Kind::TareMoves) && finding.rows.first > 1
 }
 
 impl From<MapName> for MapMode {

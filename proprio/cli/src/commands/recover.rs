@@ -42,9 +42,8 @@ fn warn_of_loss(args: &RecoverArgs, recovery: &Recovery) {
     }
     if let Some(bytes) = recovery.lost_end {
         let after_s = recovery.times_ns.map_or(0.0, |(_, last)| (last - recovery.start_ns) as f64 / 1e9);
-        terminal::warn(&format_args!(
-            "{input}: the end is missing: all after {after_s:.2} s is lost, with {bytes} bytes of a part that was cut"
-        ));
+        let part = if bytes > 0 { format!(", with {bytes} bytes of a part that was cut") } else { String::new() };
+        terminal::warn(&format_args!("{input}: the end is missing: all after {after_s:.2} s is lost{part}"));
     }
     if recovery.lost_attachments > 0 {
         let count = recovery.lost_attachments;

@@ -21,7 +21,7 @@ pub fn run(args: &TuneArgs) -> Result<(), Error> {
     let mut file = OutputFile::create(&args.output, &inputs)?;
     let mut progress = Bar::new();
     let tuner = Tuner::new(&args.sessions, &table, &mut progress);
-    let tuner = checked(tuner, &args.sessions, |_| table.clone())?;
+    let tuner = checked(tuner, &args.sessions, |_| table.clone(), |_| true)?;
     tuner.defects().for_each(|(path, defects)| warn_of_defects(path, defects));
     let shutdown = ShutdownGuard::new();
     let Tuning { table, record, iteration_time } = tuner.tune(&mut progress, || shutdown.is_requested())?;

@@ -29,16 +29,20 @@ pub fn with_remedy(finding: &Finding) -> String {
 }
 
 /// Checks the sessions of a calibration, a tuning or an alignment with a table or an arm description and warns of the findings,
-/// also where they have been refused: a fault that is found here may be the reason. A pipe is read only once.
+/// also where they have been refused: a fault that is found here may be the reason. A pipe is read only once. Findings that do not
+/// matter to the command are left out.
 pub fn checked<'t, T>(
     result: Result<T, CalibrationError>,
     sessions: &[PathBuf],
     table: impl FnOnce(Option<&T>) -> LoadedTable<'t>,
+    matters: impl Fn(&Finding) -> bool,
 ) -> Result<T, Error> {
     if !matches!(result, Err(CalibrationError::File(_))) {
         let table = table(result.as_ref().ok());
         for path in sessions.iter().filter(|path| path.is_file()) {
-            warn_of_findings(path, &check(path, &table, &mut Bar::new())?.findings);
+            let mut findings = check(path, &table, &mut Bar::new())?.findings;
+            findings.retain(&matters);
+            warn_of_findings(path, &findings);
         }
     }
     Ok(result?)
