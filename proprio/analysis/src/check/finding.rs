@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use proprio_session::SENSOR_NAMES;
+use proprio_session::{SENSOR_NAMES, time_unit_of};
 use serde::Serialize;
 
 use super::frame::Frame;
@@ -298,7 +298,10 @@ impl fmt::Display for Finding {
             }
             Kind::TareBent => write!(f, "{figure:.1}° from the reference pose during the tare"),
             Kind::TareMoves => write!(f, "moves by {figure:.1}° during the tare"),
-            Kind::TimeUnit => write!(f, "the table's rate is {figure:.4} times the rate of these times"),
+            Kind::TimeUnit => {
+                write!(f, "by the table's rate these times are {figure:.4} times too large")?;
+                time_unit_of(*figure).map_or(Ok(()), |(_, unit)| write!(f, ", as {unit} are"))
+            }
             Kind::EqualTimes => write!(f, "{figure:.0} rows have the time of the row before"),
             Kind::Gaps => write!(f, "rows are missing, {figure:.2} s at most"),
             Kind::LeavesTwin => write!(f, "departs by {figure:.0}° from its twin and the IMU"),

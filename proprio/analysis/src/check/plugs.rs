@@ -10,9 +10,11 @@ use super::tare::reference_angles;
 /// Least number of steps, and least root mean square of them, deg.
 const STEPS: f64 = 20.0;
 const MOTION: f64 = 2.0;
-/// Correlation below which a sensor does not follow a segment, and from which on it does.
-const UNRELATED: f64 = 0.4;
+/// Correlation below which a sensor may follow another segment than its own, from which on it follows one, and by how much more
+/// than its own.
+const STRAYS: f64 = 0.7;
 const FOLLOWS: f64 = 0.75;
+const MORE: f64 = 0.25;
 /// Least number of sensors by which a common factor is found.
 const SENSORS: usize = 4;
 /// Least size of the logarithm of a factor that is not 1.
@@ -134,11 +136,11 @@ impl Plugs {
         let is_seen = |i: usize| !is_imu_blamed(findings, i + 1) && (i == 0 || !is_imu_blamed(findings, i));
         let segments: Vec<usize> =
             (0..self.segments).filter(|i| is_seen(*i) && !is_bend_blamed(findings, i + 1)).collect();
-        let strays = |i: usize, place: usize| self.correlation(i, place, i).is_some_and(|own| own < UNRELATED);
-        let follows = |i: usize, place: usize, j: usize| self.correlation(i, place, j).is_some_and(|of| of > FOLLOWS);
-        let are = |(i, p): (usize, usize), (j, q): (usize, usize)| {
-            strays(i, p) && strays(j, q) && follows(i, p, j) && follows(j, q, i)
+        let follows = |i: usize, place: usize, j: usize| {
+            let [own, other] = [i, j].map(|segment| self.correlation(i, place, segment));
+            own.zip(other).is_some_and(|(own, other)| own < STRAYS && other > FOLLOWS.max(own + MORE))
         };
+        let are = |(i, p): (usize, usize), (j, q): (usize, usize)| follows(i, p, j) && follows(j, q, i);
         let mut push = |sensor| {
             findings.push(Finding { sensor, rows: self.rows, kind: Kind::Exchanged, figure: 100.0 });
         };
