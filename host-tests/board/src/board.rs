@@ -2,7 +2,7 @@
 
 use rig_twin::{EndPose, MotionProgram, REGULATORS, SEGMENTS};
 use telemetry::{
-    Command, Decoder, Encoder, Estimate, Event, Health, Hello, MAX_FRAME, Message, Outcome, Request, Sample,
+    Command, Decoder, Encoder, Estimate, Event, Health, Hello, MAX_FRAME, Message, Request, RequestOutcome, Sample,
     SetPressures, Uncertainty,
 };
 use virtual_due::{CYCLES_PER_SECOND, Cycles, Machine, WiredRig};
@@ -109,7 +109,7 @@ impl Board {
     ///
     /// # Panics
     /// If none comes within 100 ms.
-    pub fn request(&mut self, command: Command) -> Outcome {
+    pub fn request(&mut self, command: Command) -> RequestOutcome {
         let before = self.received.len();
         let id = self.send(command);
         self.run_ms(100);
@@ -125,7 +125,7 @@ impl Board {
     /// # Panics
     /// If the board does not arm.
     pub fn swing(&mut self, program: &MotionProgram, seconds: u64) {
-        assert_eq!(self.request(Command::Arm), Outcome::Ack);
+        assert_eq!(self.request(Command::Arm), RequestOutcome::Ack);
         let start = self.machine.seconds();
         for _ in 0..seconds * 20 {
             self.set_pressures(program.duties(self.machine.seconds() - start));

@@ -7,7 +7,7 @@ use std::collections::VecDeque;
 use std::sync::mpsc::Sender;
 use std::time::{Duration, Instant};
 
-use telemetry::{Command, Encoder, MAX_FRAME, Outcome, Refusal, Reply, Request};
+use telemetry::{Command, Encoder, MAX_FRAME, Refusal, Reply, Request, RequestOutcome};
 
 /// Time without an answer after which a request is sent again.
 const AGAIN: Duration = Duration::from_millis(100);
@@ -96,15 +96,15 @@ impl Requests {
     pub fn replied(&mut self, reply: Reply) {
         let Some(current) = self.current.as_ref().filter(|current| current.request.id == reply.id) else { return };
         match reply.outcome {
-            Outcome::Ack => {
+            RequestOutcome::Ack => {
                 self.is_connected = true;
                 self.finish(Ok(()));
             }
             // The board has not processed it: it is sent again.
-            Outcome::Nack(Refusal::Busy) => {}
+            RequestOutcome::Nack(Refusal::Busy) => {}
             // An earlier host has used higher ids. The board accepts a Ping with a lower one after its session timeout.
-            Outcome::Nack(_) if current.answer.is_none() => {}
-            Outcome::Nack(refusal) => self.finish(Err(refusal.into())),
+            RequestOutcome::Nack(_) if current.answer.is_none() => {}
+            RequestOutcome::Nack(refusal) => self.finish(Err(refusal.into())),
         }
     }
 

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 
 use estimator_core::ArmConfig;
 use proprio_analysis::check::SessionCheck;
-use proprio_link::{Event, EventKind, Link, Subscription};
+use proprio_link::{EventKind, Link, LinkEvent, Subscription};
 use proprio_session::HostNs;
 
 use super::feed::{Batch, EndCovariances, Feed, PageStatus};
@@ -83,7 +83,7 @@ impl<'t> Hub<'t> {
         }
     }
 
-    fn take(&mut self, event: &Event) {
+    fn take(&mut self, event: &LinkEvent) {
         // The status has the mismatches.
         if !matches!(event.kind, EventKind::Mismatch(_))
             && let Some(warning) = event.kind.warning()

@@ -2,9 +2,11 @@
 
 use std::path::Path;
 
+use calibration_tables::{ArmFile, PLANAR_6_TABLE};
 use estimator_core::Q;
 use proprio_link::status::{Status, TIMEOUT_S};
-use proprio_link::{FileRecorder, Link, PortSource, Source, Subscription, VirtualDue};
+use proprio_link::table::{StoredTable, TableImageError};
+use proprio_link::{FileRecorder, Flash, Link, PortSource, Source, Subscription, VirtualDue};
 use proprio_session::{HostClock, LoadedTable};
 use telemetry::TICK_HZ;
 
@@ -17,7 +19,8 @@ pub fn open(args: &LinkArgs) -> Result<(Option<LoadedTable<'_>>, Link, Subscript
     let table = args.table.as_deref().map(LoadedTable::load).transpose()?;
     let checksum = table.as_ref().map(|table| Ok::<_, Error>(table.compile::<Q>(TICK_HZ)?.checksum())).transpose()?;
     let source: Box<dyn Source> = if args.emulated {
-        Box::new(VirtualDue { firmware: args.firmware.clone(), scenario: args.scenario, seed: args.seed })
+        let flash = args.flash.clone().map_or_else(|| flash_with(table.as_ref()), |path| Ok(Flash::File(path)))?;
+        Box::new(VirtualDue { firmware: args.firmware.clone(), scenario: args.scenario, seed: args.seed, flash })
     } else {
         Box::new(PortSource::new(args.port.clone(), args.baud))
     };
@@ -30,6 +33,24 @@ pub fn status(link: &Link, events: &Subscription, table_given: bool) -> Result<S
     let port = link.state().port.unwrap_or_default();
     terminal::eprint_line(&format_args!("{port}: waiting for a board's messages, {TIMEOUT_S} s at most"));
     Ok(Status::of(link, events, table_given)?)
+}
+
+/// The flash of an emulated board with the table that was given, or that of the reference arm.
+fn flash_with(table: Option<&LoadedTable>) -> Result<Flash, Error> {
+    let stored = match table {
+        Some(table) => stored(table)?,
+        None => ArmFile::parse(PLANAR_6_TABLE)
+            .map_err(TableImageError::File)
+            .and_then(|file| StoredTable::new(&file, PLANAR_6_TABLE.as_bytes()))?,
+    };
+    Ok(Flash::Table(stored))
+}
+
+/// The form in which the board stores a table.
+pub fn stored(table: &LoadedTable) -> Result<StoredTable, Error> {
+    // An arm description is an error of its file.
+    table.required_columns()?;
+    Ok(StoredTable::new(&table.file, &table.toml()?)?)
 }
 
 /// Begins a recording of the link in a new file, with the table attached.
