@@ -48,7 +48,7 @@ impl Board {
 
     fn receive(&mut self, byte: u8) {
         let Some(Ok(request)) = self.requests.push(byte) else { return };
-        self.received.push(request);
+        self.received.push(request.clone());
         let tick = (self.began.elapsed().as_millis() / 10) as u32;
         let (done, refuses) = (&mut self.done, self.refuses);
         let reply = self.server.answer(&request, tick, |command| {
