@@ -65,7 +65,7 @@ pub(super) async fn session(
     };
     let times_s = part.from_s.unwrap_or(f64::NEG_INFINITY)..=part.to_s.unwrap_or(f64::INFINITY);
     let shared = Arc::clone(&state.monitor);
-    let rows = run_blocking(move || shared.sessions.rows(&part.name, &path, times_s, shared.finding_text)).await?;
+    let rows = run_blocking(move || shared.sessions.rows(&part.name, &path, times_s)).await?;
     Ok((BYTES, rows.map_err(|error| state.failure(&error))?))
 }
 

@@ -74,7 +74,7 @@ impl<'t> Hub<'t> {
             }
             if self.checked.elapsed() >= CHECK {
                 self.checked = Instant::now();
-                self.findings = self.live.findings().iter().map(self.shared.finding_text).collect();
+                self.findings = self.live.findings().iter().map(self.shared.sessions.finding_text).collect();
             }
             if self.status_sent.elapsed() >= STATUS {
                 self.status_sent = Instant::now();

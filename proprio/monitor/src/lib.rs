@@ -173,9 +173,9 @@ fn shared(link: Option<Link>, options: Options) -> MonitorState {
         ArmDescription::new(segments, table.map(|table| &table.file).filter(|_| table_segments == Some(segments)));
     (arm.is_live, arm.allows_control) = (link.is_some(), options.token.is_some());
     arm.opens_sessions = table.is_some();
-    let sessions = Sessions::new(options.folder, table, options.session);
+    let sessions = Sessions::new(options.folder, table, options.session, options.finding_text);
     arm.session = sessions.given();
-    MonitorState::new(link, arm, options.token, sessions, (options.help, options.finding_text))
+    MonitorState::new(link, arm, options.token, sessions, options.help)
 }
 
 fn hub(shared: &Arc<MonitorState>, events: Subscription, compiled: Option<&CompiledTable<Q>>, stop: &AtomicBool) {

@@ -3,7 +3,6 @@
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use axum::extract::ws::Utf8Bytes;
-use proprio_analysis::check::Finding;
 use proprio_link::Link;
 use proprio_session::HostClock;
 use tokio::sync::broadcast;
@@ -28,7 +27,6 @@ pub(super) struct MonitorState {
     pub token: Option<Token>,
     pub sessions: Sessions,
     pub help: fn(&Error) -> String,
-    pub finding_text: fn(&Finding) -> String,
     pub feed: broadcast::Sender<Utf8Bytes>,
     history: Mutex<History>,
     status: Mutex<Utf8Bytes>,
@@ -42,13 +40,12 @@ impl MonitorState {
         arm: ArmDescription,
         token: Option<Token>,
         sessions: Sessions,
-        (help, finding_text): (fn(&Error) -> String, fn(&Finding) -> String),
+        help: fn(&Error) -> String,
     ) -> Self {
         let history = Mutex::new(History::new(arm.columns.len()));
         let (status, latency, recording) = Default::default();
         let (feed, _) = broadcast::channel(CAPACITY);
-        let clock = HostClock::new();
-        Self { link, clock, arm, token, sessions, help, finding_text, feed, history, status, latency, recording }
+        Self { link, clock: HostClock::new(), arm, token, sessions, help, feed, history, status, latency, recording }
     }
 
     pub fn history(&self) -> MutexGuard<'_, History> {

@@ -27,6 +27,8 @@ pub(super) struct Sessions {
     table: Option<(PathBuf, ArmFile)>,
     /// The session that the command was given.
     given: Option<PathBuf>,
+    /// Returns the text of a finding, with its remedy.
+    pub finding_text: fn(&Finding) -> String,
     /// Files that browsers have sent, by name.
     sent: Mutex<BTreeMap<String, TempPath>>,
 }
@@ -66,9 +68,14 @@ impl From<&Mark> for PageMark {
 }
 
 impl Sessions {
-    pub fn new(folder: PathBuf, table: Option<&LoadedTable>, given: Option<PathBuf>) -> Self {
+    pub fn new(
+        folder: PathBuf,
+        table: Option<&LoadedTable>,
+        given: Option<PathBuf>,
+        finding_text: fn(&Finding) -> String,
+    ) -> Self {
         let table = table.map(|table| (table.path.to_owned(), table.file.clone()));
-        Self { folder, table, given, sent: Mutex::default() }
+        Self { folder, table, given, finding_text, sent: Mutex::default() }
     }
 
     /// Name of the session that the command was given.
@@ -123,25 +130,14 @@ impl Sessions {
 
     /// Replays a session and returns its rows between two times, decimated to as many as a page holds. Errors have its name in
     /// place of its path, which is that of a copy where a browser has sent it.
-    pub fn rows(
-        &self,
-        name: &str,
-        path: &Path,
-        times_s: RangeInclusive<f64>,
-        finding_text: fn(&Finding) -> String,
-    ) -> Result<Vec<u8>, Error> {
-        self.rows_of(path, times_s, finding_text).map_err(|error| match error {
+    pub fn rows(&self, name: &str, path: &Path, times_s: RangeInclusive<f64>) -> Result<Vec<u8>, Error> {
+        self.rows_of(path, &times_s).map_err(|error| match error {
             Error::File(proprio_session::Error::Session(error)) => SessionError { path: name.into(), ..error }.into(),
             other => other,
         })
     }
 
-    fn rows_of(
-        &self,
-        path: &Path,
-        times_s: RangeInclusive<f64>,
-        finding_text: fn(&Finding) -> String,
-    ) -> Result<Vec<u8>, Error> {
+    fn rows_of(&self, path: &Path, times_s: &RangeInclusive<f64>) -> Result<Vec<u8>, Error> {
         let Some(table) = self.table() else { return Ok(Vec::new()) };
         let file = &table.file;
         let segments = file.segments.len();
@@ -180,7 +176,7 @@ impl Sessions {
         }
         let marks = reader.marks().iter().map(PageMark::from).filter(|mark| times_s.contains(&mark.time_s));
         let marks = marks.collect();
-        let findings = reader.defects().warnings().chain(check.findings().iter().map(finding_text)).collect();
+        let findings = reader.defects().warnings().chain(check.findings().iter().map(self.finding_text)).collect();
         let arm = ArmDescription::new(segments, Some(file));
         Ok(history.to_bytes(&About { arm, samples, every, marks, findings }))
     }

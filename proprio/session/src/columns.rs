@@ -77,7 +77,7 @@ pub(crate) struct PressureColumns {
 
 struct Places<'h> {
     names: &'h [String],
-    places: HashMap<&'h str, usize>,
+    indices: HashMap<&'h str, usize>,
     /// Content of the file that is read.
     expected: FileContent,
 }
@@ -127,21 +127,21 @@ impl PressureColumns {
 impl<'h> Places<'h> {
     /// Refuses columns that are there twice and those of a segment beyond the last.
     fn of(names: &'h [String], segments: usize, expected: FileContent) -> Result<Self, SessionProblem> {
-        let mut places = HashMap::new();
+        let mut indices = HashMap::new();
         for (index, name) in names.iter().enumerate() {
             let segment = segment_of(name);
-            if places.insert(name.as_str(), index).is_some() && is_known(name) {
+            if indices.insert(name.as_str(), index).is_some() && is_known(name) {
                 return Err(SessionProblem::DuplicateColumn(name.clone()));
             }
             if let Some(segment) = segment.filter(|segment| *segment > segments) {
                 return Err(SessionProblem::OtherArm { column: name.clone(), segment, segments });
             }
         }
-        Ok(Self { names, places, expected })
+        Ok(Self { names, indices, expected })
     }
 
     fn optional(&self, name: &str) -> Option<usize> {
-        self.places.get(name).copied()
+        self.indices.get(name).copied()
     }
 
     fn required(&self, name: &str) -> Result<usize, SessionProblem> {
@@ -149,7 +149,7 @@ impl<'h> Places<'h> {
     }
 
     fn missing(&self, name: &str) -> SessionProblem {
-        SessionProblem::MissingColumn(MissingColumn::new(name, self.names, self.expected))
+        SessionProblem::MissingColumn(Box::new(MissingColumn::new(name, self.names, self.expected)))
     }
 
     /// The column `name` in the first of the units that is there.

@@ -47,7 +47,7 @@ pub enum SessionProblem {
     NotText,
     /// A column is missing.
     #[error("{0}")]
-    MissingColumn(MissingColumn),
+    MissingColumn(Box<MissingColumn>),
     /// A column is there twice.
     #[error("column {0} is there twice")]
     DuplicateColumn(String),

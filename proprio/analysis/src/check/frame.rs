@@ -1,7 +1,7 @@
 //! Readings of a row as angles, which the rules share. An unknown angle is NaN, with which no comparison is true.
 
 use calibration_tables::MAX_SEGMENTS;
-use estimator_core::{BendMap, BendSensorConfig, ImuReading, Phase};
+use estimator_core::{BendSensorConfig, ImuReading, Phase};
 use proprio_session::{Error, LoadedTable, Row};
 
 /// Readings of an ADC of 12 bits.
@@ -55,9 +55,12 @@ impl Decoder {
         let is_table = table.file.bend_sensors().is_ok();
         let compiled = is_table.then(|| table.compile::<f64>(table.file.rate_hz)).transpose()?;
         let maps = match &compiled {
-            Some(compiled) => {
-                compiled.config().segments.iter().map(|segment| segment.bend.each_ref().map(angles)).collect()
-            }
+            Some(compiled) => compiled
+                .config()
+                .segments
+                .iter()
+                .map(|segment| segment.bend.each_ref().map(|sensor| sensor.as_ref().map(angles)))
+                .collect(),
             None => vec![[None, None]; table.file.segments.len()],
         };
         let unknown = [f64::NAN; MAX_SEGMENTS];
@@ -126,11 +129,9 @@ impl Decoder {
 }
 
 /// Bend angle of every reading of a sensor.
-fn angles(sensor: &Option<BendSensorConfig<f64>>) -> Option<Angles> {
-    let angle = |counts: usize, map: &BendMap<f64>| {
-        map.angle(counts as u16).map_or(f32::NAN, |angle| angle.to_degrees() as f32)
-    };
-    sensor.as_ref().map(|sensor| (0..COUNTS).map(|counts| angle(counts, &sensor.map)).collect())
+fn angles(sensor: &BendSensorConfig<f64>) -> Angles {
+    let angle = |counts: usize| sensor.map.angle(counts as u16).map_or(f32::NAN, |angle| angle.to_degrees() as f32);
+    (0..COUNTS).map(angle).collect()
 }
 
 /// An angle within ±180°.

@@ -61,7 +61,8 @@ pub(super) struct Plugs {
     tare_s: f64,
     tare_ends_s: f64,
     rows: Rows,
-    plugs: Vec<[Plug; 2]>,
+    /// By segment.
+    pairs: Vec<[Plug; 2]>,
 }
 
 impl Plugs {
@@ -77,7 +78,7 @@ impl Plugs {
             tare_s: table.tare.seconds,
             tare_ends_s: f64::NEG_INFINITY,
             rows: Rows::default(),
-            plugs: (0..segments).map(|i| [plug(i, 0), plug(i, 1)]).collect(),
+            pairs: (0..segments).map(|i| [plug(i, 0), plug(i, 1)]).collect(),
         }
     }
 
@@ -89,7 +90,7 @@ impl Plugs {
         if frame.time_s >= self.tare_ends_s {
             return;
         }
-        for (plugs, counts) in self.plugs.iter_mut().zip(&frame.counts) {
+        for (plugs, counts) in self.pairs.iter_mut().zip(&frame.counts) {
             for (plug, counts) in plugs.iter_mut().zip(counts) {
                 if let Some(counts) = counts {
                     plug.tare = [plug.tare[0] + f64::from(*counts), plug.tare[1] + 1.0];
@@ -100,7 +101,7 @@ impl Plugs {
 
     /// Adds a step of the counts, and of the bend angles by the IMUs.
     pub fn add(&mut self, counts: &[[f64; 2]; MAX_SEGMENTS], by_imu: &[f64; MAX_SEGMENTS]) {
-        for (plugs, counts) in self.plugs.iter_mut().zip(counts) {
+        for (plugs, counts) in self.pairs.iter_mut().zip(counts) {
             for (plug, counts) in plugs.iter_mut().zip(counts) {
                 for (products, angle) in plug.with.iter_mut().zip(by_imu) {
                     products.add(*counts, *angle);
@@ -122,7 +123,7 @@ impl Plugs {
     /// The factor of all counts to those by the maps, where it is not 1: by the counts of the reference pose, and by their change
     /// with the angle of the IMUs.
     fn factor(&self) -> Option<f64> {
-        let plugs = || self.plugs.iter().enumerate().flat_map(|(i, plugs)| plugs.iter().map(move |plug| (i, plug)));
+        let plugs = || self.pairs.iter().enumerate().flat_map(|(i, plugs)| plugs.iter().map(move |plug| (i, plug)));
         let at_rest: Vec<f64> = plugs().filter_map(|(_, plug)| plug.factor_at_rest()).collect();
         let factor = median(at_rest.clone())?;
         let agree = at_rest.iter().filter(|of| (*of / factor - 1.0).abs() < SPREAD).count();
@@ -161,7 +162,7 @@ impl Plugs {
     /// Size of the correlation of a sensor's steps with those of segment `j` by the IMUs; `None` without enough of them. Its sign
     /// is that of the sensor's divider.
     fn correlation(&self, i: usize, place: usize, j: usize) -> Option<f64> {
-        let Products { counts, both, angle, .. } = *self.plugs[i][place].with[j].judged()?;
+        let Products { counts, both, angle, .. } = *self.pairs[i][place].with[j].judged()?;
         Some(both.abs() / (counts * angle).sqrt().max(f64::MIN_POSITIVE))
     }
 }
