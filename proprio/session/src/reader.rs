@@ -27,6 +27,8 @@ pub struct SessionReader {
     rows: Rows,
     ahead: VecDeque<Row>,
     rate_hz: Option<f64>,
+    /// Number of the rows by which it was measured.
+    rate_rows: usize,
     is_regular_file: bool,
     bend_sensors: Vec<[bool; 2]>,
     kind: FileFormat,
@@ -79,6 +81,7 @@ impl SessionReader {
             rows,
             ahead: VecDeque::new(),
             rate_hz: None,
+            rate_rows: 0,
             is_regular_file,
             bend_sensors,
             kind,
@@ -97,6 +100,7 @@ impl SessionReader {
         }
         let steps = self.ahead.iter().zip(self.ahead.iter().skip(1)).map(|(from, to)| Step::new(from, to));
         self.rate_hz = rate_hz(steps.collect());
+        self.rate_rows = self.ahead.len();
         if matches!(self.rows, Rows::Recorded(..)) {
             // A recording has no columns: the sensors are those with any reading.
             for (i, present) in self.bend_sensors.iter_mut().enumerate() {
@@ -156,7 +160,7 @@ impl SessionReader {
     pub fn rate_hz(&self, usual_hz: f64) -> Result<f64, SessionError> {
         let Some(rate_hz) = self.rate_hz else { return Ok(usual_hz) };
         if self.kind == FileFormat::Csv
-            && self.ahead.len() >= UNIT_ROWS
+            && self.rate_rows >= UNIT_ROWS
             && let Some(factor) = time_factor(usual_hz, rate_hz)
         {
             let problem = SessionProblem::TimeUnit { rate_hz, usual_hz, factor };

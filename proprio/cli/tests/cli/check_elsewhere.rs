@@ -88,3 +88,17 @@ fn align_warns_of_the_session() {
     let [same] = warnings(&run.stderr, "session.csv")[..] else { panic!("{}", run.stderr) };
     assert!(same.starts_with("imu3 and imu4, "), "{same}");
 }
+
+#[test]
+fn check_takes_an_arm_description_as_well() {
+    let mut session = simulate("--scenario 1 --seconds 60 --seed 61");
+    one_channel(&mut session);
+    let folder = Folder::with("session.csv", session.to_string());
+    let run = folder.run(&["check", "session.csv", "--table", arm()]);
+    assert_eq!(run.code, Some(1), "{}", run.stderr);
+    assert!(
+        run.stdout.starts_with("session.csv: imu3 and imu4, ") && run.stdout.lines().count() == 1,
+        "{}",
+        run.stdout
+    );
+}
