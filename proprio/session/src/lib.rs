@@ -58,7 +58,7 @@ pub use error::Error;
 pub use file_content::FileContent;
 pub use header::Header;
 pub use missing_column::{MissingColumn, MissingReason};
-pub use output::{OutputFile, discard_unfinished};
+pub use output::{Existing, OutputFile, WrittenFile, discard_unfinished, is_stdout};
 pub use pressures::{PressurePoint, read_pressures};
 pub use progress::{NoProgress, Progress};
 pub use reader::SessionReader;

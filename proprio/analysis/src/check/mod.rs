@@ -167,8 +167,10 @@ pub fn check(session: &Path, table: &LoadedTable, progress: &mut dyn Progress) -
     let work = format!("checking {}", session.display());
     let mut samples = 0;
     while let Some(row) = reader.next_row()? {
-        check.update(&row);
-        samples += 1;
+        if row.is_recorded() {
+            check.update(&row);
+            samples += 1;
+        }
         progress.advance(&work, reader.progress());
     }
     Ok(CheckedSession { samples, defects: reader.defects(), findings: check.findings() })

@@ -13,7 +13,7 @@ use crate::terminal;
 
 pub fn run(args: &AlignArgs) -> Result<(), Error> {
     let arm = LoadedTable::load(&args.arm)?;
-    let mut file = OutputFile::create(&args.output, &[&args.session, &args.camera, &args.arm])?;
+    let mut file = OutputFile::create(&args.output, &[&args.session, &args.camera, &args.arm], args.force.existing())?;
     let alignment = align(&args.session, &args.camera, &arm, &mut Bar::new());
     let alignment = checked(alignment, slice::from_ref(&args.session), |_| arm, |_| true)?;
     for (path, defects) in [&args.session, &args.camera].into_iter().zip(&alignment.defects) {
@@ -21,8 +21,9 @@ pub fn run(args: &AlignArgs) -> Result<(), Error> {
     }
     let written = alignment.write(&args.session, &mut file)?;
     // Last, so that a command that fails leaves no file.
-    terminal::print(&text(&alignment.report, written))?;
-    Ok(file.finish()?)
+    terminal::print_beside(Some(&args.output), &text(&alignment.report, written))?;
+    terminal::eprint_line(&file.finish()?);
+    Ok(())
 }
 
 fn text(report: &AlignmentReport, Written { rows, with_truth }: Written) -> String {

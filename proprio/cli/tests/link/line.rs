@@ -39,6 +39,12 @@ impl Board {
         self.to_host.extend(frame);
     }
 
+    /// Sends a frame that is lost on its way.
+    pub fn lose_frame(&mut self) {
+        let mut buffer = [0; MAX_FRAME];
+        self.encoder.encode(&Message::Hello(hello(1)), &mut buffer).expect("it fits");
+    }
+
     /// Restarts the board: frames are numbered from 0, and no request is stored.
     pub fn restart(&mut self, boot: u32) {
         (self.encoder, self.server) = (Encoder::new(), board_core::CommandServer::new());

@@ -5,6 +5,7 @@ mod access;
 mod findings;
 mod flashed;
 mod http;
+mod late_recordings;
 mod line;
 mod mismatches;
 mod noise;
