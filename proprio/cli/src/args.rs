@@ -145,7 +145,7 @@ pub struct CheckArgs {
     /// Sessions to check
     #[arg(required = true, value_name = "SESSION")]
     pub sessions: Vec<PathBuf>,
-    /// Table of the arm
+    /// Table of the arm; by an arm description only what needs no map is checked
     #[arg(long, value_name = "TABLE.toml")]
     pub table: PathBuf,
     /// Print the findings as JSON

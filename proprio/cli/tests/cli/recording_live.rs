@@ -10,7 +10,7 @@ use rand_chacha::rand_core::{Rng, SeedableRng};
 use serialport::{SerialPort, TTYPort};
 
 use super::board::SyntheticBoard;
-use super::common::{Folder, table};
+use super::common::{Folder, error_of, table};
 use super::recording_files::recorded;
 
 /// Starts the recorder on a pseudo-terminal and plays the board's stream, four times as fast as a board, until `done`.
@@ -71,7 +71,8 @@ fn a_recording_that_is_killed_is_recovered_and_replays_bit_for_bit() {
             wait_for_bytes(&folder, bytes);
             child.kill().expect("it runs");
         });
-        folder.done(&["recover", "a.mcap", "-o", "whole.mcap"]);
+        // The end is lost.
+        assert_eq!(folder.run(&["recover", "a.mcap", "-o", "whole.mcap"]).code, Some(1));
         let (recorded, stderr) = recorded(&folder, "whole.mcap");
         assert_eq!(
             (&recorded["equal"], &recorded["table_matches"]),
@@ -116,6 +117,9 @@ fn a_silent_board_has_no_status() {
     let (_board, port) = TTYPort::pair().expect("the system has pseudo-terminals");
     let name = port.name().expect("it has a name");
     drop(port);
-    let error = folder.refused(&["status", "--port", &name]);
-    assert!(error.contains("no Hello and Health within 10 s"), "{error}");
+    let run = folder.run(&["status", "--port", &name]);
+    let (notice, error) = run.stderr.split_once('\n').expect("a notice and an error");
+    assert_eq!(notice, format!("{name}: waiting for a board's messages, 10 s at most"));
+    assert_eq!((run.code, run.stdout.as_str()), (Some(2), ""));
+    assert!(error_of(error).contains("no Hello and Health within 10 s"), "{error}");
 }
