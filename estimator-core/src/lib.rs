@@ -82,7 +82,7 @@ pub use estimator::Estimator;
 pub use fusion::kalman::{COVARIANCE_LIMIT, H_LIMIT, KalmanFilter, KalmanGains};
 pub use kinematics::covariance::{CovariancePropagation, lever_arm};
 pub use kinematics::forward::forward_kinematics;
-pub use kinematics::pcc::{Link, Pcc, UnitArc};
+pub use kinematics::pcc::{Pcc, SegmentPose, UnitArc};
 pub use numeric::angle::Angle;
 pub use numeric::fused::{FusedOps, plain};
 pub use numeric::phase::{Phase, Turns};

@@ -4,7 +4,7 @@ use nalgebra::SVector;
 
 use crate::config::SegmentConfig;
 use crate::fusion::kalman::{KalmanFilter, KalmanGains};
-use crate::kinematics::pcc::{Link, Pcc};
+use crate::kinematics::pcc::{Pcc, SegmentPose};
 use crate::numeric::angle::Angle;
 use crate::numeric::fused::FusedOps;
 use crate::numeric::phase::Turns;
@@ -22,7 +22,7 @@ pub struct SegmentState<S> {
     coord_gains: KalmanGains<S>,
     orient: KalmanFilter<S, 1>,
     orient_gains: KalmanGains<S>,
-    fused: Option<Link<S>>,
+    fused: Option<SegmentPose<S>>,
 }
 
 impl<S: FusedOps> SegmentState<S> {
@@ -67,7 +67,7 @@ impl<S: FusedOps> SegmentState<S> {
         let vector = |theta: S| SVector::from([theta]);
         self.orient.step(&self.orient_gains, theta_c.map(vector), theta_bend.map(vector));
         let states = self.orient.state().zip(self.coord.state());
-        self.fused = states.map(|((theta, _), (end, _))| Link { theta: Angle::from(theta.x), end });
+        self.fused = states.map(|((theta, _), (end, _))| SegmentPose { theta: Angle::from(theta.x), end });
     }
 
     /// Sets the fused link to constant curvature at the bend angle of all sensors.
@@ -76,12 +76,12 @@ impl<S: FusedOps> SegmentState<S> {
     }
 
     /// The fused link.
-    pub fn fused(&self) -> Option<Link<S>> {
+    pub fn fused(&self) -> Option<SegmentPose<S>> {
         self.fused
     }
 
     /// The link at any bend angle.
-    pub fn link(&self, theta: Angle<S>) -> Link<S> {
+    pub fn link(&self, theta: Angle<S>) -> SegmentPose<S> {
         self.pcc.link(theta)
     }
 

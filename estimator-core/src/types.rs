@@ -4,7 +4,7 @@ use heapless::Vec;
 use nalgebra::Vector2;
 
 use crate::config::SENSORS_PER_SEGMENT;
-use crate::kinematics::pcc::Link;
+use crate::kinematics::pcc::SegmentPose;
 use crate::numeric::angle::Angle;
 use crate::numeric::phase::Phase;
 use crate::numeric::q::Q;
@@ -79,14 +79,14 @@ impl Method {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SegmentEstimate<S> {
     /// Estimate from the bend sensors that were read.
-    pub bend: Option<Link<S>>,
+    pub bend: Option<SegmentPose<S>>,
     /// θ_imu,i from the raw IMUs; `None` until the tare is complete.
     pub imu_o: Option<Angle<S>>,
     /// Estimate from the drift-corrected IMUs.
-    pub imu_c: Option<Link<S>>,
+    pub imu_c: Option<SegmentPose<S>>,
     /// Estimate from all sensors: θ_i of KF_orient and P_i of KF_coord, or of the bias filter; `None` before the first
     /// measurement.
-    pub fusion: Option<Link<S>>,
+    pub fusion: Option<SegmentPose<S>>,
     /// Number of the segment's bend sensors that were read.
     pub bend_sensors_read: u8,
     /// The segment's IMU returned a valid heading.

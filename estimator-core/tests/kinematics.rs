@@ -2,7 +2,9 @@
 
 use std::f64::consts::{FRAC_2_PI, FRAC_PI_2, PI, TAU};
 
-use estimator_core::{Angle, FusedOps, Link, OffsetAt, Pcc, Q, SegmentConfig, Turns, UnitArc, forward_kinematics};
+use estimator_core::{
+    Angle, FusedOps, OffsetAt, Pcc, Q, SegmentConfig, SegmentPose, Turns, UnitArc, forward_kinematics,
+};
 use nalgebra::Vector2;
 use proptest::prelude::*;
 
@@ -127,7 +129,7 @@ fn end_by_formula(theta: f64, (length, offset, start): (f64, f64, bool)) -> Vect
     Vector2::new(length * lateral, length * axial) + connector
 }
 
-fn link<S: FusedOps>(theta: S, segment: &SegmentConfig<S>) -> Link<S> {
+fn link<S: FusedOps>(theta: S, segment: &SegmentConfig<S>) -> SegmentPose<S> {
     Pcc::new(segment).link(Angle::from(theta))
 }
 

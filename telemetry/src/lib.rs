@@ -7,7 +7,7 @@
 //! | file | contents |
 //! |---|---|
 //! | `constants.rs` | [`PROTOCOL_VERSION`], [`MAX_FRAME`], the arm's numbers |
-//! | `message.rs` | messages and requests |
+//! | `message.rs`, `table_message.rs` | messages and requests |
 //! | `wire.rs`, `wire_conversions.rs` | fixed-width forms of the messages of every tick |
 //! | `payload.rs` | topics and bodies |
 //! | `frame.rs` | COBS, CRC and [`Encoder`] |
@@ -16,7 +16,7 @@
 //! | `estimator.rs` | a [`Sample`] for `estimator-core`, and an [`Estimate`], [`Uncertainty`] and contact from it |
 //!
 //! ```
-//! use telemetry::{Command, DecodeError, Decoder, Encoder, MAX_FRAME, Message, Outcome, Refusal, Reply, Request};
+//! use telemetry::{Command, DecodeError, Decoder, Encoder, MAX_FRAME, Message, RequestOutcome, Refusal, Reply, Request};
 //!
 //! // The host sends a request.
 //! let mut host = Encoder::new();
@@ -29,7 +29,7 @@
 //! let received = frame.iter().find_map(|&byte| requests.push(byte));
 //! assert_eq!(received, Some(Ok(request)));
 //! let mut board = Encoder::new();
-//! let reply = Message::Reply(Reply { id: request.id, outcome: Outcome::Nack(Refusal::Busy) });
+//! let reply = Message::Reply(Reply { id: request.id, outcome: RequestOutcome::Nack(Refusal::Busy) });
 //! let mut line = board.encode(&reply, &mut buffer)?.to_vec();
 //!
 //! // Noise damages the frame that it hits, and no other.
@@ -52,10 +52,13 @@ mod frame;
 mod message;
 mod payload;
 mod schema;
+mod table_message;
 mod wire;
 mod wire_conversions;
 
-pub use constants::{BEND_SENSORS, MAX_FRAME, PROTOCOL_VERSION, REGULATORS, SEGMENTS, TICK_HZ, TICK_US};
+pub use constants::{
+    BEND_SENSORS, MAX_FRAME, PROTOCOL_VERSION, REGULATORS, SEGMENTS, TABLE_CHUNK_BYTES, TICK_HZ, TICK_US,
+};
 pub use decode_error::DecodeError;
 pub use decoder::{Counts, Decoder};
 pub use estimator::contact_flags;
@@ -63,6 +66,7 @@ pub use frame::{EncodeError, Encoder};
 pub use message::*;
 pub use payload::{Payload, topic};
 pub use schema::{EARLIER_SCHEMAS, SCHEMA, is_same_layout};
+pub use table_message::{TableAnnouncement, TableChunk, TableState, TableStatus};
 
 /// Runs the example of the protocol's page.
 #[cfg(doctest)]

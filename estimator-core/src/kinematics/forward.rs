@@ -3,7 +3,7 @@
 
 use nalgebra::Vector2;
 
-use crate::kinematics::pcc::{Link, sin_cos};
+use crate::kinematics::pcc::{SegmentPose, sin_cos};
 use crate::numeric::fused::FusedOps;
 use crate::types::SegmentShape;
 
@@ -20,7 +20,7 @@ use crate::types::SegmentShape;
 /// ```
 #[inline]
 pub fn forward_kinematics<S: FusedOps>(
-    links: impl Iterator<Item = Option<Link<S>>>,
+    links: impl Iterator<Item = Option<SegmentPose<S>>>,
 ) -> impl Iterator<Item = SegmentShape<S>> {
     // Products of cosines and sines instead of the sum of the angles: no trigonometry, and nothing to wrap.
     let mut before = Some((Vector2::zeros(), (S::zero(), S::one())));

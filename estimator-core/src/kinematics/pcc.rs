@@ -84,7 +84,7 @@ impl<S: FusedOps> UnitArc<S> {
 
 /// One segment as a link of the chain: its bend angle and its end in its own frame {S_i}.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Link<S> {
+pub struct SegmentPose<S> {
     /// Bend angle θ_i.
     pub theta: Angle<S>,
     /// End of the segment, curved part and connector, P_i in {S_i}, m.
@@ -143,13 +143,13 @@ impl<S: FusedOps> Pcc<S> {
     /// The segment bent by `theta`, of any size.
     #[inline]
     #[must_use]
-    pub fn link(&self, theta: Angle<S>) -> Link<S> {
+    pub fn link(&self, theta: Angle<S>) -> SegmentPose<S> {
         let (x, y) = if theta.whole_turns == 0 && theta.remainder.is_within(self.limit) {
             theta.remainder.polynomials(&self.lateral, &self.axial)
         } else {
             self.by_arc(theta)
         };
-        Link { theta, end: Vector2::new(x, y) }
+        SegmentPose { theta, end: Vector2::new(x, y) }
     }
 
     #[cold]

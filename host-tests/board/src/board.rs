@@ -2,12 +2,13 @@
 
 use rig_twin::{EndPose, MotionProgram, REGULATORS, SEGMENTS};
 use telemetry::{
-    Command, Decoder, Encoder, Estimate, Event, Health, Hello, MAX_FRAME, Message, Outcome, Request, Sample,
-    SetPressures, Uncertainty,
+    Command, Decoder, Encoder, Estimate, Event, Health, Hello, MAX_FRAME, Message, Request, RequestOutcome, Sample,
+    SetPressures, TableState, Uncertainty,
 };
 use virtual_due::{CYCLES_PER_SECOND, Cycles, Machine, WiredRig};
 
 use crate::build::firmware;
+use crate::flash::machine;
 
 /// The serial port of the programming port: the UART.
 pub const UART: usize = 0;
@@ -37,13 +38,27 @@ pub struct Board {
 }
 
 impl Board {
-    /// A board with the firmware in its flash, in a rig, with power just come up.
+    /// A board with the firmware and the reference arm's table in its flash, in a rig, with power just come up.
     ///
     /// # Panics
     /// If the firmware does not build.
     #[must_use]
     pub fn new(rig: WiredRig) -> Self {
-        let machine = Machine::new(firmware(), rig).expect("cargo built an ELF for the board");
+        Self::start(machine(rig))
+    }
+
+    /// A board with the firmware and another content of the flash beside it.
+    ///
+    /// # Panics
+    /// If the firmware does not build.
+    #[must_use]
+    pub fn with_flash(rig: WiredRig, flash: &[u8]) -> Self {
+        let mut machine = Machine::new(firmware(), rig).expect("cargo built an ELF for the board");
+        machine.load_flash(flash);
+        Self::start(machine)
+    }
+
+    fn start(machine: Machine<WiredRig>) -> Self {
         Self {
             machine,
             decoder: Decoder::new(),
@@ -109,7 +124,7 @@ impl Board {
     ///
     /// # Panics
     /// If none comes within 100 ms.
-    pub fn request(&mut self, command: Command) -> Outcome {
+    pub fn request(&mut self, command: Command) -> RequestOutcome {
         let before = self.received.len();
         let id = self.send(command);
         self.run_ms(100);
@@ -125,7 +140,7 @@ impl Board {
     /// # Panics
     /// If the board does not arm.
     pub fn swing(&mut self, program: &MotionProgram, seconds: u64) {
-        assert_eq!(self.request(Command::Arm), Outcome::Ack);
+        assert_eq!(self.request(Command::Arm), RequestOutcome::Ack);
         let start = self.machine.seconds();
         for _ in 0..seconds * 20 {
             self.set_pressures(program.duties(self.machine.seconds() - start));
@@ -199,6 +214,14 @@ impl Board {
     pub fn events(&self) -> impl DoubleEndedIterator<Item = Event> {
         self.received.iter().filter_map(|received| match &received.message {
             Message::Event(event) => Some(*event),
+            _ => None,
+        })
+    }
+
+    /// All states of the table, in order.
+    pub fn table_states(&self) -> impl DoubleEndedIterator<Item = &TableState> {
+        self.received.iter().filter_map(|received| match &received.message {
+            Message::Table(state) => Some(state),
             _ => None,
         })
     }

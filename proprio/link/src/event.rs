@@ -8,7 +8,7 @@ use telemetry::{DecodeError, Message, PROTOCOL_VERSION, SCHEMA};
 
 /// An event on the link.
 #[derive(Debug, Clone)]
-pub struct Event {
+pub struct LinkEvent {
     /// Time of the event; for bytes and the messages in them, that of their arrival.
     pub at: HostNs,
     /// Gaps in the stream before the event: lost frames, and openings of the line after the first.

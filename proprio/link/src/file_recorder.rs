@@ -9,7 +9,7 @@ use proprio_session::recording::Recorder;
 use proprio_session::{Error, HostClock, HostNs, is_stdout};
 use telemetry::SetPressures;
 
-use crate::event::{Event, EventKind};
+use crate::event::{EventKind, LinkEvent};
 use crate::handle::Link;
 use crate::history::ReceivedBytes;
 use crate::shared::Subscription;
@@ -62,7 +62,7 @@ impl FileRecorder {
     ///
     /// # Errors
     /// [`Error::Output`].
-    pub fn event(&mut self, event: &Event) -> Result<(), Error> {
+    pub fn event(&mut self, event: &LinkEvent) -> Result<(), Error> {
         let written = match &event.kind {
             EventKind::Bytes(bytes) => self.recorder.bytes(event.at, bytes),
             EventKind::Message(message) => self.recorder.message(event.at, message),

@@ -1,6 +1,6 @@
 //! Handle of a link: its state, requests and subscriptions.
 
-use std::sync::mpsc::{Sender, channel};
+use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Weak};
 use std::thread::JoinHandle;
 use std::time::Instant;
@@ -84,21 +84,52 @@ impl Link {
     /// # Errors
     /// [`RequestError`]: refused, not answered within two seconds, or interrupted by a restart.
     pub fn request(&self, command: Command) -> Result<(), LinkError> {
-        let asker = Arc::new(());
-        self.request_of(&Arc::downgrade(&asker), command)
+        self.begin_request(command).wait()
     }
 
-    /// The same for an asker who may leave earlier: once it is dropped, the request is not sent any more.
+    /// Begins a request without waiting until it is done.
+    pub fn begin_request(&self, command: Command) -> PendingRequest {
+        let asker = Arc::new(());
+        let answered = self.send(Arc::downgrade(&asker), command);
+        PendingRequest { answered, _asker: asker }
+    }
+
+    /// As [`Link::request`] for an asker who may leave earlier: once it is dropped, the request is not sent any more.
     ///
     /// # Errors
     /// [`RequestError`].
     pub fn request_of(&self, asker: &Weak<()>, command: Command) -> Result<(), LinkError> {
-        let (sender, answered) = channel();
-        let answer = Answer { sender, asker: asker.clone(), deadline: Instant::now() + TIME_LIMIT };
-        let sent = self.requests.send(LinkRequest::Command(command, answer));
-        let outcome = sent.ok().and_then(|()| answered.recv().ok()).unwrap_or(Err(RequestError::Interrupted));
-        outcome.map_err(LinkError::Request)
+        outcome(&self.send(asker.clone(), command))
     }
+
+    fn send(&self, asker: Weak<()>, command: Command) -> Receiver<Result<(), RequestError>> {
+        let (sender, answered) = channel();
+        let answer = Answer { sender, asker, deadline: Instant::now() + TIME_LIMIT };
+        // Without a thread the channel is closed, which is an interruption.
+        let _ = self.requests.send(LinkRequest::Command(command, answer));
+        answered
+    }
+}
+
+/// A request whose answer is not there yet. Once it is dropped, it is not sent any more.
+#[derive(Debug)]
+pub struct PendingRequest {
+    answered: Receiver<Result<(), RequestError>>,
+    _asker: Arc<()>,
+}
+
+impl PendingRequest {
+    /// Waits until the request is done.
+    ///
+    /// # Errors
+    /// As [`Link::request`].
+    pub fn wait(self) -> Result<(), LinkError> {
+        outcome(&self.answered)
+    }
+}
+
+fn outcome(answered: &Receiver<Result<(), RequestError>>) -> Result<(), LinkError> {
+    answered.recv().unwrap_or(Err(RequestError::Interrupted)).map_err(LinkError::Request)
 }
 
 impl Drop for Link {

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use proprio_session::{HostNs, RowAssembler};
 
-use crate::event::{Event, EventKind};
+use crate::event::{EventKind, LinkEvent};
 
 /// Most bytes that are held: 3 h 30 min of the full stream.
 const MOST: usize = 256_000_000;
@@ -39,7 +39,7 @@ impl History {
     }
 
     /// Takes the next event.
-    pub fn take(&mut self, event: &Event) {
+    pub fn take(&mut self, event: &LinkEvent) {
         match &event.kind {
             EventKind::Opened(_) => self.assembler.line_opened(),
             EventKind::Bytes(bytes) => {

@@ -1,6 +1,6 @@
 //! The serial link to a board: real, or the emulated one.
 //!
-//! One thread reads bytes, stamps them with the time of their arrival, decodes them, and hands [`Event`]s to every
+//! One thread reads bytes, stamps them with the time of their arrival, decodes them, and hands [`LinkEvent`]s to every
 //! [`Subscription`]. It opens the port again when the cable comes back, begins with a Ping, and sends requests until they
 //! are answered. A subscriber may be slow: each subscription has its own bounded queue, which drops its oldest events
 //! and counts them, and does not delay the others.
@@ -30,6 +30,7 @@
 //! | `event.rs`, `queue.rs` | events with their time of arrival, and a queue for each subscription |
 //! | `file_recorder.rs`, `history.rs` | recording to a file; the bytes that one needs which begins later |
 //! | `drive/`, `status.rs` | pressures over time; the state of a board within seconds |
+//! | `table/` | transfer of the table to the board and back |
 //! | `source.rs` | [`Source`]: opens a line, once or again |
 //! | `ports.rs`, `serial.rs`, `virtual_due.rs` | the sources: serial ports and the emulated Due |
 
@@ -47,13 +48,14 @@ mod shared;
 mod source;
 pub mod status;
 mod stream_decoder;
+pub mod table;
 mod virtual_due;
 mod worker;
 
 pub use error::LinkError;
-pub use event::{Event, EventKind, Mismatch};
+pub use event::{EventKind, LinkEvent, Mismatch};
 pub use file_recorder::FileRecorder;
-pub use handle::Link;
+pub use handle::{Link, PendingRequest};
 pub use history::ReceivedBytes;
 pub use ports::{Port, PortKind, find_due, list};
 pub use requests::RequestError;
@@ -61,4 +63,4 @@ pub use serial::{Baud, PortSource};
 pub use shared::{LinkState, Subscription};
 pub use source::{Source, Transport};
 pub use stream_decoder::{Received, StreamDecoder};
-pub use virtual_due::VirtualDue;
+pub use virtual_due::{Flash, VirtualDue};

@@ -1,4 +1,5 @@
-//! The host's side of requests: one after the other, each under its own id and repeated until it is answered.
+//! The host's side of requests: one after the other, each under its own id and repeated until it is answered. The pieces of
+//! a table alone are sent ahead of their replies, so that the line is never idle.
 //!
 //! A host begins with a Ping: no other request is sent before one is acknowledged. No request outlives the run of the board
 //! that it was made for, its time limit, or its asker: one that arms the pressures must not arrive when nobody expects it.
@@ -8,7 +9,7 @@ use std::sync::Weak;
 use std::sync::mpsc::Sender;
 use std::time::{Duration, Instant};
 
-use telemetry::{Command, Encoder, MAX_FRAME, Outcome, Refusal, Reply, Request};
+use telemetry::{Command, Encoder, MAX_FRAME, Refusal, Reply, Request, RequestOutcome};
 
 /// Time without an answer after which a request is sent again.
 const AGAIN: Duration = Duration::from_millis(100);
@@ -53,18 +54,22 @@ impl Answer {
     }
 }
 
-/// The requests that wait, and the one that is under way.
+/// Pieces of a table under way at once: they fill less than the board's receive buffer.
+const PIECES_AHEAD: usize = 2;
+
+/// The requests that wait, and those under way.
 #[derive(Debug, Default)]
 pub struct Requests {
     encoder: Encoder,
     last_id: u32,
     is_connected: bool,
-    current: Option<Current>,
+    /// In the order in which they were sent; more than one are pieces of a table.
+    under_way: VecDeque<UnderWay>,
     waiting: VecDeque<(Command, Answer)>,
 }
 
 #[derive(Debug)]
-struct Current {
+struct UnderWay {
     request: Request,
     /// `None` for the Ping of the handshake, which is repeated without limit.
     answer: Option<Answer>,
@@ -85,21 +90,21 @@ impl Requests {
     /// The bytes to send now, if any: a zero, which ends the rest of a damaged frame, and a frame.
     pub fn due(&mut self, now: Instant) -> Option<Vec<u8>> {
         self.give_up(now);
-        if self.current.is_none() {
-            self.begin(now)?;
+        if self.may_begin() {
+            self.begin(now);
         }
-        let current = self.current.as_mut().filter(|current| current.due <= now)?;
-        current.due = now + AGAIN;
+        let due = self.under_way.iter_mut().find(|one| one.due <= now)?;
+        due.due = now + AGAIN;
         let mut buffer = [0; MAX_FRAME];
-        let frame = self.encoder.encode(&current.request, &mut buffer).ok()?;
+        let frame = self.encoder.encode(&due.request, &mut buffer).ok()?;
         Some([&[0], frame].concat())
     }
 
     /// Ends the requests for whose answer nobody waits any more.
     fn give_up(&mut self, now: Instant) {
-        let answer = self.current.as_ref().and_then(|current| current.answer.as_ref());
-        if answer.is_some_and(|answer| !answer.is_awaited(now)) {
-            self.finish(Err(RequestError::NoAnswer));
+        let is_over = |one: &UnderWay| one.answer.as_ref().is_some_and(|answer| !answer.is_awaited(now));
+        while let Some(place) = self.under_way.iter().position(is_over) {
+            self.finish(place, Err(RequestError::NoAnswer));
         }
         self.waiting.retain(|(_, answer)| {
             let is_awaited = answer.is_awaited(now);
@@ -110,47 +115,58 @@ impl Requests {
         });
     }
 
-    /// Makes the next request the one under way.
-    fn begin(&mut self, now: Instant) -> Option<()> {
+    /// True where nothing is under way, or pieces of a table alone and the next one is another.
+    fn may_begin(&self) -> bool {
+        let is_piece = |command: &Command| matches!(command, Command::TableWrite(_));
+        let next = self.waiting.front().is_some_and(|(command, _)| is_piece(command));
+        let pieces_alone = self.under_way.iter().all(|one| is_piece(&one.request.command));
+        self.under_way.is_empty() || (next && pieces_alone && self.under_way.len() < PIECES_AHEAD)
+    }
+
+    /// Adds the next request to those under way.
+    fn begin(&mut self, now: Instant) {
         let (command, answer) = if self.is_connected {
-            let (command, answer) = self.waiting.pop_front()?;
+            let Some((command, answer)) = self.waiting.pop_front() else { return };
             (command, Some(answer))
         } else {
             (Command::Ping, None)
         };
         self.last_id = self.last_id.wrapping_add(1);
         let request = Request { id: self.last_id, command };
-        self.current = Some(Current { request, answer, due: now });
-        Some(())
+        self.under_way.push_back(UnderWay { request, answer, due: now });
     }
 
     /// Handles a reply of the board.
     pub fn replied(&mut self, reply: Reply) {
-        let Some(current) = self.current.as_ref().filter(|current| current.request.id == reply.id) else { return };
+        let Some(place) = self.under_way.iter().position(|one| one.request.id == reply.id) else { return };
+        let is_handshake = self.under_way.get(place).is_some_and(|one| one.answer.is_none());
         match reply.outcome {
-            Outcome::Ack => {
+            RequestOutcome::Ack => {
                 self.is_connected = true;
-                self.finish(Ok(()));
+                self.finish(place, Ok(()));
             }
             // The board has not processed it: it is sent again.
-            Outcome::Nack(Refusal::Busy) => {}
+            RequestOutcome::Nack(Refusal::Busy) => {}
             // An earlier host has used higher ids. The board accepts a Ping with a lower one after its session timeout.
-            Outcome::Nack(_) if current.answer.is_none() => {}
-            Outcome::Nack(refusal) => self.finish(Err(refusal.into())),
+            RequestOutcome::Nack(_) if is_handshake => {}
+            RequestOutcome::Nack(refusal) => self.finish(place, Err(refusal.into())),
         }
     }
 
     /// Ends all requests after a restart of the board or the loss of its line; none of them is sent again.
     pub fn interrupt(&mut self) {
-        self.finish(Err(RequestError::Interrupted));
+        while !self.under_way.is_empty() {
+            self.finish(0, Err(RequestError::Interrupted));
+        }
         for (_, answer) in self.waiting.drain(..) {
             answer.send(Err(RequestError::Interrupted));
         }
         self.is_connected = false;
     }
 
-    fn finish(&mut self, outcome: Result<(), RequestError>) {
-        if let Some(answer) = self.current.take().and_then(|current| current.answer) {
+    /// Ends the request at a place among those under way.
+    fn finish(&mut self, place: usize, outcome: Result<(), RequestError>) {
+        if let Some(answer) = self.under_way.remove(place).and_then(|one| one.answer) {
             answer.send(outcome);
         }
     }
@@ -161,7 +177,7 @@ mod tests {
     use std::sync::Arc;
     use std::sync::mpsc::{Receiver, TryRecvError, channel};
 
-    use telemetry::{Decoder, SetPressures};
+    use telemetry::{Decoder, SetPressures, TableChunk};
 
     use super::*;
 
@@ -185,7 +201,7 @@ mod tests {
 
     fn acknowledge(requests: &mut Requests, request: Option<Request>) {
         let id = request.expect("a request was sent").id;
-        requests.replied(Reply { id, outcome: Outcome::Ack });
+        requests.replied(Reply { id, outcome: RequestOutcome::Ack });
     }
 
     const PRESSURES: Command = Command::SetPressures(SetPressures { pressures_pa: [0; 6], valid_ms: 300 });
@@ -222,6 +238,32 @@ mod tests {
         assert_eq!(pressures.outcome.try_recv(), Ok(Err(RequestError::NoAnswer)));
     }
 
+    fn piece(offset: u32) -> Command {
+        Command::TableWrite(TableChunk { offset, bytes: [].into_iter().collect() })
+    }
+
+    #[test]
+    fn two_pieces_of_a_table_are_under_way_at_once_and_no_other_request_beside_them() {
+        let (mut requests, now) = (Requests::default(), Instant::now());
+        let ping = sent(&mut requests, now);
+        acknowledge(&mut requests, ping);
+        let asked: Vec<_> = [piece(0), piece(1), piece(2), Command::TableCommit]
+            .into_iter()
+            .map(|command| ask(&mut requests, command, now))
+            .collect();
+        let (first, second) = (sent(&mut requests, now), sent(&mut requests, now));
+        assert_eq!(second.as_ref().map(|request| request.command.clone()), Some(piece(1)));
+        assert_eq!(sent(&mut requests, now), None);
+        acknowledge(&mut requests, first);
+        let third = sent(&mut requests, now);
+        assert_eq!(third.as_ref().map(|request| request.command.clone()), Some(piece(2)));
+        acknowledge(&mut requests, second);
+        assert_eq!(sent(&mut requests, now), None, "the commit waits for the last piece");
+        acknowledge(&mut requests, third);
+        assert_eq!(sent(&mut requests, now).map(|request| request.command), Some(Command::TableCommit));
+        assert_eq!(asked[2].outcome.try_recv(), Ok(Ok(())));
+    }
+
     #[test]
     fn a_request_whose_asker_has_left_is_dropped() {
         let (mut requests, start) = (Requests::default(), Instant::now());
@@ -231,7 +273,7 @@ mod tests {
         acknowledge(&mut requests, ping);
         drop(arm.asker);
         let next = sent(&mut requests, start);
-        assert_eq!(next.as_ref().map(|request| request.command), Some(Command::Tare));
+        assert_eq!(next.as_ref().map(|request| request.command.clone()), Some(Command::Tare));
         acknowledge(&mut requests, next);
         assert_eq!(tare.outcome.try_recv(), Ok(Ok(())));
     }

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use telemetry::{Command, Counts, Hello};
 
-use crate::event::{Event, EventKind, Mismatch};
+use crate::event::{EventKind, LinkEvent, Mismatch};
 use crate::history::{History, ReceivedBytes};
 use crate::queue::Queue;
 use crate::requests::Answer;
@@ -31,11 +31,11 @@ pub(super) struct SharedLink {
 
 #[derive(Debug, Default)]
 struct Subscribers {
-    queues: Vec<Weak<Queue<Event>>>,
+    queues: Vec<Weak<Queue<LinkEvent>>>,
     /// Where recordings may begin later than the link.
     history: Option<History>,
     /// The last event of a line that is gone for good, for later subscribers.
-    end: Option<Event>,
+    end: Option<LinkEvent>,
 }
 
 /// Current state of a link.
@@ -86,7 +86,7 @@ impl SharedLink {
     }
 
     /// Puts an event into the queue of every subscriber.
-    pub fn publish(&self, event: &Event) {
+    pub fn publish(&self, event: &LinkEvent) {
         let mut subscribers = self.subscribers();
         if matches!(event.kind, EventKind::Ended(_)) {
             subscribers.end = Some(event.clone());
@@ -112,13 +112,13 @@ impl Subscribers {
 /// A subscription to the events of a link.
 #[derive(Debug)]
 pub struct Subscription {
-    queue: Arc<Queue<Event>>,
+    queue: Arc<Queue<LinkEvent>>,
 }
 
 impl Subscription {
     /// The next event; `None` where none comes within `wait`.
     #[must_use]
-    pub fn next(&self, wait: Duration) -> Option<Event> {
+    pub fn next(&self, wait: Duration) -> Option<LinkEvent> {
         self.queue.pop(wait)
     }
 

@@ -31,7 +31,7 @@ pub struct Status {
     /// Uncertainty of the arm's shape, where the board has sent one.
     pub shape: Option<KnownShape>,
     /// Rates of the received messages.
-    pub rates: Rates,
+    pub rates: MessageRates,
     /// Numbers of received frames.
     pub received: FrameCounts,
     /// True where the board answers requests.
@@ -66,7 +66,7 @@ impl From<&Uncertainty> for KnownShape {
 
 /// Rates of the received messages.
 #[derive(Debug, Clone, Copy, Serialize)]
-pub struct Rates {
+pub struct MessageRates {
     /// Samples, Hz.
     pub samples_hz: f64,
     /// Estimates, Hz.
@@ -190,12 +190,12 @@ impl Seen {
     }
 
     /// The rates by the board's clock; `None` before it has settled and enough has arrived.
-    fn rates(&self) -> Option<Rates> {
+    fn rates(&self) -> Option<MessageRates> {
         let (first, last) = self.ticks?;
         let is_tared = self.tared.is_some_and(|tick| last.saturating_sub(tick) >= TARE_TICKS);
         let settled = is_tared || self.healthy_since?.elapsed() >= SETTLING;
         let seconds = f64::from(last.saturating_sub(first)) / TICK_HZ;
-        (settled && seconds >= RATES_S).then(|| Rates {
+        (settled && seconds >= RATES_S).then(|| MessageRates {
             samples_hz: f64::from(self.samples) / seconds,
             estimates_hz: f64::from(self.estimates) / seconds,
             bytes_per_s: self.bytes as f64 / seconds,

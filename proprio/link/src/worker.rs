@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use proprio_session::{HostClock, HostNs};
 use telemetry::Message;
 
-use crate::event::{Event, EventKind};
+use crate::event::{EventKind, LinkEvent};
 use crate::requests::Requests;
 use crate::shared::{LinkRequest, SharedLink};
 use crate::source::{Source, Transport};
@@ -131,7 +131,7 @@ impl Worker {
     }
 
     fn publish_at(&self, at: HostNs, kind: EventKind) {
-        self.shared.publish(&Event { at, gaps: self.decoder.gaps(), kind });
+        self.shared.publish(&LinkEvent { at, gaps: self.decoder.gaps(), kind });
     }
 }
 

@@ -2,7 +2,7 @@
 
 use calibration_tables::{ArmFile, Side};
 use proprio_link::LinkState;
-use proprio_link::status::Rates;
+use proprio_link::status::MessageRates;
 use proprio_session::{CHI2_2_95, ClockDrift};
 use serde::Serialize;
 use telemetry::{Actuation, Health, SEGMENTS, SegmentUncertainty, SensorHealth, SensorState};
@@ -122,7 +122,7 @@ pub(super) struct PageStatus {
     pub health: Option<BoardHealth>,
     pub sensors: Vec<SensorStatus>,
     #[serde(flatten)]
-    pub rates: Rates,
+    pub rates: MessageRates,
     pub frames: u32,
     pub damaged: u32,
     pub lost: u32,
@@ -210,7 +210,7 @@ pub(super) struct BoardTime {
 
 impl PageStatus {
     /// The status of the link; the other fields are empty.
-    pub fn new(link: LinkState, rates: Rates) -> Self {
+    pub fn new(link: LinkState, rates: MessageRates) -> Self {
         let board = link.hello.map(|hello| BoardInfo {
             arm: hello.arm.as_str().to_owned(),
             firmware: hello.firmware.as_str().to_owned(),

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use estimator_core::ArmConfig;
-use proprio_link::{Event, EventKind, Link, Subscription};
+use proprio_link::{EventKind, Link, LinkEvent, Subscription};
 use proprio_session::HostNs;
 
 use super::feed::{Batch, EndCovariances, Feed, PageStatus};
@@ -62,7 +62,7 @@ impl<'t> Hub<'t> {
         }
     }
 
-    fn take(&mut self, event: &Event) {
+    fn take(&mut self, event: &LinkEvent) {
         // The status has the mismatches.
         if !matches!(event.kind, EventKind::Mismatch(_))
             && let Some(warning) = event.kind.warning()

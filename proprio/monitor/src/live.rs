@@ -2,8 +2,8 @@
 
 use std::collections::VecDeque;
 
-use proprio_link::status::Rates;
-use proprio_link::{Event, EventKind};
+use proprio_link::status::MessageRates;
+use proprio_link::{EventKind, LinkEvent};
 use proprio_session::{ClockSync, HostNs, Row, RowAssembler};
 use telemetry::{BEND_SENSORS, Health, Message, SEGMENTS, SensorHealth, SensorState, Uncertainty};
 
@@ -62,7 +62,7 @@ impl<'t> Live<'t> {
     }
 
     /// Takes an event of the link; returns the row that it completes.
-    pub fn take(&mut self, event: &Event) -> Option<TimedRow> {
+    pub fn take(&mut self, event: &LinkEvent) -> Option<TimedRow> {
         match &event.kind {
             EventKind::Bytes(bytes) => self.totals.bytes += bytes.len() as u64,
             EventKind::Message(message) => {
@@ -91,7 +91,7 @@ impl<'t> Live<'t> {
             Message::Event(telemetry::Event::Contact(_, touched)) => self.contact(*touched),
             Message::Event(telemetry::Event::Bend(i, state)) => self.sensor(usize::from(*i), *state),
             Message::Event(telemetry::Event::Imu(i, state)) => self.sensor(BEND_SENSORS + usize::from(*i), *state),
-            Message::Hello(_) | Message::Event(_) | Message::Reply(_) => {}
+            Message::Hello(_) | Message::Event(_) | Message::Reply(_) | Message::Table(_) | Message::TableData(_) => {}
         }
     }
 
@@ -151,7 +151,7 @@ impl<'t> Live<'t> {
     }
 
     /// Rates over the last two seconds; called a few times per second.
-    pub fn rates(&mut self, now: HostNs) -> Rates {
+    pub fn rates(&mut self, now: HostNs) -> MessageRates {
         self.totals.at_ns = now.0;
         while self.totals_before.front().is_some_and(|then| now.0.saturating_sub(then.at_ns) > RATES_NS) {
             self.totals_before.pop_front();
@@ -160,7 +160,7 @@ impl<'t> Live<'t> {
         let (now, then) = (self.totals, self.totals_before.front().copied().unwrap_or_default());
         let seconds = (now.at_ns - then.at_ns) as f64 / 1e9;
         let rate = |count: u64| if seconds > 0.0 { count as f64 / seconds } else { 0.0 };
-        Rates {
+        MessageRates {
             samples_hz: rate(now.samples - then.samples),
             estimates_hz: rate(now.estimates - then.estimates),
             bytes_per_s: rate(now.bytes - then.bytes),
@@ -176,7 +176,7 @@ mod tests {
     use estimator_core::Q;
     use telemetry::{Estimate, Sample, TICK_HZ};
 
-    use super::{Event, EventKind, HostNs, HostReplica, Live, Message, SEGMENTS, TimedRow};
+    use super::{EventKind, HostNs, HostReplica, LinkEvent, Live, Message, SEGMENTS, TimedRow};
     use crate::page_row::ColumnGroup;
 
     /// Ticks from a tare until the replica's estimates are there.
@@ -192,7 +192,7 @@ mod tests {
     impl Stream<'_> {
         fn message(&mut self, tick: u32, message: Message) -> Option<TimedRow> {
             let at = HostNs(1_000_000_000_000 + u64::from(tick) * 10_000_000);
-            self.live.take(&Event { at, gaps: self.gaps, kind: EventKind::Message(message) })
+            self.live.take(&LinkEvent { at, gaps: self.gaps, kind: EventKind::Message(message) })
         }
 
         /// Sends a tick; returns the drifts and innovations of its row that have a value.

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use estimator_core::Q;
-use proprio_link::{Event, EventKind, LinkState};
+use proprio_link::{EventKind, LinkEvent, LinkState};
 use proprio_session::{HostNs, SENSOR_NAMES};
 use telemetry::{Actuation, BEND_SENSORS, Estimate, Message, SensorState};
 
@@ -23,7 +23,7 @@ impl Plain {
     }
 
     /// Takes an event of the link.
-    pub fn take(&mut self, event: &Event) {
+    pub fn take(&mut self, event: &LinkEvent) {
         if let EventKind::Message(Message::Estimate(estimate)) = &event.kind {
             self.estimate = Some(*estimate);
         }

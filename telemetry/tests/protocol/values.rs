@@ -159,7 +159,7 @@ fn reply() -> impl Strategy<Value = Reply> {
         Refusal::Disarmed,
         Refusal::Busy,
     ]);
-    let outcome = prop_oneof![Just(Outcome::Ack), refusal.prop_map(Outcome::Nack)];
+    let outcome = prop_oneof![Just(RequestOutcome::Ack), refusal.prop_map(RequestOutcome::Nack)];
     (number!(u32), outcome).prop_map(|(id, outcome)| Reply { id, outcome })
 }
 
@@ -185,7 +185,7 @@ pub fn longest_messages() -> [Message; 7] {
         }),
         Message::Health(longest_health()),
         Message::Event(Event::Contact(u32::MAX, [true; SEGMENTS])),
-        Message::Reply(Reply { id: u32::MAX, outcome: Outcome::Nack(Refusal::Busy) }),
+        Message::Reply(Reply { id: u32::MAX, outcome: RequestOutcome::Nack(Refusal::Busy) }),
         Message::Uncertainty(Uncertainty {
             tick: u32::MAX,
             segments: [SegmentUncertainty {

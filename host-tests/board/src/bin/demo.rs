@@ -8,7 +8,7 @@ use std::io::BufWriter;
 use board_tests::{Board, View, replay};
 use proprio_simulation::{ImuColumns, Recorded, SessionWriter};
 use rig_twin::{MotionProgram, Scenario};
-use telemetry::{Command, Outcome};
+use telemetry::{Command, RequestOutcome};
 use virtual_due::WiredRig;
 
 const SEED: u64 = 11;
@@ -28,7 +28,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     board.run_ms(2500);
     let program = MotionProgram::new(Scenario::FreeSwing, SEED);
     let mut view = View::new(seconds);
-    if board.request(Command::Arm) != Outcome::Ack {
+    if board.request(Command::Arm) != RequestOutcome::Ack {
         return Err("the board does not arm".into());
     }
     let start_s = board.machine.seconds();

@@ -3,7 +3,7 @@
 use board_tests::Board;
 use estimator_core::Q;
 use rig_twin::Scenario;
-use telemetry::{Actuation, Command, Event, Outcome, Refusal, SetPressures};
+use telemetry::{Actuation, Command, Event, Refusal, RequestOutcome, SetPressures};
 use virtual_due::WiredRig;
 
 /// The right side of all modules at 100 kPa.
@@ -23,15 +23,15 @@ fn a_board_comes_up_vented() {
 #[test]
 fn pressures_move_only_when_armed() {
     let mut board = ready();
-    assert_eq!(board.request(Command::SetPressures(RIGHT)), Outcome::Nack(Refusal::Disarmed));
+    assert_eq!(board.request(Command::SetPressures(RIGHT)), RequestOutcome::Nack(Refusal::Disarmed));
     assert!(board.is_vented());
 }
 
 #[test]
 fn set_pressures_reach_the_regulators() {
     let mut board = ready();
-    assert_eq!(board.request(Command::Arm), Outcome::Ack);
-    assert_eq!(board.request(Command::SetPressures(RIGHT)), Outcome::Ack);
+    assert_eq!(board.request(Command::Arm), RequestOutcome::Ack);
+    assert_eq!(board.request(Command::SetPressures(RIGHT)), RequestOutcome::Ack);
     for (commanded, requested) in board.machine.world().set_points_pa().into_iter().zip(RIGHT.pressures_pa) {
         // A step of the PWM is 67 Pa.
         assert!((commanded - f64::from(requested)).abs() <= 67.0, "{commanded} Pa of {requested}");
@@ -41,9 +41,9 @@ fn set_pressures_reach_the_regulators() {
 #[test]
 fn the_arm_moves_and_the_estimate_follows() {
     let mut board = ready();
-    assert_eq!(board.request(Command::Arm), Outcome::Ack);
+    assert_eq!(board.request(Command::Arm), RequestOutcome::Ack);
     for _ in 0..30 {
-        assert_eq!(board.request(Command::SetPressures(RIGHT)), Outcome::Ack);
+        assert_eq!(board.request(Command::SetPressures(RIGHT)), RequestOutcome::Ack);
     }
     let truth = board.machine.world().truth();
     let tip = truth[5];
@@ -57,7 +57,7 @@ fn the_arm_moves_and_the_estimate_follows() {
 #[test]
 fn silence_vents_the_arm_within_one_and_a_half_seconds() {
     let mut board = ready();
-    assert_eq!(board.request(Command::Arm), Outcome::Ack);
+    assert_eq!(board.request(Command::Arm), RequestOutcome::Ack);
     board.send(Command::SetPressures(RIGHT));
     board.run_ms(1500);
     assert!(board.is_vented());
@@ -69,18 +69,18 @@ fn silence_vents_the_arm_within_one_and_a_half_seconds() {
 #[test]
 fn vented_pressures_stay_until_armed_again() {
     let mut board = ready();
-    assert_eq!(board.request(Command::Arm), Outcome::Ack);
+    assert_eq!(board.request(Command::Arm), RequestOutcome::Ack);
     board.send(Command::SetPressures(RIGHT));
     board.run_ms(1600);
-    assert_eq!(board.request(Command::SetPressures(RIGHT)), Outcome::Nack(Refusal::Disarmed));
+    assert_eq!(board.request(Command::SetPressures(RIGHT)), RequestOutcome::Nack(Refusal::Disarmed));
     assert!(board.is_vented());
 }
 
 #[test]
 fn disarm_vents_at_once() {
     let mut board = ready();
-    assert_eq!(board.request(Command::Arm), Outcome::Ack);
-    assert_eq!(board.request(Command::SetPressures(RIGHT)), Outcome::Ack);
+    assert_eq!(board.request(Command::Arm), RequestOutcome::Ack);
+    assert_eq!(board.request(Command::SetPressures(RIGHT)), RequestOutcome::Ack);
     board.send(Command::Disarm);
     board.run_ms(30);
     assert!(board.is_vented());

@@ -2,7 +2,7 @@
 
 use board_tests::{Board, UART};
 use rig_twin::Scenario;
-use telemetry::{Command, Message, Outcome, Rates, Refusal, Request, ResetCause, SetPressures};
+use telemetry::{Command, Message, Rates, Refusal, Request, RequestOutcome, ResetCause, SetPressures};
 use virtual_due::WiredRig;
 
 fn ready() -> Board {
@@ -25,7 +25,7 @@ fn rates_slow_the_stream_down() {
     let mut board = ready();
     assert_eq!(
         board.request(Command::Rates(Rates { sample: 0, estimate: 10, health: 0, uncertainty: 0 })),
-        Outcome::Ack
+        RequestOutcome::Ack
     );
     let before = (board.samples().count(), board.estimates().count(), board.healths().count());
     board.run_ms(1000);
@@ -39,7 +39,7 @@ fn a_repeated_request_acts_once_and_is_answered_again() {
     let tares = board.samples().next_back().expect("samples come").tare_epoch;
     let request = Request { id: 77, command: Command::Tare };
     for _ in 0..3 {
-        board.send_again(request);
+        board.send_again(request.clone());
         board.run_ms(50);
     }
     assert_eq!(board.samples().next_back().expect("samples come").tare_epoch, tares + 1);
@@ -50,15 +50,15 @@ fn a_repeated_request_acts_once_and_is_answered_again() {
 #[test]
 fn a_pressure_over_the_range_is_refused() {
     let mut board = ready();
-    assert_eq!(board.request(Command::Arm), Outcome::Ack);
+    assert_eq!(board.request(Command::Arm), RequestOutcome::Ack);
     let over = SetPressures { pressures_pa: [0, 0, 0, 280_001, 0, 0], valid_ms: 100 };
-    assert_eq!(board.request(Command::SetPressures(over)), Outcome::Nack(Refusal::OverRange));
+    assert_eq!(board.request(Command::SetPressures(over)), RequestOutcome::Nack(Refusal::OverRange));
 }
 
 #[test]
 fn a_reboot_is_answered_and_then_done() {
     let mut board = ready();
-    assert_eq!(board.request(Command::Reboot), Outcome::Ack);
+    assert_eq!(board.request(Command::Reboot), RequestOutcome::Ack);
     board.run_ms(200);
     let hello = board.hellos().next_back().expect("a board sends `Hello`");
     assert_eq!((hello.reset, hello.boot), (ResetCause::Software, 2));
@@ -75,7 +75,7 @@ fn a_flood_of_noise_changes_nothing_but_a_count() {
     let health = board.healths().next_back().expect("health comes");
     assert!(health.damaged_frames > 10, "{health:?}");
     assert_eq!((health.overruns, health.dropped_frames), (0, 0));
-    assert_eq!(board.request(Command::Ping), Outcome::Ack);
+    assert_eq!(board.request(Command::Ping), RequestOutcome::Ack);
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use board_tests::Board;
 use rig_twin::{MotionProgram, Push, Scenario};
-use telemetry::{Command, Event, Message, Outcome, SEGMENTS, SegmentUncertainty};
+use telemetry::{Command, Event, Message, RequestOutcome, SEGMENTS, SegmentUncertainty};
 use virtual_due::{CYCLES_PER_SECOND, WiredRig};
 
 use crate::replay::assert_replays;
@@ -17,7 +17,7 @@ fn pushed(seed: u64, seconds: u64) -> Board {
     let program = MotionProgram::new(Scenario::Push, seed);
     let mut board = Board::new(WiredRig::new(Scenario::Push, seed));
     board.run_ms(2000);
-    assert_eq!(board.request(Command::Arm), Outcome::Ack);
+    assert_eq!(board.request(Command::Arm), RequestOutcome::Ack);
     while board.machine.seconds() < seconds as f64 {
         board.set_pressures(program.duties(board.machine.seconds()));
         board.run_ms(50);
@@ -53,7 +53,7 @@ fn a_push_is_reported_within_half_a_second_and_the_time_of_the_line() {
             "{push:?} was reported at {reported_s:?}"
         );
     }
-    assert_replays(&board);
+    assert_replays(&board, 0);
 }
 
 #[test]

@@ -106,16 +106,16 @@ impl<const C: usize> Timeline<C> {
     }
 }
 
-/// Decimated items: all at first, then every second, every fourth and so on, so that between `kept` and twice as many remain.
+/// DecimatedItems items: all at first, then every second, every fourth and so on, so that between `kept` and twice as many remain.
 #[derive(Debug, Clone)]
-pub struct Decimated<T> {
+pub struct DecimatedItems<T> {
     kept: usize,
     items: Vec<T>,
     every: u64,
     seen: u64,
 }
 
-impl<T> Decimated<T> {
+impl<T> DecimatedItems<T> {
     pub fn new(kept: usize) -> Self {
         Self { kept, items: Vec::new(), every: 1, seen: 0 }
     }
@@ -142,7 +142,7 @@ impl<T> Decimated<T> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Bin, Decimated, Timeline};
+    use super::{Bin, DecimatedItems, Timeline};
 
     const KEPT: usize = 256;
 
@@ -170,7 +170,7 @@ mod tests {
 
     #[test]
     fn decimated_items_are_evenly_spaced_from_the_first_to_near_the_last() {
-        let mut decimated = Decimated::new(KEPT);
+        let mut decimated = DecimatedItems::new(KEPT);
         (0..5000_u64).for_each(|item| decimated.add(|| item));
         let items = decimated.items();
         assert!((KEPT..=2 * KEPT).contains(&items.len()));

@@ -4,7 +4,7 @@ use calibration_tables::{ArmFile, MAX_SEGMENTS};
 use estimator_core::{Angle, FusedOps, Method, UnitArc};
 use proprio_session::{Row, Truth};
 
-use super::downsample::Decimated;
+use super::downsample::DecimatedItems;
 use super::plot::{Axis, Colour, Figure, Marks, Panel, Series, Size, extent, padded, rounded};
 use crate::Outcome;
 use crate::metrics::{ErrorMetrics, tip_errors_m};
@@ -21,7 +21,7 @@ pub struct Shapes {
     lengths_m: Vec<f64>,
     /// The method whose errors choose the moments.
     leading: Method,
-    kept: Decimated<Snapshot>,
+    kept: DecimatedItems<Snapshot>,
     worst: Option<Snapshot>,
 }
 
@@ -50,7 +50,7 @@ impl Shapes {
         Self {
             lengths_m: table.segments.iter().map(|segment| (segment.length_mm + segment.offset_mm) / 1e3).collect(),
             leading: if has_bend_sensors { Method::Fusion } else { Method::ImuO },
-            kept: Decimated::new(MOMENTS),
+            kept: DecimatedItems::new(MOMENTS),
             worst: None,
         }
     }

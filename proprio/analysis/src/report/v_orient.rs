@@ -4,7 +4,7 @@ use calibration_tables::{ArmFile, BendToml};
 use estimator_core::{Method, VOLTS_PER_COUNT};
 use proprio_session::{Row, SENSOR_NAMES};
 
-use super::downsample::Decimated;
+use super::downsample::DecimatedItems;
 use super::plot::{Axis, Colour, Figure, Marks, Panel, Series, Size, extent, padded, rounded};
 
 /// Fewest readings of a sensor that are shown.
@@ -20,7 +20,7 @@ struct SensorReadings {
     place: usize,
     map: BendToml,
     /// Volts and true angle, deg.
-    points: Decimated<(f64, f64)>,
+    points: DecimatedItems<(f64, f64)>,
     square_sum_deg2: f64,
     count: u64,
 }
@@ -65,7 +65,7 @@ impl Readings {
 
 impl SensorReadings {
     fn new(segment: usize, place: usize, map: BendToml) -> Self {
-        Self { segment, place, map, points: Decimated::new(READINGS), square_sum_deg2: 0.0, count: 0 }
+        Self { segment, place, map, points: DecimatedItems::new(READINGS), square_sum_deg2: 0.0, count: 0 }
     }
 
     fn mapped_deg(&self, volts: f64) -> f64 {

@@ -1,6 +1,6 @@
 //! The estimator's own filters in dual numbers.
 
-use estimator_core::{Angle, KalmanFilter, KalmanGains, KalmanParams, Link, Pcc, Scalar};
+use estimator_core::{Angle, KalmanFilter, KalmanGains, KalmanParams, Pcc, Scalar, SegmentPose};
 use nalgebra::{SVector, Vector2};
 
 use super::Dual;
@@ -35,11 +35,11 @@ impl Filters {
     }
 
     /// Takes one sample; returns the fused link.
-    pub fn step(&mut self, measured: &Measured) -> Option<Link<f64>> {
+    pub fn step(&mut self, measured: &Measured) -> Option<SegmentPose<f64>> {
         let links = [measured.imu_c, measured.bend].map(|theta| theta.map(|theta| self.pcc.link(Angle::from(theta))));
         let theta = self.orient.step(links.map(|link| link.map(|link| SVector::from([link.theta.remainder]))));
         let end = self.coord.step(links.map(|link| link.map(|link| link.end)));
-        theta.zip(end).map(|(theta, end)| Link { theta: Angle::from(theta.x), end })
+        theta.zip(end).map(|(theta, end)| SegmentPose { theta: Angle::from(theta.x), end })
     }
 
     /// Adds the derivatives of a sum that changes by `by_theta` with the fused θ_i and by `by_end` with the fused P_i.

@@ -11,7 +11,7 @@ use std::panic::resume_unwind;
 use std::thread;
 
 use calibration_tables::ArmFile;
-use estimator_core::{Angle, Link, Pcc, SegmentConfig, UnitArc, forward_kinematics};
+use estimator_core::{Angle, Pcc, SegmentConfig, SegmentPose, UnitArc, forward_kinematics};
 use nalgebra::Vector2;
 
 use super::Dual;
@@ -146,7 +146,7 @@ impl Objective {
         };
         let mut filters = start();
         let (mut errors, mut gradient) = (SessionErrors::default(), Gradient::new(filters.len()));
-        let mut links: Vec<Option<Link<f64>>> = Vec::new();
+        let mut links: Vec<Option<SegmentPose<f64>>> = Vec::new();
         for TrainingSample { is_validation, starts, measured } in session.rows() {
             if starts {
                 filters = start();

@@ -5,7 +5,7 @@ use std::io;
 use std::sync::{Arc, Mutex, MutexGuard};
 use std::time::{Duration, Instant};
 
-use proprio_link::{Event, EventKind, LinkError, Source, Subscription, Transport};
+use proprio_link::{EventKind, LinkError, LinkEvent, Source, Subscription, Transport};
 use telemetry::{
     Command, Decoder, Encoder, Hello, MAX_FRAME, Message, PROTOCOL_VERSION, Request, ResetCause, SCHEMA, Sample, Text,
 };
@@ -54,15 +54,15 @@ impl Board {
 
     fn receive(&mut self, byte: u8) {
         let Some(Ok(request)) = self.requests.push(byte) else { return };
-        self.received.push(request);
+        self.received.push(request.clone());
         let tick = (self.began.elapsed().as_millis() / 10) as u32;
         let (done, refuses) = (&mut self.done, self.refuses);
         let reply = self.server.answer(&request, tick, |command| {
-            if refuses && command != Command::Ping {
+            if refuses && *command != Command::Ping {
                 return Err(telemetry::Refusal::Disarmed);
             }
-            done.push(command);
-            Ok(())
+            done.push(command.clone());
+            Ok(board_core::Execution::Done)
         });
         let Some(reply) = reply else { return };
         if self.answers_lost > 0 {
@@ -175,7 +175,7 @@ pub fn sample(tick: u32) -> Sample {
 pub fn wait_for<T>(events: &Subscription, mut pick: impl FnMut(&EventKind) -> Option<T>) -> T {
     let end = Instant::now() + PATIENCE;
     while Instant::now() < end {
-        if let Some(found) = events.next(Duration::from_millis(50)).and_then(|Event { kind, .. }| pick(&kind)) {
+        if let Some(found) = events.next(Duration::from_millis(50)).and_then(|LinkEvent { kind, .. }| pick(&kind)) {
             return found;
         }
     }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use proprio_link::{Event, EventKind, Link};
+use proprio_link::{EventKind, Link, LinkEvent};
 use proprio_monitor::Plain;
 use proprio_session::{HostClock, LoadedTable};
 use proprio_simulation::Simulation;
@@ -242,7 +242,7 @@ fn a_line_for_a_terminal_has_the_shape_the_rates_and_what_is_wrong() {
     line.board().send(&Message::Health(health(0, SensorState::NoResponse)));
     send_ticks(&line, 0..1);
     wait_for(&events, |kind| {
-        plain.take(&Event { at: clock.now(), gaps: 0, kind: kind.clone() });
+        plain.take(&LinkEvent { at: clock.now(), gaps: 0, kind: kind.clone() });
         matches!(kind, EventKind::Message(Message::Estimate(_))).then_some(())
     });
     let shown = plain.line(clock.now(), &link.state());
