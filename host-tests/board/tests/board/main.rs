@@ -7,6 +7,8 @@ mod engine;
 mod faults;
 mod last_words;
 #[cfg(unix)]
+mod late_recording;
+#[cfg(unix)]
 mod link;
 #[cfg(unix)]
 mod noise;
