@@ -1,8 +1,9 @@
 //! An alignment of a camera's clock and a session's, and its quality.
 
-use super::fine::Clocks;
+use proprio_analysis::clock_fit::{Clocks, ComparedSensors};
+
 use super::frames::Frames;
-use super::motion::{ComparedSensors, Readings};
+use super::motion::Readings;
 
 /// A camera's recording and a session on one clock.
 pub struct Alignment {

@@ -2,12 +2,12 @@
 
 use std::path::Path;
 
+use proprio_analysis::clock_fit::Reading;
 use proprio_session::{CameraReader, Pose, Progress, SessionError, SessionProblem};
 
 use super::angle::unwrap_near;
 use super::base;
 use super::error::AlignmentError;
-use super::signal::Reading;
 use crate::error::Error;
 
 /// Longest time between two frames over which a pose is interpolated, s.

@@ -1,8 +1,10 @@
 //! Both clocks to a fraction of a sample: lags of windows of the recording, and the regression line through them.
 
-use super::error::AlignmentError;
-use super::motion::{ComparedSensors, Motion, Pair};
-use super::signal::GRID_S;
+mod motion;
+mod signal;
+
+pub use motion::{ComparedSensors, Motion, Pair};
+pub use signal::{GRID_S, Reading, Signal};
 
 /// Length of a window, s.
 const WINDOW_S: f64 = 20.0;
@@ -19,12 +21,16 @@ const LEAST_WINDOWS: f64 = 2.5;
 
 /// The camera's clock as a line over the sensors': camera = lag + (1 + skew) · sensors, each since its own start.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Clocks {
+pub struct Clocks {
+    /// The camera's time at the sensors' start, s.
     pub lag_s: f64,
+    /// Rate by which the camera's clock is faster.
     pub skew: f64,
 }
 
 impl Clocks {
+    /// The camera's time at a time of the sensors.
+    #[must_use]
     pub fn camera_s(&self, sensor_s: f64) -> f64 {
         self.lag_s + sensor_s + self.skew * sensor_s
     }
@@ -32,12 +38,14 @@ impl Clocks {
 
 /// The fitted clocks, with their errors.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct ClockFit {
+pub struct ClockFit {
+    /// The line.
     pub clocks: Clocks,
     /// Middle of the overlap by the sensors' clock, s, where the lag is known best.
     pub middle_s: f64,
-    /// Standard errors of the lag there, s, and of the skew, from the scatter of the windows.
+    /// Standard error of the lag there, s, from the scatter of the windows.
     pub lag_error_s: f64,
+    /// Standard error of the skew.
     pub skew_error: f64,
     /// Root mean square of the windows' lags about the line, s.
     pub residual_s: f64,
@@ -53,8 +61,9 @@ struct Moment {
     steps: Vec<(usize, [f64; 2])>,
 }
 
-/// Refines a lag that is right to some tenths of a second.
-pub(super) fn fit(motion: &Motion, lag_s: f64) -> Result<ClockFit, AlignmentError> {
+/// Refines a lag that is right to some tenths of a second; `None` where too few windows have motion.
+#[must_use]
+pub fn fit(motion: &Motion, lag_s: f64) -> Option<ClockFit> {
     let windows = windows(motion);
     let mut clocks = Clocks { lag_s, skew: 0.0 };
     let mut rounds = 0;
@@ -62,11 +71,11 @@ pub(super) fn fit(motion: &Motion, lag_s: f64) -> Result<ClockFit, AlignmentErro
         let gains = gains(motion, &windows, clocks);
         let lags: Vec<WindowLag> =
             windows.iter().filter_map(|window| window_lag(motion, window, clocks, &gains)).collect();
-        let line = Line::through(&lags).ok_or(AlignmentError::Still)?;
+        let line = Line::through(&lags)?;
         clocks = Clocks { lag_s: clocks.lag_s + line.at(0.0), skew: clocks.skew + line.slope };
         rounds += 1;
         if line.lag_s.abs().max(line.at(0.0).abs()) < CONVERGED_S || rounds == ROUNDS {
-            return Ok(ClockFit {
+            return Some(ClockFit {
                 clocks,
                 middle_s: line.middle_s,
                 lag_error_s: line.lag_error_s,
