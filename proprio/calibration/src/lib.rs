@@ -3,6 +3,8 @@
 pub mod align;
 pub mod calibrate;
 mod error;
+mod truth;
 pub mod tune;
 
 pub use error::Error;
+pub use truth::{JudgedTruth, TruthError, TruthLengths};

@@ -15,6 +15,7 @@
 //! | `same_imus.rs` | two IMUs with the same readings |
 //! | `new_zero.rs` | IMUs that continue from another zero, or read 0 |
 //! | `steps.rs` | steps of the IMUs against those of the bend sensors |
+//! | `truth/` | the truth by itself, against the lengths and against the sensors' clock |
 //! | `twins.rs` | a bend sensor that leaves its twin and the IMU |
 
 mod bend_range;
@@ -26,6 +27,7 @@ mod new_zero;
 mod same_imus;
 mod steps;
 mod tare;
+pub mod truth;
 mod twins;
 
 use std::path::Path;
@@ -42,6 +44,7 @@ use self::new_zero::NewZero;
 use self::same_imus::SameImus;
 use self::steps::Steps;
 use self::tare::Tare;
+use self::truth::{TruthCheck, TruthRow};
 use self::twins::Twins;
 use crate::error::Error;
 use crate::replay::{SessionRows, SessionSummary};
@@ -57,6 +60,7 @@ pub struct SessionCheck {
     new_zero: NewZero,
     steps: Steps,
     twins: Twins,
+    truth: TruthCheck,
 }
 
 impl SessionCheck {
@@ -77,6 +81,7 @@ impl SessionCheck {
             new_zero: NewZero::new(),
             steps: Steps::new(segments),
             twins: Twins::new(&table.file),
+            truth: TruthCheck::new(&table.file),
         })
     }
 
@@ -92,6 +97,7 @@ impl SessionCheck {
         self.new_zero.update(frame);
         self.steps.update(frame);
         self.twins.update(frame);
+        self.truth.update(TruthRow::of(row, frame.row));
     }
 
     /// The findings, after the last row.
@@ -110,6 +116,7 @@ impl SessionCheck {
         self.new_zero.finish(&mut findings);
         self.tare.finish(&mut findings);
         self.twins.finish(&mut findings);
+        findings.extend(self.truth.finish().0.findings);
         findings
     }
 }

@@ -4,6 +4,7 @@ use proprio_analysis::clock_fit::{Clocks, ComparedSensors};
 
 use super::frames::Frames;
 use super::motion::Readings;
+use crate::truth::JudgedTruth;
 
 /// A camera's recording and a session on one clock.
 pub struct Alignment {
@@ -12,6 +13,14 @@ pub struct Alignment {
     pub(super) clocks: Clocks,
     /// Quality of the alignment.
     pub report: AlignmentReport,
+}
+
+impl Alignment {
+    /// The findings about the camera's poses.
+    #[must_use]
+    pub const fn truth(&self) -> &JudgedTruth {
+        &self.frames.truth
+    }
 }
 
 /// Offset, rate and quality of an alignment.

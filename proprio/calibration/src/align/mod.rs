@@ -49,7 +49,7 @@ pub fn align(
 ) -> Result<Alignment, Error> {
     let refuse = |path: &Path, source| Error::Alignment { path: path.to_owned(), source };
     let mut readings = Readings::read(session, &arm.file, progress)?;
-    let frames = Frames::read(camera, arm.file.segments.len(), progress)?;
+    let frames = Frames::read(camera, &arm.file, progress)?;
     for (path, seconds) in [(session, readings.seconds()), (camera, frames.seconds())] {
         check_length(seconds).map_err(|source| refuse(path, source))?;
     }

@@ -1,8 +1,9 @@
 //! `proprio align`.
 
-use proprio_calibration::align::{AlignmentReport, ComparedSensors, Written, align};
+use proprio_calibration::align::{Alignment, AlignmentReport, ComparedSensors, Written, align};
 use proprio_session::{LAST_LINE, LoadedTable, OutputFile};
 
+use super::truth;
 use crate::args::AlignArgs;
 use crate::error::Error;
 use crate::progress_bar::Bar;
@@ -17,13 +18,16 @@ pub fn run(args: &AlignArgs) -> Result<(), Error> {
             terminal::warn(&format_args!("{}: {LAST_LINE}", path.display()));
         }
     }
+    truth::warn(alignment.truth());
     let written = alignment.write(&args.session, &mut file)?;
     // Last, so that a command that fails leaves no file.
-    terminal::print(&text(&alignment.report, written))?;
+    terminal::print(&text(&alignment, written))?;
     Ok(file.finish()?)
 }
 
-fn text(report: &AlignmentReport, Written { rows, with_truth }: Written) -> String {
+fn text(alignment: &Alignment, Written { rows, with_truth }: Written) -> String {
+    let report = &alignment.report;
+    let lengths = alignment.truth().lengths.map_or(f64::NAN, |lengths| lengths.scale);
     let sensors = match report.sensors {
         ComparedSensors::Imus => "IMUs",
         ComparedSensors::Bend => "bend sensors",
@@ -37,6 +41,7 @@ fn text(report: &AlignmentReport, Written { rows, with_truth }: Written) -> Stri
          residual     {residual_ms:.1} ms RMS: what offset and skew leave, in pieces of 20 s\n\
          correlation  {correlation:.4}: {sensors} and camera\n\
          matched      {matched} moments, ten a second\n\
+         lengths      {lengths:.4}: those that the markers fit, over those of the arm\n\
          truth        {with_truth} of {rows} rows, {percent:.1} %\n"
     )
 }

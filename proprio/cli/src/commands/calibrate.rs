@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use proprio_calibration::calibrate::{CalibrationOptions, HysteresisMode, MapMode, calibrate};
 use proprio_session::{LoadedTable, OutputFile};
 
+use super::truth;
 use crate::args::{CalibrateArgs, HysteresisName, MapName};
 use crate::error::Error;
 use crate::progress_bar::Bar;
@@ -19,11 +20,13 @@ pub fn run(args: &CalibrateArgs) -> Result<(), Error> {
     let options = CalibrationOptions { maps: args.map.into(), hysteresis: args.hysteresis.into() };
     let calibration = calibrate(&args.sessions, &arm, options, &mut Bar::new())?;
     let names: Vec<String> = args.sessions.iter().map(|session| session.display().to_string()).collect();
+    calibration.truth.iter().for_each(truth::warn);
     for warning in &calibration.warnings {
         terminal::warn(&format_args!("{}: {warning}", names.join(", ")));
     }
     file.write_all(calibration.table.to_toml().as_bytes()).map_err(|error| file.error(error))?;
     // Last, so that a command that fails leaves no file.
+    terminal::print(&calibration.truth.iter().map(truth::line).collect::<String>())?;
     terminal::print(&text_tables::sensors(&calibration.sensors))?;
     terminal::print(&text_tables::segments(&calibration.segments))?;
     if let Some(held_out) = &calibration.held_out {

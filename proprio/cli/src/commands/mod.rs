@@ -16,6 +16,7 @@ mod replay;
 mod report;
 mod simulate;
 mod status;
+mod truth;
 mod tune;
 
 use std::process::ExitCode;

@@ -7,6 +7,7 @@ use calibration_tables::{StopReason, TuningToml};
 use proprio_calibration::tune::{Tuner, Tuning};
 use proprio_session::{LAST_LINE, LoadedTable, OutputFile};
 
+use super::truth;
 use crate::args::TuneArgs;
 use crate::error::Error;
 use crate::interrupt::ShutdownGuard;
@@ -23,12 +24,15 @@ pub fn run(args: &TuneArgs) -> Result<(), Error> {
     for path in tuner.cut_sessions() {
         terminal::warn(&format_args!("{}: {LAST_LINE}", path.display()));
     }
+    tuner.truth().for_each(truth::warn);
+    let lines: String = tuner.truth().map(truth::line).collect();
     let shutdown = ShutdownGuard::new();
     let Tuning { table, record, iteration_time } = tuner.tune(&mut progress, || shutdown.is_requested())?;
     drop((shutdown, progress));
     warnings(&record).for_each(|warning| terminal::warn(&warning));
     file.write_all(table.to_toml().as_bytes()).map_err(|error| file.error(error))?;
     // Last, so that a command that fails leaves no file.
+    terminal::print(&lines)?;
     terminal::print(&text_tables::tuning(&record, iteration_time))?;
     Ok(file.finish()?)
 }

@@ -1,10 +1,26 @@
 //! Remedies of errors of calibration, tuning and alignment.
 
+use proprio_calibration::TruthError;
 use proprio_calibration::align::AlignmentError;
 use proprio_calibration::calibrate::CalibrationError;
 use proprio_calibration::tune::TuningError;
 
 use super::Help;
+
+impl Help for TruthError {
+    fn help(&self) -> String {
+        match self {
+            Self::Unit(finding) => finding.help(),
+            Self::Lengths(_) => {
+                "measure the arm and correct length_mm and offset_mm of its description, or the camera's scale".to_owned()
+            }
+            Self::Wrong { .. } => {
+                "correct the markers' reading, or leave the cells of wrong poses empty; `proprio check` lists all faults"
+                    .to_owned()
+            }
+        }
+    }
+}
 
 impl Help for CalibrationError {
     fn help(&self) -> String {

@@ -46,6 +46,26 @@ impl Help for Finding {
             (Kind::LeavesTwin, _) => {
                 "check the sensor's mount and plug, or leave its cells empty from there on; where many do, take the table of this arm"
             }
+            (Kind::TruthZeros | Kind::TruthRepeated, _) => {
+                "let the camera program leave the cells of a lost marker empty; the rows are left out"
+            }
+            (Kind::TruthStaircase, _) => {
+                "give the camera's frames with their own times to `proprio align`; the repeats are left out"
+            }
+            (Kind::TruthJump, _) => {
+                "check the marker's reading, and that headings are not resampled over a whole turn; the rows are left out"
+            }
+            (Kind::TruthMisplaced, _) => "check the marker's number and its mount; the rows are left out",
+            (Kind::TruthExchanged, _) => "check the markers' numbers in the camera program; the rows are left out",
+            (Kind::TruthUnit, _) => "write the places in mm, or rename the columns to _m",
+            (Kind::TruthRadians, _) => "write the headings in degrees, or rename the columns to _heading_rad",
+            (Kind::TruthAxes, _) => "x is to the right, y along the base, headings clockwise from y: check the axes",
+            (Kind::TruthLengths, _) => {
+                "measure the arm and correct length_mm and offset_mm of its description, or the camera's scale"
+            }
+            (Kind::TruthLag, _) => {
+                "remove the columns of truth and join the camera's file again: proprio align SESSION --camera CAMERA --arm ARM -o ALIGNED"
+            }
         };
         help.to_owned()
     }
