@@ -28,6 +28,7 @@ mod imus;
 mod maps;
 mod memory;
 mod options;
+mod pieces;
 mod report;
 mod residuals;
 mod sensors;

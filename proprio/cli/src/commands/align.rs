@@ -27,7 +27,7 @@ pub fn run(args: &AlignArgs) -> Result<(), Error> {
 
 fn text(alignment: &Alignment, Written { rows, with_truth }: Written) -> String {
     let report = &alignment.report;
-    let lengths = alignment.truth().lengths.map_or(f64::NAN, |lengths| lengths.scale);
+    let lengths = alignment.truth().lengths.map_or_else(|| "-".to_owned(), |lengths| format!("{:.4}", lengths.scale));
     let sensors = match report.sensors {
         ComparedSensors::Imus => "IMUs",
         ComparedSensors::Bend => "bend sensors",
@@ -41,7 +41,7 @@ fn text(alignment: &Alignment, Written { rows, with_truth }: Written) -> String 
          residual     {residual_ms:.1} ms RMS: what offset and skew leave, in pieces of 20 s\n\
          correlation  {correlation:.4}: {sensors} and camera\n\
          matched      {matched} moments, ten a second\n\
-         lengths      {lengths:.4}: those that the markers fit, over those of the arm\n\
+         lengths      {lengths} times those of the arm: what the markers fit\n\
          truth        {with_truth} of {rows} rows, {percent:.1} %\n"
     )
 }

@@ -46,6 +46,10 @@ impl Help for CalibrationError {
             }
             Self::Swapped { .. } => "exchange the two wires, or the two columns of the session".to_owned(),
             Self::InvertedImu { .. } => "mount it with z up, or give the heading clockwise positive".to_owned(),
+            Self::SameImus { .. } => {
+                "check the multiplexer's wires and addresses, and that the program selects a channel for each IMU"
+                    .to_owned()
+            }
             Self::SwappedImu { .. } => "exchange the two mux channels, or the two columns".to_owned(),
             Self::UnrelatedImu { .. } => "check its mount, and that camera and IMUs share one clock".to_owned(),
         }

@@ -129,8 +129,9 @@ impl TruthCheck {
         if let Some(scale) = scale.filter(|scale| (scale - 1.0).abs() > LENGTHS) {
             push(Kind::TruthLengths, scale);
         }
-        let is_staircase = tally.is_staircase();
-        if let Some(lag_s) = lag_s.filter(|lag_s| lag_s.abs() > LAG_S && !is_staircase) {
+        // Repeats are late, the poses between them are not.
+        let lag_s = lag_s.filter(|_| !tally.is_staircase());
+        if let Some(lag_s) = lag_s.filter(|lag_s| lag_s.abs() > LAG_S) {
             push(Kind::TruthLag, lag_s * 1e3);
         }
         tally.findings(&mut findings);

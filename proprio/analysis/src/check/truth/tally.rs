@@ -6,7 +6,8 @@ use super::fault::{Fault, FaultKind};
 use super::row::TruthRow;
 use crate::check::finding::{Finding, Kind, Rows, Source};
 
-/// Least number of repeats of all poses of truth of a lower rate, and their least share in the rows in which the arm moves.
+/// Least number of times that truth of a lower rate is held, least number of its repeats, and their least share in the rows in which the arm moves.
+const HOLDS: u64 = 10;
 const REPEATS: u64 = 20;
 const SHARE: f64 = 0.2;
 /// Longest period that is found, rows.
@@ -103,7 +104,8 @@ impl Tally {
     /// True for truth of a lower rate, which is held between its updates.
     pub fn is_staircase(&self) -> bool {
         let repeats = self.all_repeated().count;
-        repeats >= REPEATS && repeats as f64 > SHARE * (repeats + self.moving) as f64
+        let holds = self.periods.iter().sum::<u64>() / self.segments as u64;
+        holds >= HOLDS && repeats >= REPEATS && repeats as f64 > SHARE * (repeats + self.moving) as f64
     }
 
     /// Median number of rows from update to update.
