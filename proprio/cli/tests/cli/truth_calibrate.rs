@@ -117,7 +117,8 @@ fn lengths_that_differ_by_three_percent_are_warned_about_in_mm() {
 fn lengths_that_differ_by_a_tenth_are_refused_in_mm() {
     let folder = Folder::with("sweep.csv", sweep().to_string());
     let description = std::fs::read_to_string(arm()).expect("the description is committed");
-    let longer = description.replace("length_mm = 80", "length_mm = 90").replace("offset_mm = 17.0", "offset_mm = 19.1");
+    let longer =
+        description.replace("length_mm = 80", "length_mm = 90").replace("offset_mm = 17.0", "offset_mm = 19.1");
     assert_ne!(longer, description);
     folder.write("arm.toml", longer);
     let error = folder.refused(&["calibrate", "sweep.csv", "--arm", "arm.toml", "-o", "table.toml"]);

@@ -16,6 +16,11 @@ const LARGEST_RAD: f64 = 2.0;
 const LEAST_SQUARE: f64 = 0.002;
 /// Lags at which the fit is tried where it fails at 0, s: it finds the lag from up to a second off.
 const STARTS_S: [f64; 8] = [1.5, -1.5, 3.0, -3.0, 4.5, -4.5, 6.0, -6.0];
+/// Pieces at the start that are all compared with the IMUs, and the one in so many that is after them.
+const FIRST_PIECES: usize = 4;
+const EVERY: usize = 4;
+/// Least range of a heading in a piece with motion, rad.
+const MOTION: f64 = 0.1;
 /// Largest error of a piece's lag, s.
 const LAG_ERROR_S: f64 = 0.01;
 
@@ -85,7 +90,8 @@ impl Pieces {
 
     fn end(&mut self, piece: Piece) {
         let mut values = piece.values();
-        if let Some(motion) = piece.motion() {
+        let is_compared = self.all.len() < FIRST_PIECES || self.all.len().is_multiple_of(EVERY);
+        if let Some(motion) = piece.motion().filter(|_| is_compared) {
             values.lag_s = lag_s(&motion, self.start_s.unwrap_or(0.0));
             // Once: a search takes its time.
             if values.lag_s.is_none() && self.start_s.is_none() {
@@ -130,8 +136,16 @@ impl Piece {
         Values { scale: ratio(self.lengths), turn: ratio(self.directions).filter(|_| is_bent), lag_s: None }
     }
 
-    /// The motion by IMUs and truth; `None` without IMUs.
+    /// The motion by IMUs and truth; `None` without any.
     fn motion(&self) -> Option<Motion> {
+        let range = |seen: &Vec<Reading>| {
+            let ends =
+                seen.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[lo, hi], (_, x)| [lo.min(*x), hi.max(*x)]);
+            ends[1] - ends[0]
+        };
+        if self.truth.iter().map(range).fold(0.0, f64::max) < MOTION {
+            return None;
+        }
         let read = self.imu.iter().enumerate().filter(|(_, read)| !read.is_empty());
         let pairs: Vec<Pair> =
             read.map(|(camera, read)| Pair { sensor: Signal::new(read, &self.starts_s), camera }).collect();
