@@ -22,8 +22,10 @@
 //!
 //! # Interrupts
 //!
-//! A bank cannot be read while it is programmed (datasheet chapter 18). Every command therefore runs from RAM with interrupts off:
-//! a page takes some milliseconds (datasheet chapter 45, embedded flash), in which nothing else runs. Write while nothing depends on time.
+//! A bank cannot be read while it is programmed (datasheet chapter 18), for some milliseconds a page (datasheet chapter 45,
+//! embedded flash). The commands of the bank that has the program therefore run from RAM with interrupts off, and nothing
+//! else runs meanwhile. The other bank is programmed with interrupts on: a task of low priority waits for it and disturbs
+//! none of a higher one.
 
 use core::ops::Range;
 
@@ -147,16 +149,17 @@ impl Flash {
         self.with_mode(bank, FMR_PROGRAMMING, |efc| execute(efc, command, argument))
     }
 
-    /// Runs with interrupts off and the bank in another mode.
+    /// Runs with the bank in another mode, and with interrupts off if the program is in this bank.
     fn with_mode<T>(&mut self, bank: Bank, mode: u32, run: impl FnOnce(&pac::efc0::RegisterBlock) -> T) -> T {
         let efc = self.controller(bank);
-        critical_section::with(|_| {
+        let run = || {
             let before = efc.fmr.read().bits();
             reg::set(&efc.fmr, mode);
             let result = run(efc);
             reg::set(&efc.fmr, before);
             result
-        })
+        };
+        if bank.has_program() { critical_section::with(|_| run()) } else { run() }
     }
 
     fn controller(&self, bank: Bank) -> &pac::efc0::RegisterBlock {
@@ -177,6 +180,15 @@ impl Flash {
             return Err(Error::OutOfBounds);
         }
         Ok(self.region.start + offset)
+    }
+}
+
+/// The region as it is mapped to memory.
+impl AsRef<[u8]> for Flash {
+    fn as_ref(&self) -> &[u8] {
+        let length = (self.region.end - self.region.start) as usize;
+        // SAFETY: the region is flash, which is always readable; it changes through `&mut self` alone.
+        unsafe { core::slice::from_raw_parts(self.region.start as *const u8, length) }
     }
 }
 
@@ -227,6 +239,14 @@ fn page_part(offset: u32, length: usize) -> (u32, usize, usize) {
 enum Bank {
     First,
     Second,
+}
+
+impl Bank {
+    /// Returns whether a part of the program can be in this bank.
+    fn has_program(self) -> bool {
+        let [_, second] = BANKS;
+        self == Self::First || program_end() == 0 || program_end() > second.start
+    }
 }
 
 /// Bank of an address, and its page in it.

@@ -7,7 +7,7 @@ use telemetry::{Estimate, Event, SEGMENTS, Sample, Uncertainty};
 pub const TARE_TICKS: u32 = 200;
 
 /// Capacity of the anchor's moving-average window, samples.
-const WINDOW: usize = 100;
+pub const WINDOW: usize = 100;
 
 /// The estimator and its tare epoch.
 ///
@@ -22,7 +22,7 @@ pub struct BoardEstimator {
 }
 
 impl BoardEstimator {
-    /// An estimator that is not started and estimates nothing.
+    /// An estimator that is not started and estimates nothing. Without segments in `table` it never estimates.
     pub const fn new(table: &'static ArmConfig<'static, Q>) -> Self {
         Self { estimator: Estimator::const_new(table), tare_epoch: 0, tared: false, contact_mask: 0 }
     }
@@ -30,7 +30,7 @@ impl BoardEstimator {
     /// Starts the estimator at boot. A table with more segments or a longer window than the capacity gives no estimate;
     /// samples are sent all the same.
     pub fn start(&mut self) {
-        // The firmware's build has checked the table. If it were wrong, the host would receive empty estimates.
+        // The table was checked when it was stored and read; the table of a board without one has no segments.
         let _ = self.estimator.start();
     }
 

@@ -32,7 +32,7 @@ pub const REFILL_PER_TICK: u8 = 2;
 /// Server of the host's requests.
 ///
 /// ```
-/// use board_core::CommandServer;
+/// use board_core::{CommandServer, Execution};
 /// use telemetry::{Command, RequestOutcome, Reply, Request};
 ///
 /// let mut server = CommandServer::new();
@@ -42,7 +42,7 @@ pub const REFILL_PER_TICK: u8 = 2;
 ///     // The first reply was lost, and the host repeats the request.
 ///     let reply = server.answer(&request, tick, |_| {
 ///         tares += 1;
-///         Ok(())
+///         Ok(Execution::Done)
 ///     });
 ///     assert_eq!(reply, Some(Reply { id: 7, outcome: RequestOutcome::Ack }));
 /// }
@@ -58,8 +58,18 @@ pub struct CommandServer {
 #[derive(Debug)]
 struct LastRequest {
     request: Request,
-    outcome: RequestOutcome,
+    /// `None`: pending.
+    outcome: Option<RequestOutcome>,
     tick: u32,
+}
+
+/// Progress of a command that was not refused.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Execution {
+    /// It was executed.
+    Done,
+    /// Another task executes it; its reply follows.
+    Pending,
 }
 
 impl CommandServer {
@@ -69,39 +79,51 @@ impl CommandServer {
     }
 
     /// Handles a request that was received in this tick: calls `execute` if it is admitted and new, and returns the
-    /// reply to send, if any.
+    /// reply to send, if any. A request whose execution takes longer has no reply until it is
+    /// [completed](Self::complete).
     pub fn answer(
         &mut self,
         request: &Request,
         tick: u32,
-        execute: impl FnOnce(Command) -> Result<(), Refusal>,
+        execute: impl FnOnce(&Command) -> Result<Execution, Refusal>,
     ) -> Option<Reply> {
         let admission = self.bucket.take(tick);
         let outcome = if admission == Admission::Admitted || request.command == Command::Disarm {
             self.outcome(request, tick, execute)
         } else {
-            RequestOutcome::Nack(Refusal::Busy)
+            Some(RequestOutcome::Nack(Refusal::Busy))
         };
-        (admission != Admission::Dropped).then_some(Reply { id: request.id, outcome })
+        outcome.filter(|_| admission != Admission::Dropped).map(|outcome| Reply { id: request.id, outcome })
+    }
+
+    /// Stores the outcome of a request whose execution was pending, for its repetitions.
+    pub fn complete(&mut self, reply: Reply) {
+        if let Some(last) = self.last.as_mut().filter(|last| last.request.id == reply.id) {
+            last.outcome = Some(reply.outcome);
+        }
     }
 
     fn outcome(
         &mut self,
         request: &Request,
         tick: u32,
-        execute: impl FnOnce(Command) -> Result<(), Refusal>,
-    ) -> RequestOutcome {
+        execute: impl FnOnce(&Command) -> Result<Execution, Refusal>,
+    ) -> Option<RequestOutcome> {
         if let Some(last) = &self.last {
             let new_session = request.command == Command::Ping && tick.wrapping_sub(last.tick) >= SESSION_TIMEOUT_TICKS;
             if !new_session && *request == last.request {
                 return last.outcome;
             }
             if !new_session && request.id <= last.request.id {
-                return RequestOutcome::Nack(Refusal::Late);
+                return Some(RequestOutcome::Nack(Refusal::Late));
             }
         }
-        let outcome = execute(request.command).map_or_else(RequestOutcome::Nack, |()| RequestOutcome::Ack);
-        self.last = Some(LastRequest { request: *request, outcome, tick });
+        let outcome = match execute(&request.command) {
+            Ok(Execution::Done) => Some(RequestOutcome::Ack),
+            Ok(Execution::Pending) => None,
+            Err(refusal) => Some(RequestOutcome::Nack(refusal)),
+        };
+        self.last = Some(LastRequest { request: request.clone(), outcome, tick });
         outcome
     }
 }

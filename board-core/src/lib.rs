@@ -12,6 +12,7 @@
 //! | [`BendSensorMonitor`] | rail detection and debounced states of the bend sensors |
 //! | [`BoardEstimator`] | the estimator, its tares and its results as messages |
 //! | [`CommandServer`] | idempotent requests and their rate limit |
+//! | [`TableServer`] | requests about the table in the flash |
 //! | [`Schedule`] | periods of the messages |
 //! | [`Actuator`] | arming, set-points with a deadline, venting |
 //! | [`Supervisor`] | the tasks' deadlines, for the watchdog |
@@ -29,12 +30,14 @@ mod command_server;
 pub mod imus;
 mod schedule;
 mod supervisor;
+mod table_server;
 pub mod tca9548a;
 
 pub use actuation::{Actuator, FULL_SCALE_PA, HOLD_MS, VALID_MS_MAX, VENTED_MS};
 pub use bend_sensors::{BendSensorMonitor, LOSS_TICKS, RAIL_COUNTS, RETURN_TICKS};
-pub use board_estimator::{BoardEstimator, TARE_TICKS};
+pub use board_estimator::{BoardEstimator, TARE_TICKS, WINDOW};
 pub use boot_counter::{BootCounter, CRASHES, RETAINED_WORDS, UPTIME_WORD, WINDOW_TICKS};
-pub use command_server::{BUCKET_SIZE, CommandServer, REFILL_PER_TICK, SESSION_TIMEOUT_TICKS};
+pub use command_server::{BUCKET_SIZE, CommandServer, Execution, REFILL_PER_TICK, SESSION_TIMEOUT_TICKS};
 pub use schedule::{DEFAULT_RATES, DueMessages, HELLO_TICKS, Schedule};
 pub use supervisor::{DeadlineMissed, STARTUP_TICKS, Supervisor, Task};
+pub use table_server::{TableAnswer, TableServer};

@@ -1,6 +1,6 @@
 //! Requests are idempotent, executed in order, and limited in their rate.
 
-use board_core::{BUCKET_SIZE, CommandServer, REFILL_PER_TICK, SESSION_TIMEOUT_TICKS};
+use board_core::{BUCKET_SIZE, CommandServer, Execution, REFILL_PER_TICK, SESSION_TIMEOUT_TICKS};
 use proptest::prelude::*;
 use telemetry::{Command, Refusal, Reply, Request, RequestOutcome};
 
@@ -19,8 +19,8 @@ impl Board {
     /// Sends a request whose command succeeds.
     fn send(&mut self, id: u32, command: Command, tick: u32) -> Option<RequestOutcome> {
         let reply = self.server.answer(&Request { id, command }, tick, |command| {
-            self.done.push((id, command));
-            Ok(())
+            self.done.push((id, command.clone()));
+            Ok(Execution::Done)
         });
         reply.map(|reply: Reply| {
             assert_eq!(reply.id, id);
@@ -53,7 +53,29 @@ fn a_repeated_request_that_was_refused_is_not_executed_again() {
     let request = Request { id: 1, command: Command::Arm };
     let refused = Some(Reply { id: 1, outcome: RequestOutcome::Nack(Refusal::Disarmed) });
     assert_eq!(server.answer(&request, 0, |_| Err(Refusal::Disarmed)), refused);
-    assert_eq!(server.answer(&request, 1, |_| Ok(())), refused);
+    assert_eq!(server.answer(&request, 1, |_| Ok(Execution::Done)), refused);
+}
+
+#[test]
+fn a_request_of_another_task_is_answered_when_it_is_completed() {
+    let mut server = CommandServer::new();
+    let request = Request { id: 1, command: Command::TableCommit };
+    assert_eq!(server.answer(&request, 0, |_| Ok(Execution::Pending)), None);
+    assert_eq!(server.answer(&request, 1, |_| Ok(Execution::Pending)), None, "a repetition is not executed again");
+    let reply = Reply { id: 1, outcome: RequestOutcome::Nack(Refusal::TableChecksum) };
+    server.complete(reply);
+    assert_eq!(server.answer(&request, 2, |_| Ok(Execution::Done)), Some(reply));
+}
+
+#[test]
+fn a_completed_request_does_not_change_the_outcome_of_a_later_one() {
+    let mut server = CommandServer::new();
+    let request = Request { id: 1, command: Command::TableCommit };
+    server.answer(&request, 0, |_| Ok(Execution::Pending));
+    let disarm = Request { id: 2, command: Command::Disarm };
+    let reply = server.answer(&disarm, 0, |_| Ok(Execution::Done));
+    server.complete(Reply { id: 1, outcome: RequestOutcome::Nack(Refusal::TableChecksum) });
+    assert_eq!(server.answer(&disarm, 1, |_| Ok(Execution::Done)), reply);
 }
 
 #[test]
@@ -201,7 +223,7 @@ proptest! {
         first in 20_u32..1000,
     ) {
         // Of one host, each number belongs to one command.
-        let command = |id: u32| [Command::Ping, Command::Arm, Command::Disarm, Command::Tare][id as usize % 4];
+        let command = |id: u32| [Command::Ping, Command::Arm, Command::Disarm, Command::Tare][id as usize % 4].clone();
         let mut board = Board::default();
         let mut newest = first;
         board.send(first, command(first), 0);

@@ -104,5 +104,8 @@ pub use segment::{PlayToml, SegmentToml, Side};
 pub use tuning::{DriftTuningToml, RmseToml, StopReason, TuningToml};
 pub use uncertainty::UncertaintyToml;
 
+/// The reference arm's table, `planar-6.toml`.
+pub const PLANAR_6_TABLE: &str = include_str!("../planar-6.toml");
+
 /// The reference arm's description, `arms/planar-6.toml`.
 pub const PLANAR_6_ARM: &str = include_str!("../arms/planar-6.toml");

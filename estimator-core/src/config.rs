@@ -40,6 +40,7 @@ pub struct ArmConfig<'t, S> {
 
 /// One sensing segment: geometry, sensors and filter parameters.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SegmentConfig<S> {
     /// Arc length of the curved part, L_act, m.
     pub length: S,
@@ -69,6 +70,7 @@ pub struct SegmentConfig<S> {
 
 /// Position of a segment's rigid connector.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum OffsetAt {
     /// It precedes the curved part.
     Start,
@@ -78,6 +80,7 @@ pub enum OffsetAt {
 
 /// One bend sensor: V–Orient map and memory.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct BendSensorConfig<S> {
     /// Bend angle of the counts.
     pub map: BendMap<S>,
@@ -87,6 +90,7 @@ pub struct BendSensorConfig<S> {
 
 /// V–Orient map of one bend sensor.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum BendMap<S> {
     /// The paper's quadratic.
     Quadratic(QuadraticMap<S>),
@@ -100,6 +104,7 @@ pub enum BendMap<S> {
 /// In this form the coefficients are no larger than the angles; c2, c1 and c0 of a sensor with a narrow range are large
 /// and cancel.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct QuadraticMap<S> {
     /// Counts in the middle of the calibrated range.
     pub center: u16,
@@ -114,12 +119,18 @@ pub struct QuadraticMap<S> {
 
 /// Piecewise linear map: knots every 2^`shift` counts from `first` on.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(serialize = "S: serde::Serialize", deserialize = "S: serde::Deserialize<'de>"))
+)]
 pub struct CurveMap<S> {
     /// Counts of the first knot.
     pub first: u16,
     /// Binary logarithm of the counts between two knots.
     pub shift: u8,
     /// Bend angle at each knot, rad.
+    #[cfg_attr(feature = "serde", serde(with = "serde_big_array::BigArray"))]
     pub knots: [S; KNOTS],
     /// Lowest and highest valid counts.
     pub readable: [u16; 2],
@@ -129,6 +140,7 @@ pub struct CurveMap<S> {
 
 /// Creep and hysteresis of one bend sensor: θ + Σ w (θ − lag(θ)) + Σ w (θ − play(θ)).
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct MemoryConfig<S> {
     /// First-order lags.
     pub lags: [Lag<S>; 2],
@@ -138,6 +150,7 @@ pub struct MemoryConfig<S> {
 
 /// A first-order lag and its share in the correction.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Lag<S> {
     /// Time constant, units of [`TIME_UNIT_S`](crate::TIME_UNIT_S).
     pub time: S,
@@ -149,6 +162,7 @@ pub struct Lag<S> {
 
 /// A play operator and its share in the correction (Kuhnen 2003, eq. 2).
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Play<S> {
     /// Radius r: from the middle to either edge, rad.
     pub radius: S,
@@ -161,6 +175,7 @@ pub struct Play<S> {
 /// The error is a function of the path (map, hysteresis), not white in time: it decorrelates after a travel of
 /// `travel`, or after `correlation_time`.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct BendErrorConfig {
     /// Variance of the mean of both sensors, σ².
     pub mean: Q,
@@ -182,6 +197,7 @@ pub struct BendErrorConfig {
 
 /// Window, rates and threshold of the moving-average anchor; the same for all segments.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct AnchorConfig {
     /// Length of the window, in values.
     pub window: u16,
@@ -195,6 +211,7 @@ pub struct AnchorConfig {
 
 /// Priors and process noise of the bias filter; the same for all IMUs and segments. All but the last are variances.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct BiasFilterConfig {
     /// Prior of each heading's bias at the end of the tare, rad².
     pub initial_bias: Q,
@@ -214,6 +231,7 @@ pub struct BiasFilterConfig {
 
 /// Error sources of the shape; the same for all segments.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct UncertaintyConfig {
     /// Variance of θ behind the moving-average anchor, rad².
     pub theta: Q,
@@ -232,6 +250,7 @@ pub struct UncertaintyConfig {
 /// Parameters of one scalar filter of KF_orient or KF_coord. The gains depend on ratios of covariances alone, so all
 /// are given as ratios to the larger of R_imu and R_bend, which keeps them within [`Q`]'s range.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct KalmanParams<S> {
     /// Process noise Q from one sample to the next.
     pub q: S,

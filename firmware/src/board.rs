@@ -10,11 +10,12 @@ use atsam3x8e_hal::twi::Twi;
 use atsam3x8e_hal::uart::{self, Rx, Tx};
 use atsam3x8e_hal::watchdog::{self, Watchdog};
 use atsam3x8e_hal::{clock, crash, eefc, gpio, reset};
-use board_core::BootCounter;
 use board_core::imus::Imus;
 use board_core::tca9548a::{self, Tca9548a};
+use board_core::{BootCounter, TableServer};
+use board_table::BoardTable;
 use embedded_hal::digital::PinState;
-use telemetry::{BEND_SENSORS, Hello, REGULATORS};
+use telemetry::{BEND_SENSORS, Hello, REGULATORS, SEGMENTS, TableState};
 
 use crate::imu_bus::ImuBus;
 use crate::panic::outputs_safe;
@@ -57,6 +58,10 @@ pub struct Board {
     pub backup: Backup,
     pub boots: BootCounter,
     pub hello: Hello,
+    /// The table that was read from the flash; empty without one.
+    pub table: &'static BoardTable<SEGMENTS>,
+    pub table_state: TableState,
+    pub tables: TableServer<eefc::Flash>,
 }
 
 /// Errors of the initialisation. Each is a fault of the hardware or of [`parameters`](crate::parameters).
@@ -78,8 +83,12 @@ pub enum Error {
     Flash(#[from] eefc::Error),
 }
 
-/// Initialises the chip; returns the board, vented and with its trigger running.
-pub fn set_up(device: Peripherals, buffers: &'static mut Buffers) -> Result<Board, Error> {
+/// Initialises the chip and reads the table; returns the board, vented and with its trigger running.
+pub fn set_up(
+    device: Peripherals,
+    buffers: &'static mut Buffers,
+    table: &'static mut BoardTable<SEGMENTS>,
+) -> Result<Board, Error> {
     crash::on_fault(outputs_safe);
     // First, so that it resets the board if anything below hangs.
     let watchdog = Watchdog::start(device.WDT, WATCHDOG_MS)?;
@@ -104,7 +113,9 @@ pub fn set_up(device: Peripherals, buffers: &'static mut Buffers) -> Result<Boar
     let last_panic = crash::take();
     let boots = BootCounter::start(retained::read(&backup), cause, last_panic.is_some());
     retained::write(&mut backup, &boots);
-    let hello = device_info::hello(chip, cause, boots.number(), last_panic.as_ref());
+    let tables = TableServer::new(flash);
+    let table_state = tables.load(table);
+    let hello = device_info::hello(table, chip, cause, boots.number(), last_panic.as_ref());
 
     let (rx, tx) = (a.pa8.into_peripheral_a(), a.pa9.into_peripheral_a());
     let uart = uart::new(device.UART, rx, tx, BAUD, &mut buffers.transmit, &mut buffers.receive, clocks);
@@ -120,5 +131,20 @@ pub fn set_up(device: Peripherals, buffers: &'static mut Buffers) -> Result<Boar
     let adc = adc?;
     let start_us = Mono::now_us();
     let trigger = Trigger::start(channels.channel0, TICK_HZ, SCAN_US)?;
-    Ok(Board { watchdog, trigger, start_us, adc, regulators, imus, tx, rx, backup, boots, hello })
+    Ok(Board {
+        watchdog,
+        trigger,
+        start_us,
+        adc,
+        regulators,
+        imus,
+        tx,
+        rx,
+        backup,
+        boots,
+        hello,
+        table,
+        table_state,
+        tables,
+    })
 }

@@ -2,9 +2,9 @@
 
 use atsam3x8e_hal::tc::Mono;
 use atsam3x8e_hal::uart::Rx;
-use board_core::{Actuator, CommandServer, Schedule, Task};
+use board_core::{Actuator, CommandServer, Execution, Schedule, Task};
 use rtic::Mutex;
-use telemetry::{Command, DecodeError, Decoder, Message, Refusal, Reply, Request, RequestOutcome};
+use telemetry::{Actuation, Command, DecodeError, Decoder, Message, Refusal, Reply, Request, RequestOutcome};
 
 use crate::downlink::TelemetrySender;
 use crate::parameters::RECEIVE_BYTES;
@@ -20,6 +20,10 @@ pub struct Control {
     pub hello_requested: bool,
     /// Frames since boot that were received damaged.
     pub damaged_frames: u32,
+    /// The board has a valid table.
+    pub has_table: bool,
+    /// Reply of the table task, already sent.
+    pub completed: Option<Reply>,
 }
 
 /// State of the command task.
@@ -35,22 +39,33 @@ impl CommandTask {
         Self { rx, decoder: Decoder::new(), server: CommandServer::new() }
     }
 
-    /// Handles the bytes since the last tick. Returns whether a reboot was requested.
+    /// Handles the bytes since the last tick; `start` begins a request about the table in its task, if that is free.
+    /// Returns whether a reboot was requested.
     pub fn run(
         &mut self,
         tick: u32,
+        mut start: impl FnMut(Request) -> Result<(), Request>,
         mut actuator: impl Mutex<T = Actuator>,
         mut control: impl Mutex<T = Control>,
         mut sender: impl Mutex<T = TelemetrySender>,
     ) -> bool {
         let mut reboot = false;
+        if let Some(reply) = control.lock(|control| control.completed.take()) {
+            self.server.complete(reply);
+        }
         let mut bytes = [0; RECEIVE_BYTES];
         let count = self.rx.read(&mut bytes);
         for byte in bytes.iter().take(count) {
             let reply = match self.decoder.push(*byte) {
                 Some(Ok(request)) => self.server.answer(&request, tick, |command| {
-                    let result = control
-                        .lock(|control| actuator.lock(|actuator| execute(command, actuator, control, &mut reboot)));
+                    let result = if is_about_table(command) {
+                        let may_change = actuator.lock(|actuator| actuator.state() == Actuation::Disarmed);
+                        start_table_task(&request, may_change, &mut start)
+                    } else {
+                        control
+                            .lock(|control| actuator.lock(|actuator| execute(command, actuator, control, &mut reboot)))
+                            .map(|()| Execution::Done)
+                    };
                     log(&request, result);
                     result
                 }),
@@ -70,27 +85,60 @@ impl CommandTask {
     }
 }
 
-fn execute(command: Command, actuator: &mut Actuator, control: &mut Control, reboot: &mut bool) -> Result<(), Refusal> {
+/// Returns whether the table task executes a command.
+const fn is_about_table(command: &Command) -> bool {
+    matches!(
+        command,
+        Command::TableBegin(_)
+            | Command::TableWrite(_)
+            | Command::TableCommit
+            | Command::TableErase
+            | Command::TableRead(_)
+    )
+}
+
+/// Begins a request about the table in its task. Only the reading of the table is admitted while the pressures are armed.
+fn start_table_task(
+    request: &Request,
+    may_change: bool,
+    start: &mut impl FnMut(Request) -> Result<(), Request>,
+) -> Result<Execution, Refusal> {
+    if !may_change && !matches!(request.command, Command::TableRead(_)) {
+        return Err(Refusal::Armed);
+    }
+    start(request.clone()).map(|()| Execution::Pending).map_err(|_| Refusal::Busy)
+}
+
+fn execute(
+    command: &Command,
+    actuator: &mut Actuator,
+    control: &mut Control,
+    reboot: &mut bool,
+) -> Result<(), Refusal> {
     match command {
         Command::Ping => control.hello_requested = true,
         Command::Tare => control.tare_requested = true,
-        Command::Rates(rates) => control.schedule = Schedule::new(rates),
+        Command::Rates(rates) => control.schedule = Schedule::new(*rates),
+        Command::Arm if !control.has_table => return Err(Refusal::NoTable),
         Command::Arm => actuator.arm(),
         Command::Disarm => actuator.disarm(),
-        Command::SetPressures(pressures) => actuator.set(&pressures, Mono::now_us())?,
+        Command::SetPressures(pressures) => actuator.set(pressures, Mono::now_us())?,
         Command::Reboot => {
             actuator.disarm();
             *reboot = true;
         }
+        _ => return Err(Refusal::Unknown),
     }
     Ok(())
 }
 
-/// Logs an executed request; set-points, which are sent many times a second, at the level debug alone.
-fn log(request: &Request, result: Result<(), Refusal>) {
-    match (result, request.command) {
-        (Ok(()), Command::SetPressures(_)) => defmt::debug!("{}", request),
-        (Ok(()), _) => defmt::info!("{}", request),
+/// Logs an executed request; those that are sent many times a second at the level debug alone.
+fn log(request: &Request, result: Result<Execution, Refusal>) {
+    match (result, &request.command) {
+        (Ok(_), Command::SetPressures(_) | Command::TableWrite(_) | Command::TableRead(_)) => {
+            defmt::debug!("{}", request);
+        }
+        (Ok(_), _) => defmt::info!("{}", request),
         (Err(refusal), _) => defmt::warn!("request {} refused: {}", request.id, refusal),
     }
 }

@@ -2,19 +2,24 @@
 
 use atsam3x8e_hal::crash;
 use atsam3x8e_hal::reset::Cause;
-use telemetry::{Hello, PROTOCOL_VERSION, ResetCause, SCHEMA, Text};
-
-use crate::table;
+use board_table::BoardTable;
+use telemetry::{Hello, PROTOCOL_VERSION, ResetCause, SCHEMA, SEGMENTS, Text};
 
 /// The board's `Hello`.
-pub fn hello(chip: [u8; 16], reset: ResetCause, boot: u32, last_panic: Option<&crash::Text>) -> Hello {
+pub fn hello(
+    table: &BoardTable<SEGMENTS>,
+    chip: [u8; 16],
+    reset: ResetCause,
+    boot: u32,
+    last_panic: Option<&crash::Text>,
+) -> Hello {
     Hello {
         protocol: PROTOCOL_VERSION,
         schema: SCHEMA,
         firmware: text(env!("CARGO_PKG_VERSION")),
         revision: text(env!("REVISION")),
-        arm: text(table::ARM),
-        table: table::CHECKSUM,
+        arm: text(table.arm()),
+        table: table.checksum(),
         chip,
         reset,
         boot,

@@ -4,8 +4,11 @@ use atsam3x8e_hal::gpio::{Output, Pin};
 use atsam3x8e_hal::tc::prelude::*;
 use board_core::imus::Imus;
 use board_core::{Actuator, BendSensorMonitor, BoardEstimator, DueMessages, Task};
+use estimator_core::{ArmConfig, Q};
 use rtic::Mutex;
-use telemetry::{Actuation, Estimate, Event, Health, Hello, Message, REGULATORS, SEGMENTS, Sample, SensorState};
+use telemetry::{
+    Actuation, Estimate, Event, Health, Hello, Message, REGULATORS, SEGMENTS, Sample, SensorState, TableState,
+};
 
 use crate::command_task::Control;
 use crate::cpu_load::CpuLoad;
@@ -13,7 +16,6 @@ use crate::downlink::TelemetrySender;
 use crate::imu_bus::ImuBus;
 use crate::parameters::IMUS_US;
 use crate::supervision::SUPERVISOR;
-use crate::table::TABLE;
 use crate::tick::Tick;
 
 /// Maximum events sent per tick; further ones are discarded.
@@ -24,7 +26,10 @@ pub struct EstimationTask {
     imus: Imus<ImuBus, Pin<'B', 26, Output>>,
     bend_sensors: BendSensorMonitor,
     estimator: &'static mut BoardEstimator,
+    /// Without segments: the board has no table, and sends no estimates.
+    config: &'static ArmConfig<'static, Q>,
     hello: Hello,
+    table: TableState,
     /// A boot loop: the pressures stay at zero.
     safe_mode: bool,
     load: CpuLoad,
@@ -53,7 +58,9 @@ impl EstimationTask {
     pub fn new(
         imus: Imus<ImuBus, Pin<'B', 26, Output>>,
         estimator: &'static mut BoardEstimator,
+        config: &'static ArmConfig<'static, Q>,
         hello: Hello,
+        table: TableState,
         safe_mode: bool,
     ) -> Self {
         estimator.start();
@@ -61,7 +68,9 @@ impl EstimationTask {
             imus,
             bend_sensors: BendSensorMonitor::new(),
             estimator,
+            config,
             hello,
+            table,
             safe_mode,
             load: CpuLoad::new(),
             last_tick: None,
@@ -105,6 +114,9 @@ impl EstimationTask {
         due.hello |= self.last_tick.is_none();
         self.last_tick = Some(tick.number);
         result.events.iter().for_each(log);
+        let has_table = !self.config.segments.is_empty();
+        due.estimate &= has_table;
+        due.uncertainty &= has_table;
         let uncertainty = due.uncertainty.then(|| self.estimator.uncertainty(tick.number));
         sender.lock(|sender| {
             self.send(sender, &result, due);
@@ -158,6 +170,7 @@ impl EstimationTask {
     fn send(&self, sender: &mut TelemetrySender, result: &CycleResult, due: DueMessages) {
         if due.hello {
             sender.send(&Message::Hello(self.hello.clone()));
+            sender.send(&Message::Table(self.table));
         }
         // Samples first: a replay needs them.
         if due.sample {
@@ -176,7 +189,7 @@ impl EstimationTask {
     fn is_degraded(&self) -> bool {
         let no_imu = self.imus.health().iter().all(|imu| imu.state != SensorState::Ok);
         let has_sensors =
-            |segment: usize| TABLE.segments.get(segment).is_some_and(|s| s.bend.iter().any(Option::is_some));
+            |segment: usize| self.config.segments.get(segment).is_some_and(|s| s.bend.iter().any(Option::is_some));
         no_imu || (0..SEGMENTS).any(|segment| has_sensors(segment) && self.bend_sensors.segment_is_lost(segment))
     }
 

@@ -30,7 +30,7 @@ mod panic;
 mod parameters;
 mod retained;
 mod supervision;
-mod table;
+mod table_task;
 mod tick;
 
 use defmt_rtt as _;
@@ -38,7 +38,7 @@ use defmt_rtt as _;
 defmt::timestamp!("{=u64:us}", atsam3x8e_hal::tc::Mono::now_us());
 
 /// The tasks and their shared state; the work of each is in the module of its name.
-#[rtic::app(device = atsam3x8e_hal::pac, dispatchers = [SSC, HSMCI])]
+#[rtic::app(device = atsam3x8e_hal::pac, dispatchers = [SSC, HSMCI, SPI0])]
 mod app {
     use core::mem::MaybeUninit;
 
@@ -46,7 +46,10 @@ mod app {
     use atsam3x8e_hal::tc::{Mono, prelude::*};
     use atsam3x8e_hal::{reset, twi};
     use board_core::{Actuator, BoardEstimator, Schedule};
+    use board_table::BoardTable;
+    use estimator_core::{ArmConfig, Q};
     use rtic_sync::signal::{Signal, SignalReader};
+    use telemetry::{Request, SEGMENTS, TableStatus};
 
     use crate::board::{self, Buffers};
     use crate::command_task::{CommandTask, Control};
@@ -54,7 +57,7 @@ mod app {
     use crate::downlink::TelemetrySender;
     use crate::estimation::EstimationTask;
     use crate::parameters::LIMITS_PA;
-    use crate::table::TABLE;
+    use crate::table_task::TableTask;
     use crate::tick::{Tick, Ticker};
 
     #[shared]
@@ -71,21 +74,24 @@ mod app {
         command_ticks: SignalReader<'static, Tick>,
         estimation_task: EstimationTask,
         estimation_ticks: SignalReader<'static, Tick>,
+        table_task: TableTask,
     }
 
     #[init(local = [
         buffers: Buffers = Buffers::new(),
         for_commands: Signal<Tick> = Signal::new(),
         for_estimation: Signal<Tick> = Signal::new(),
+        table: BoardTable<SEGMENTS> = BoardTable::new(),
+        config: MaybeUninit<ArmConfig<'static, Q>> = MaybeUninit::uninit(),
         estimator: MaybeUninit<BoardEstimator> = MaybeUninit::uninit(),
     ])]
     fn init(cx: init::Context) -> (Shared, Local) {
-        let board = match board::set_up(cx.device, cx.local.buffers) {
+        let board = match board::set_up(cx.device, cx.local.buffers, cx.local.table) {
             Ok(board) => board,
             Err(error) => panic!("the board does not come up: {error}"),
         };
         let safe_mode = board.boots.safe_mode();
-        log_boot(&board.hello, safe_mode);
+        log_boot(&board.hello, &board.table_state, safe_mode);
         let (to_commands, command_ticks) = cx.local.for_commands.split();
         let (to_estimation, estimation_ticks) = cx.local.for_estimation.split();
         let ticker = Ticker {
@@ -99,13 +105,22 @@ mod app {
             subscribers: [to_commands, to_estimation],
             missed_deadline: None,
         };
-        let estimator = cx.local.estimator.write(BoardEstimator::new(&TABLE));
-        let estimation_task = EstimationTask::new(board.imus, estimator, board.hello, safe_mode);
+        let has_table = board.table_state.status == TableStatus::InUse;
+        let config = cx.local.config.write(board.table.config().unwrap_or(ArmConfig::uncalibrated(&[])));
+        let estimator = cx.local.estimator.write(BoardEstimator::new(config));
+        let estimation_task =
+            EstimationTask::new(board.imus, estimator, config, board.hello, board.table_state, safe_mode);
         // Each is spawned once and never ends, so that there is room for it.
         let _ = commands::spawn();
         let _ = estimation::spawn();
-        let control =
-            Control { schedule: Schedule::default(), tare_requested: false, hello_requested: false, damaged_frames: 0 };
+        let control = Control {
+            schedule: Schedule::default(),
+            tare_requested: false,
+            hello_requested: false,
+            damaged_frames: 0,
+            has_table,
+            completed: None,
+        };
         (
             Shared { actuator: Actuator::new(LIMITS_PA), control, sender: TelemetrySender::new(board.tx) },
             Local {
@@ -114,14 +129,19 @@ mod app {
                 command_ticks,
                 estimation_task,
                 estimation_ticks,
+                table_task: TableTask::new(board.tables),
             },
         )
     }
 
     /// Logs the boot, its cause, and the crash before it.
-    fn log_boot(hello: &telemetry::Hello, safe_mode: bool) {
+    fn log_boot(hello: &telemetry::Hello, table: &telemetry::TableState, safe_mode: bool) {
         let (firmware, revision) = (hello.firmware.as_str(), hello.revision.as_str());
         defmt::info!("boot {} of firmware {} ({}), reset by {}", hello.boot, firmware, revision, hello.reset);
+        match table.status {
+            TableStatus::InUse => defmt::info!("table {} of {}", table.generation, hello.arm.as_str()),
+            status => defmt::warn!("no estimates, as the table is {}", status),
+        }
         if let Some(last_panic) = &hello.last_panic {
             defmt::warn!("crash before this boot: {}", last_panic.as_str());
         }
@@ -139,31 +159,31 @@ mod app {
     }
 
     /// The tick, 200 µs after the ADC's trigger.
-    #[task(binds = TC0, priority = 3, shared = [actuator], local = [ticker])]
+    #[task(binds = TC0, priority = 4, shared = [actuator], local = [ticker])]
     fn tick(cx: tick::Context) {
         cx.local.ticker.run(cx.shared.actuator);
     }
 
     /// A byte on the IMUs' bus.
-    #[task(binds = TWI1, priority = 4)]
+    #[task(binds = TWI1, priority = 5)]
     fn twi1(_: twi1::Context) {
         twi::on_interrupt::<TWI1>();
     }
 
     /// The timer of all delays.
-    #[task(binds = TC1, priority = 4)]
+    #[task(binds = TC1, priority = 5)]
     fn time(_: time::Context) {
         Mono::on_interrupt();
     }
 
     /// Requests of the host.
-    #[task(priority = 2, shared = [actuator, control, sender], local = [command_task, command_ticks])]
+    #[task(priority = 3, shared = [actuator, control, sender], local = [command_task, command_ticks])]
     async fn commands(cx: commands::Context) {
         let mut shared = cx.shared;
         loop {
             let tick = cx.local.command_ticks.wait().await;
             let (actuator, control, sender) = (&mut shared.actuator, &mut shared.control, &mut shared.sender);
-            if cx.local.command_task.run(tick.number, actuator, control, sender) {
+            if cx.local.command_task.run(tick.number, table::spawn, actuator, control, sender) {
                 // Time to send the reply and to vent the arm.
                 Mono::delay(50u64.millis()).await;
                 reset::reset();
@@ -172,13 +192,24 @@ mod app {
     }
 
     /// IMUs, estimator, messages.
-    #[task(priority = 1, shared = [actuator, control, sender], local = [estimation_task, estimation_ticks])]
+    #[task(priority = 2, shared = [actuator, control, sender], local = [estimation_task, estimation_ticks])]
     async fn estimation(cx: estimation::Context) {
         let mut shared = cx.shared;
         loop {
             let tick = cx.local.estimation_ticks.wait().await;
             let (actuator, control, sender) = (&mut shared.actuator, &mut shared.control, &mut shared.sender);
             cx.local.estimation_task.run(tick, actuator, control, sender).await;
+        }
+    }
+
+    /// Requests about the table in the flash.
+    #[task(priority = 1, shared = [control, sender], local = [table_task])]
+    async fn table(cx: table::Context, request: Request) {
+        let mut shared = cx.shared;
+        if cx.local.table_task.run(&request, &mut shared.control, &mut shared.sender) {
+            // Time to send the reply.
+            Mono::delay(50u64.millis()).await;
+            reset::reset();
         }
     }
 }

@@ -3,6 +3,7 @@
 use core::ops::Range;
 
 use board_core::FULL_SCALE_PA;
+use board_table::STORE_BYTES;
 use telemetry::{BEND_SENSORS, REGULATORS, TICK_US};
 
 /// Ticks a second: the rate of the ADC's trigger and of all tasks.
@@ -35,8 +36,9 @@ pub const TRANSMIT_BYTES: usize = 1024;
 /// Size of the receive buffer, bytes: 20 ms of the line.
 pub const RECEIVE_BYTES: usize = 512;
 
-/// The end of the flash, reserved for a table that the board itself saves.
-pub const STORAGE: Range<u32> = 0x000F_F000..0x0010_0000;
+/// The end of the flash: the two slots of the table. They are in the second bank, so that the program runs while they are
+/// written.
+pub const STORAGE: Range<u32> = 0x0010_0000 - STORE_BYTES as u32..0x0010_0000;
 
 /// Nominal period of the watchdog, ms. Its clock is ±40 %, so that the true period is 60 to 140 ms.
 pub const WATCHDOG_MS: u32 = 100;

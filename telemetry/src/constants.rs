@@ -6,6 +6,9 @@ pub const PROTOCOL_VERSION: u8 = 2;
 /// Length of the longest frame in bytes, its zero included.
 pub const MAX_FRAME: usize = 255;
 
+/// Longest piece of a table in one frame, bytes: the frame takes 7 ms of the line, less than a tick.
+pub const TABLE_CHUNK_BYTES: usize = 160;
+
 /// Time between two ticks of the board, µs.
 pub const TICK_US: u64 = 10_000;
 

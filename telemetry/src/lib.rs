@@ -7,7 +7,7 @@
 //! | file | contents |
 //! |---|---|
 //! | `constants.rs` | [`PROTOCOL_VERSION`], [`MAX_FRAME`], the arm's numbers |
-//! | `message.rs` | messages and requests |
+//! | `message.rs`, `table_message.rs` | messages and requests |
 //! | `wire.rs`, `wire_conversions.rs` | fixed-width forms of the messages of every tick |
 //! | `payload.rs` | topics and bodies |
 //! | `frame.rs` | COBS, CRC and [`Encoder`] |
@@ -52,10 +52,13 @@ mod frame;
 mod message;
 mod payload;
 mod schema;
+mod table_message;
 mod wire;
 mod wire_conversions;
 
-pub use constants::{BEND_SENSORS, MAX_FRAME, PROTOCOL_VERSION, REGULATORS, SEGMENTS, TICK_HZ, TICK_US};
+pub use constants::{
+    BEND_SENSORS, MAX_FRAME, PROTOCOL_VERSION, REGULATORS, SEGMENTS, TABLE_CHUNK_BYTES, TICK_HZ, TICK_US,
+};
 pub use decode_error::DecodeError;
 pub use decoder::{Counts, Decoder};
 pub use estimator::contact_flags;
@@ -63,6 +66,7 @@ pub use frame::{EncodeError, Encoder};
 pub use message::*;
 pub use payload::{Payload, topic};
 pub use schema::{EARLIER_SCHEMAS, SCHEMA, is_same_layout};
+pub use table_message::{TableAnnouncement, TableChunk, TableState, TableStatus};
 
 /// Runs the example of the protocol's page.
 #[cfg(doctest)]

@@ -9,6 +9,7 @@ use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
 
 use crate::constants::{BEND_SENSORS, REGULATORS, SEGMENTS};
+use crate::table_message::{TableAnnouncement, TableChunk, TableState};
 use crate::wire::{EstimateWire, SampleWire, UncertaintyWire};
 
 /// A short text, cut where it is too long.
@@ -32,6 +33,10 @@ pub enum Message {
     Reply(Reply),
     /// Covariance of an estimate, and contact.
     Uncertainty(Uncertainty),
+    /// State of the table in the board's flash; with each `Hello`, and after each request about the table.
+    Table(TableState),
+    /// A piece of the table, on request.
+    TableData(TableChunk),
 }
 
 /// Identity of the board and its firmware, and the cause of its boot.
@@ -46,9 +51,9 @@ pub struct Hello {
     pub firmware: Text<16>,
     /// Revision of the firmware's source.
     pub revision: Text<16>,
-    /// Name of the arm that its table is for.
+    /// Name of the arm that its table is for; empty without a table.
     pub arm: Text<32>,
-    /// Checksum of its table.
+    /// Checksum of its table; 0 without a table.
     pub table: u32,
     /// Unique number of its chip.
     pub chip: [u8; 16],
@@ -254,7 +259,7 @@ pub enum Event {
 }
 
 /// A request from the host.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, Schema)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, Schema)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Request {
     /// The host's number of the request. A retried request keeps its number and acts once; numbers go up.
@@ -264,7 +269,7 @@ pub struct Request {
 }
 
 /// A command to the board.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, Schema)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, Schema)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Command {
     /// Reply, then send a [`Hello`].
@@ -281,6 +286,16 @@ pub enum Command {
     SetPressures(SetPressures),
     /// Vent and restart.
     Reboot,
+    /// Begin the transfer of a table to the board's flash, or resume it; the reply is followed by a [`TableState`].
+    TableBegin(TableAnnouncement),
+    /// Store the next piece of the table.
+    TableWrite(TableChunk),
+    /// End the transfer: check the table, make it the board's, and restart.
+    TableCommit,
+    /// Send the piece of the table, image first, that begins at this offset, as [`Message::TableData`].
+    TableRead(u32),
+    /// Erase the board's table, and restart.
+    TableErase,
 }
 
 /// Periods of the periodic messages, in ticks of 10 ms; 0: never.
@@ -349,4 +364,28 @@ pub enum Refusal {
     /// Too many requests at once.
     #[error("too many requests: wait and try again")]
     Busy,
+    /// The table is not changed while the pressures are armed.
+    #[error("the pressures are armed: disarm first")]
+    Armed,
+    /// The board has no valid table.
+    #[error("the board has no valid table: send it one with `proprio table push`")]
+    NoTable,
+    /// The table is longer than its place on the board.
+    #[error("the table is longer than its place on the board")]
+    TableTooLong,
+    /// The table has more segments or a longer window than the firmware has room for.
+    #[error("the table has more segments or a longer window of the anchor than the firmware has room for")]
+    TableCapacity,
+    /// The table's image is none of this firmware's format.
+    #[error("the firmware cannot read the table: host and firmware are of different versions")]
+    TableImage,
+    /// A piece of the table does not follow the one before it.
+    #[error("a piece of the table was lost: begin the transfer again")]
+    TableOrder,
+    /// The checksum of the stored table is wrong.
+    #[error("the checksum of the stored table is wrong: begin the transfer again")]
+    TableChecksum,
+    /// A page of the flash did not take what was written.
+    #[error("the board's flash did not take what was written")]
+    Flash,
 }

@@ -21,6 +21,10 @@ pub mod topic {
     pub const REPLY: u8 = 6;
     /// [`Uncertainty`](crate::Uncertainty), from the board.
     pub const UNCERTAINTY: u8 = 7;
+    /// [`TableState`](crate::TableState), from the board.
+    pub const TABLE: u8 = 8;
+    /// [`TableChunk`](crate::TableChunk), from the board.
+    pub const TABLE_DATA: u8 = 9;
     /// [`Request`](crate::Request), from the host.
     pub const REQUEST: u8 = 0x80;
 }
@@ -55,6 +59,8 @@ impl Payload for Message {
             Self::Event(_) => topic::EVENT,
             Self::Reply(_) => topic::REPLY,
             Self::Uncertainty(_) => topic::UNCERTAINTY,
+            Self::Table(_) => topic::TABLE,
+            Self::TableData(_) => topic::TABLE_DATA,
         }
     }
 
@@ -67,6 +73,8 @@ impl Payload for Message {
             Self::Event(event) => write(event, body),
             Self::Reply(reply) => write(reply, body),
             Self::Uncertainty(uncertainty) => write(uncertainty, body),
+            Self::Table(state) => write(state, body),
+            Self::TableData(chunk) => write(chunk, body),
         }
     }
 
@@ -79,6 +87,8 @@ impl Payload for Message {
             topic::EVENT => read(body).map(Self::Event),
             topic::REPLY => read(body).map(Self::Reply),
             topic::UNCERTAINTY => read(body).map(Self::Uncertainty),
+            topic::TABLE => read(body).map(Self::Table),
+            topic::TABLE_DATA => read(body).map(Self::TableData),
             _ => return Err(DecodeError::Topic(topic)),
         };
         message.ok_or(DecodeError::Body(topic))

@@ -11,10 +11,11 @@ use crate::message::{Message, Request};
 /// [`is_same_layout`] before it reads any other message.
 pub const SCHEMA: u32 = hash_layout::<(Message, Request)>();
 
-/// Hashes of the same layout by earlier releases, which covered the names too.
-pub const EARLIER_SCHEMAS: [u32; 1] = [0x03c8_8117];
+/// Hashes of earlier releases whose messages this crate reads: one that covered the names too, and one without the
+/// messages about the table.
+pub const EARLIER_SCHEMAS: [u32; 2] = [0x03c8_8117, 0x666c_7703];
 
-/// Returns whether messages of this `schema` have the layout that this crate reads.
+/// Returns whether this crate reads messages of this `schema`.
 #[must_use]
 pub fn is_same_layout(schema: u32) -> bool {
     schema == SCHEMA || EARLIER_SCHEMAS.contains(&schema)

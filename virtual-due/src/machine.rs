@@ -4,6 +4,7 @@ use crate::chip::Chip;
 use crate::cpu::{Bus, Cpu, Stop};
 use crate::elf::{Elf, ElfError};
 use crate::engine::Engine;
+use sam3x_models::flash::{BANK, FLASH};
 use sam3x_models::model::{Cause, Cycles, Memory, World};
 
 /// A reset that happened.
@@ -57,6 +58,21 @@ impl<W: World> Machine<W> {
         machine.reset(Cause::General);
         machine.resets.clear();
         Ok(machine)
+    }
+
+    /// Replaces the content of the flash, from its first byte, but for what the firmware occupies.
+    pub fn load_flash(&mut self, content: &[u8]) {
+        for (address, bank) in [FLASH, FLASH + BANK].into_iter().zip(content.chunks(BANK as usize)) {
+            self.chip.memories.load(address, bank);
+        }
+        for (address, bytes) in &self.elf.pieces {
+            self.chip.memories.load(*address, bytes);
+        }
+    }
+
+    /// Content of the flash, both banks.
+    pub fn flash(&self) -> Vec<u8> {
+        [FLASH, FLASH + BANK].into_iter().filter_map(|bank| self.peek(bank, BANK as usize)).flatten().collect()
     }
 
     /// Runs until board time `end`; the last instruction may end after it.

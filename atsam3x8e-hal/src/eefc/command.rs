@@ -28,7 +28,7 @@ pub(super) enum Command {
     GetGpnvmBits = 0x0D,
 }
 
-/// Executes a command with interrupts off; gives the result register.
+/// Executes a command; gives the result register. Interrupts are off if the program is in the same bank.
 pub(super) fn execute(efc: &pac::efc0::RegisterBlock, command: Command, argument: u32) -> Result<u32, Error> {
     let fcr = KEY | argument << 8 | command as u32;
     // SAFETY: the addresses are those of a controller's command and status registers.
@@ -67,7 +67,7 @@ fn check(status: u32) -> Result<(), Error> {
 ///
 /// # Safety
 ///
-/// `fcr` and `fsr` are a flash controller's registers, and interrupts are off.
+/// `fcr` and `fsr` are a flash controller's registers, and interrupts are off or no interrupt's code is in its bank.
 #[cfg(target_arch = "arm")]
 #[unsafe(naked)]
 #[unsafe(link_section = ".data.atsam3x8e_hal_write_and_wait")]

@@ -5,6 +5,7 @@ use crate::numeric::phase::Turns;
 /// Thresholds of contact detection for segments without [limits](ContactLimits) of their own: changes within five
 /// values that a free arm does not reach.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ContactConfig {
     /// Threshold of the IMUs against the bend sensors of a segment, after a quarter of the motion is subtracted.
     pub bend: Turns,
@@ -14,6 +15,7 @@ pub struct ContactConfig {
 
 /// An earlier segment that bends in proportion in free motion: θ = ratio · θ of that segment.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct CoupledSegment {
     /// Its index in the table, from 0.
     pub segment: u8,
@@ -23,6 +25,7 @@ pub struct CoupledSegment {
 
 /// Contact detection of one segment by limits from the scatter of the calibration sweep.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ContactLimits {
     /// Limit of the change of the IMUs against the bend sensors; `None`: this residual is not used.
     pub bend: Option<ChangeLimit>,
@@ -32,6 +35,7 @@ pub struct ContactLimits {
 
 /// Limit of the change of a residual within a second.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ChangeLimit {
     /// Change that the free arm does not reach.
     pub change: Turns,
@@ -42,6 +46,7 @@ pub struct ChangeLimit {
 
 /// Coupling of a segment to an earlier one in free motion: the responses of both to the same pressure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Coupling {
     /// Ratio of θ to that of the coupled segment where the latter is negative, in units of 2⁻²⁸, within ±8.
     pub ratio_left: i32,
@@ -55,6 +60,7 @@ pub struct Coupling {
 
 /// A play and a first-order lag in series.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Response {
     /// Radius of the play, in units of 2⁻³² turns; 0: no play.
     pub play: i32,

@@ -128,6 +128,7 @@ fn atan_turns(ratio: i32) -> i32 {
 ///
 /// Sums and differences are exact, so that a window's mean does not drift over a long session.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Turns(i64);
 
 impl Turns {

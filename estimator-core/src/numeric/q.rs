@@ -21,6 +21,7 @@ use crate::numeric::saturation;
 /// assert_eq!((half * half).to_f64(), 0.25);
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Q(pub(super) i32);
 
 impl Q {

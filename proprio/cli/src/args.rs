@@ -10,6 +10,7 @@ use clap_complete::Shell;
 
 pub use link::{
     ConvertArgs, DriveArgs, FlashArgs, LinkArgs, MonitorArgs, PortsArgs, RecordArgs, RecoverArgs, StatusArgs,
+    TableArgs, TableCommand,
 };
 
 /// Colours of help and errors; off where stderr is not a terminal or NO_COLOR is set.
@@ -44,6 +45,8 @@ pub enum Command {
     Simulate(SimulateArgs),
     /// Build the firmware with a table, flash it and verify that it runs
     Flash(FlashArgs),
+    /// Store, read or erase the table on a board
+    Table(TableArgs),
     /// List the serial ports and the Dues on them
     Ports(PortsArgs),
     /// Show the status of a board: versions, sensors, rates, losses

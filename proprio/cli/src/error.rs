@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use board_core::FULL_SCALE_PA;
 use proprio_link::LinkError;
 use proprio_link::drive::DriveError;
+use proprio_link::table::{TableImageError, TransferError};
 use proprio_session::DurationError;
 use proprio_simulation::SimulationError;
 
@@ -32,6 +33,12 @@ pub enum Error {
     /// A board cannot be driven, or not any more.
     #[error(transparent)]
     Drive(#[from] DriveError),
+    /// A table cannot be stored on a board.
+    #[error(transparent)]
+    TableImage(#[from] TableImageError),
+    /// A table was not transferred.
+    #[error(transparent)]
+    Transfer(#[from] TransferError),
     /// A board cannot be flashed.
     #[error(transparent)]
     Flash(#[from] FlashError),

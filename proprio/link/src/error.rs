@@ -44,6 +44,9 @@ pub enum LinkError {
         /// The system's reason.
         source: io::Error,
     },
+    /// The flash of the emulated Due cannot be written.
+    #[error("the flash of the emulated Due cannot be written: {0}")]
+    Flash(io::Error),
     /// The link's thread does not start.
     #[error("no thread can be started: {0}")]
     Thread(io::Error),

@@ -30,6 +30,7 @@
 //! | `event.rs`, `queue.rs` | events with their time of arrival, and a queue for each subscription |
 //! | `file_recorder.rs` | recording to a file |
 //! | `drive/`, `status.rs` | pressures over time; the state of a board within seconds |
+//! | `table/` | transfer of the table to the board and back |
 //! | `source.rs` | [`Source`]: opens a line, once or again |
 //! | `ports.rs`, `serial.rs`, `virtual_due.rs` | the sources: serial ports and the emulated Due |
 
@@ -46,6 +47,7 @@ mod shared;
 mod source;
 pub mod status;
 mod stream_decoder;
+pub mod table;
 mod virtual_due;
 mod worker;
 
@@ -59,4 +61,4 @@ pub use serial::{Baud, PortSource};
 pub use shared::{LinkState, Subscription};
 pub use source::{Source, Transport};
 pub use stream_decoder::{Received, StreamDecoder};
-pub use virtual_due::VirtualDue;
+pub use virtual_due::{Flash, VirtualDue};

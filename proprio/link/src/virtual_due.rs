@@ -10,7 +10,11 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
+use board_table::STORE_BYTES;
+use tempfile::NamedTempFile;
+
 use super::{LinkError, Source, Transport};
+use crate::table::StoredTable;
 
 /// Environment variable with the path of the program, where it is in no usual folder.
 const VARIABLE: &str = "PROPRIO_VIRTUAL_DUE";
@@ -30,6 +34,37 @@ pub struct VirtualDue {
     pub scenario: u8,
     /// Seed of the arm's motion and the sensors' noise.
     pub seed: u64,
+    /// Content of its flash.
+    pub flash: Flash,
+}
+
+/// Content of an emulated board's flash beside the firmware.
+#[derive(Debug, Clone)]
+pub enum Flash {
+    /// This table, in a file that is removed at the end.
+    Table(StoredTable),
+    /// That of a file, which is kept; empty if there is none yet.
+    File(PathBuf),
+}
+
+/// Size of the chip's flash, bytes.
+const FLASH_BYTES: usize = 512 * 1024;
+
+impl Flash {
+    /// Its file, and that again where it is temporary.
+    fn file(&self) -> Result<(PathBuf, Option<NamedTempFile>), LinkError> {
+        match self {
+            Self::File(path) => Ok((path.clone(), None)),
+            Self::Table(table) => {
+                // The store is at the end of the flash.
+                let mut content = vec![0xFF; FLASH_BYTES - STORE_BYTES];
+                content.extend(table.store().map_err(|error| LinkError::Flash(io::Error::other(error)))?);
+                let mut file = NamedTempFile::new().map_err(LinkError::Flash)?;
+                file.write_all(&content).map_err(LinkError::Flash)?;
+                Ok((file.path().to_owned(), Some(file)))
+            }
+        }
+    }
 }
 
 impl Source for VirtualDue {
@@ -42,10 +77,12 @@ impl Source for VirtualDue {
         let mut command = Command::new(&program);
         command.arg("run").arg(&firmware).args(["--serial", "stdio", "--speed", "real"]);
         command.args(["--scenario", &self.scenario.to_string(), "--seed", &self.seed.to_string()]);
+        let (flash, temporary) = self.flash.file()?;
+        command.arg("--flash").arg(flash);
         command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
         detach(&mut command);
         let child = command.spawn().map_err(|source| LinkError::Start { program, source })?;
-        Ok(("virtual Due".to_owned(), Box::new(Running::new(child)?)))
+        Ok(("virtual Due".to_owned(), Box::new(Running::new(child, temporary)?)))
     }
 
     fn can_reconnect(&self) -> bool {
@@ -96,15 +133,17 @@ struct Running {
     /// Bytes that did not fit the reader's buffer.
     rest: Vec<u8>,
     last_lines: Arc<Mutex<VecDeque<String>>>,
+    /// Its flash, where that is not kept.
+    _flash: Option<NamedTempFile>,
 }
 
 impl Running {
-    fn new(mut child: Child) -> Result<Self, LinkError> {
+    fn new(mut child: Child, flash: Option<NamedTempFile>) -> Result<Self, LinkError> {
         let missing = || LinkError::Ended("the virtual Due has no pipes".to_owned());
         let input = child.stdin.take().ok_or_else(missing)?;
         let output = pump(child.stdout.take().ok_or_else(missing)?)?;
         let last_lines = read_lines(child.stderr.take().ok_or_else(missing)?)?;
-        Ok(Self { child, input, output, rest: Vec::new(), last_lines })
+        Ok(Self { child, input, output, rest: Vec::new(), last_lines, _flash: flash })
     }
 
     fn ended(&mut self) -> io::Error {

@@ -91,7 +91,7 @@ impl<'t> Live<'t> {
             Message::Event(telemetry::Event::Contact(_, touched)) => self.contact(*touched),
             Message::Event(telemetry::Event::Bend(i, state)) => self.sensor(usize::from(*i), *state),
             Message::Event(telemetry::Event::Imu(i, state)) => self.sensor(BEND_SENSORS + usize::from(*i), *state),
-            Message::Hello(_) | Message::Event(_) | Message::Reply(_) => {}
+            Message::Hello(_) | Message::Event(_) | Message::Reply(_) | Message::Table(_) | Message::TableData(_) => {}
         }
     }
 

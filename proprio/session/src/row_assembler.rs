@@ -69,7 +69,7 @@ impl RowAssembler {
             Message::Estimate(estimate) => self.output(estimate.tick, |board| board.estimate = Some(*estimate)),
             Message::Uncertainty(of) => self.output(of.tick, |board| board.uncertainty = Some(*of)),
             Message::Event(Event::Contact(tick, touched)) => self.output(*tick, |board| board.contact = Some(*touched)),
-            Message::Health(_) | Message::Event(_) | Message::Reply(_) => {}
+            Message::Health(_) | Message::Event(_) | Message::Reply(_) | Message::Table(_) | Message::TableData(_) => {}
         }
         Ok(None)
     }

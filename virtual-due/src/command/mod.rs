@@ -2,12 +2,14 @@
 
 #[cfg(unix)]
 mod fault_injection;
+mod flash_file;
 #[cfg(unix)]
 mod pty;
 mod run;
 mod stdio;
 
 use clap::{Parser, Subcommand, ValueEnum};
+use flash_file::FlashFile;
 use rig_twin::Scenario;
 use run::Run;
 use std::path::{Path, PathBuf};
@@ -43,6 +45,9 @@ struct Arguments {
     /// Seed of the arm's motion and the sensors' noise.
     #[arg(long, default_value_t = 1)]
     seed: u64,
+    /// File of the chip's flash, 512 KiB, kept between runs; the firmware is written over it. Made if there is none.
+    #[arg(long, value_name = "FILE")]
+    flash: Option<PathBuf>,
     /// Virtual seconds to run; without it the run lasts until Ctrl-C.
     #[arg(long, value_parser = seconds)]
     seconds: Option<f64>,
@@ -93,6 +98,14 @@ pub enum Error {
         /// The reason.
         error: ElfError,
     },
+    /// The file of the flash cannot be read or written.
+    #[error("{path}: {error}; --flash takes a file of 512 KiB, or the name of a new one")]
+    Flash {
+        /// The path as it was given.
+        path: String,
+        /// The system's error.
+        error: std::io::Error,
+    },
     /// The serial port cannot be opened.
     #[error("serial port: {0}")]
     Serial(#[from] std::io::Error),
@@ -106,9 +119,13 @@ impl Cli {
     /// [`Error`] if the firmware or the serial port cannot be opened.
     pub fn execute(self) -> Result<ExitCode, Error> {
         let Command::Run(arguments) = self.command;
-        let machine = machine(&arguments.firmware, WiredRig::new(arguments.scenario, arguments.seed))?;
+        let mut machine = machine(&arguments.firmware, WiredRig::new(arguments.scenario, arguments.seed))?;
+        let flash = arguments.flash.map(|path| {
+            let shown = path.display().to_string();
+            FlashFile::load(path, &mut machine).map_err(|error| Error::Flash { path: shown, error })
+        });
         let paced = arguments.speed == Speed::Real;
-        let mut run = Run::new(machine, arguments.seconds, paced);
+        let mut run = Run::new(machine, flash.transpose()?, arguments.seconds, paced);
         match arguments.serial {
             Serial::Stdio => run.execute(&mut stdio::Stdio::new()?, |_| ())?,
             #[cfg(unix)]

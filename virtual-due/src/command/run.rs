@@ -1,5 +1,6 @@
 //! A run: the board in slices of time, with input and output between them.
 
+use super::flash_file::FlashFile;
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -9,6 +10,8 @@ use virtual_due::{CYCLES_PER_SECOND, Cycles, Machine};
 
 /// Time that the board runs between two transfers.
 const SLICE: Cycles = CYCLES_PER_SECOND / 500;
+/// Time between two looks at the flash, for its file.
+const FLASH_PERIOD: Cycles = CYCLES_PER_SECOND / 10;
 /// The UART, which is the programming port.
 const PORT: usize = 0;
 /// Time by which the slowest watchdog has reset a locked core.
@@ -35,6 +38,7 @@ pub struct Received {
 /// A board that runs a firmware.
 pub struct Run {
     machine: Machine<WiredRig>,
+    flash: Option<FlashFile>,
     end: Option<Cycles>,
     paced: bool,
     began: Instant,
@@ -44,9 +48,9 @@ pub struct Run {
 
 impl Run {
     /// A run of `seconds`, or without end; at most as fast as real time if it is `paced`.
-    pub fn new(machine: Machine<WiredRig>, seconds: Option<f64>, paced: bool) -> Self {
+    pub fn new(machine: Machine<WiredRig>, flash: Option<FlashFile>, seconds: Option<f64>, paced: bool) -> Self {
         let end = seconds.map(|seconds| (seconds * CYCLES_PER_SECOND as f64) as Cycles);
-        Self { machine, end, paced, began: Instant::now(), resets_printed: 0, locked_up: None }
+        Self { machine, flash, end, paced, began: Instant::now(), resets_printed: 0, locked_up: None }
     }
 
     /// Runs to the end, or until Ctrl-C, or until the reader has gone; calls `inject` before every slice.
@@ -68,6 +72,9 @@ impl Run {
             now = end.min(now + SLICE);
             self.machine.run_until(now);
             self.print_reports();
+            if now.is_multiple_of(FLASH_PERIOD) {
+                self.keep_flash()?;
+            }
             let sent: Vec<u8> =
                 self.machine.world_mut().take_transmitted(PORT).into_iter().map(|(_, byte)| byte).collect();
             if !line.send(&sent)? {
@@ -75,7 +82,11 @@ impl Run {
             }
             self.pace(now);
         }
-        Ok(())
+        self.keep_flash()
+    }
+
+    fn keep_flash(&mut self) -> std::io::Result<()> {
+        self.flash.as_mut().map_or(Ok(()), |flash| flash.keep(&self.machine))
     }
 
     /// True if the core has been locked up for longer than any watchdog takes.

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use clap::Args;
+use clap::{Args, Subcommand};
 use proprio_link::Baud;
 use telemetry::REGULATORS;
 
@@ -21,6 +21,9 @@ pub struct LinkArgs {
     /// Firmware of the emulated Due [default: where cargo leaves it]
     #[arg(long, value_name = "ELF", requires = "emulated")]
     pub firmware: Option<PathBuf>,
+    /// File of the emulated Due's flash, kept between runs [default: one with --table, or with the reference arm's table]
+    #[arg(long, value_name = "FILE", requires = "emulated")]
+    pub flash: Option<PathBuf>,
     /// Scenario of the simulated arm until the firmware drives it: 1 free swings, 2 pushes, 3 an obstacle
     #[arg(long, value_name = "1|2|3", requires = "emulated", default_value_t = 1, value_parser = clap::value_parser!(u8).range(1..=3))]
     pub scenario: u8,
@@ -30,6 +33,43 @@ pub struct LinkArgs {
     /// Table that the board should have
     #[arg(long, value_name = "TABLE.toml")]
     pub table: Option<PathBuf>,
+}
+
+/// Access to the table on a board.
+#[derive(Debug, Args)]
+pub struct TableArgs {
+    #[command(subcommand)]
+    pub command: TableCommand,
+}
+
+#[derive(Debug, Subcommand)]
+pub enum TableCommand {
+    /// Store a table on the board, which restarts and uses it
+    Push {
+        /// Table to store
+        #[arg(value_name = "TABLE.toml")]
+        file: PathBuf,
+        #[command(flatten)]
+        link: LinkArgs,
+    },
+    /// Read the board's table into a file, as it was written
+    Pull {
+        /// File to write; -: standard output
+        #[arg(short, long, value_name = "TABLE.toml")]
+        output: PathBuf,
+        #[command(flatten)]
+        link: LinkArgs,
+    },
+    /// Show the board's table: arm, checksum, number, size
+    Show {
+        #[command(flatten)]
+        link: LinkArgs,
+    },
+    /// Erase the board's table; the board restarts and sends samples alone
+    Erase {
+        #[command(flatten)]
+        link: LinkArgs,
+    },
 }
 
 #[derive(Debug, Args)]

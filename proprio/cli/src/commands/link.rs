@@ -2,8 +2,10 @@
 
 use std::path::Path;
 
+use calibration_tables::{ArmFile, PLANAR_6_TABLE};
 use estimator_core::Q;
-use proprio_link::{FileRecorder, Link, PortSource, Source, Subscription, VirtualDue};
+use proprio_link::table::{StoredTable, TableImageError};
+use proprio_link::{FileRecorder, Flash, Link, PortSource, Source, Subscription, VirtualDue};
 use proprio_session::{HostClock, LoadedTable};
 use telemetry::TICK_HZ;
 
@@ -15,12 +17,31 @@ pub fn open(args: &LinkArgs) -> Result<(Option<LoadedTable<'_>>, Link, Subscript
     let table = args.table.as_deref().map(LoadedTable::load).transpose()?;
     let checksum = table.as_ref().map(|table| Ok::<_, Error>(table.compile::<Q>(TICK_HZ)?.checksum())).transpose()?;
     let source: Box<dyn Source> = if args.emulated {
-        Box::new(VirtualDue { firmware: args.firmware.clone(), scenario: args.scenario, seed: args.seed })
+        let flash = args.flash.clone().map_or_else(|| flash_with(table.as_ref()), |path| Ok(Flash::File(path)))?;
+        Box::new(VirtualDue { firmware: args.firmware.clone(), scenario: args.scenario, seed: args.seed, flash })
     } else {
         Box::new(PortSource::new(args.port.clone(), args.baud))
     };
     let (link, events) = Link::start(source, checksum)?;
     Ok((table, link, events))
+}
+
+/// The flash of an emulated board with the table that was given, or that of the reference arm.
+fn flash_with(table: Option<&LoadedTable>) -> Result<Flash, Error> {
+    let stored = match table {
+        Some(table) => stored(table)?,
+        None => ArmFile::parse(PLANAR_6_TABLE)
+            .map_err(TableImageError::File)
+            .and_then(|file| StoredTable::new(&file, PLANAR_6_TABLE.as_bytes()))?,
+    };
+    Ok(Flash::Table(stored))
+}
+
+/// The form in which the board stores a table.
+pub fn stored(table: &LoadedTable) -> Result<StoredTable, Error> {
+    // An arm description is an error of its file.
+    table.required_columns()?;
+    Ok(StoredTable::new(&table.file, &table.toml()?)?)
 }
 
 /// Begins a recording of the link in a new file, with the table attached.

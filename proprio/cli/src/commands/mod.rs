@@ -16,6 +16,7 @@ mod replay;
 mod report;
 mod simulate;
 mod status;
+mod table;
 mod truth;
 mod tune;
 
@@ -37,6 +38,7 @@ impl Command {
             Self::Report(args) => report::run(&args),
             Self::Simulate(args) => simulate::run(&args),
             Self::Flash(args) => flash::run(&args),
+            Self::Table(args) => table::run(&args.command),
             Self::Ports(args) => ports::run(&args),
             Self::Status(args) => status::run(&args),
             Self::Record(args) => record::run(&args),

@@ -3,6 +3,7 @@
 use std::io;
 
 use proprio_link::drive::DriveError;
+use proprio_link::table::{TableImageError, TransferError};
 use proprio_link::{LinkError, RequestError};
 
 use super::Help;
@@ -20,6 +21,7 @@ impl Help for LinkError {
                 "build it: cargo build --profile firmware -p firmware --target thumbv7m-none-eabi, or name one with --firmware"
             }
             Self::Start { .. } => "build it again, or set PROPRIO_VIRTUAL_DUE to its path",
+            Self::Flash(_) => "check the space and the permissions of the folder for temporary files",
             Self::Thread(_) => "close other programs",
             Self::Ended(_) => "see the messages of the board or its program",
             Self::Silent { .. } => {
@@ -41,6 +43,29 @@ fn open_remedy(source: &serialport::Error) -> &'static str {
             "check the name (`proprio ports` lists them), and close other programs that have the port open"
         }
         _ => "check the name and the cable, and close other programs that have the port open",
+    }
+}
+
+impl Help for TableImageError {
+    fn help(&self) -> String {
+        match self {
+            Self::File(error) => error.help(),
+            Self::Table(_) => "give a table of a smaller arm".to_owned(),
+            Self::Source(_) => "write the table again".to_owned(),
+        }
+    }
+}
+
+impl Help for TransferError {
+    fn help(&self) -> String {
+        let help = match self {
+            Self::Link(error) => return error.help(),
+            Self::NoState => "flash firmware of this version: `proprio flash`",
+            Self::NoTable(_) => "store one with `proprio table push TABLE.toml`",
+            Self::Damaged | Self::Source(_) => "try again; if it persists, store the table again",
+            Self::OtherTable { .. } => "store the table again; `proprio table show` shows the board's",
+        };
+        help.to_owned()
     }
 }
 

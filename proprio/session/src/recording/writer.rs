@@ -148,7 +148,7 @@ impl<W: Write> Recorder<W> {
                 self.write(self.channels.uncertainty, of.tick, at, stamp, &messages::uncertainty(stamp, of))
             }
             Message::Event(telemetry::Event::Contact(tick, touched)) => self.contact(at, *tick, *touched),
-            Message::Event(_) | Message::Reply(_) => Ok(()),
+            Message::Event(_) | Message::Reply(_) | Message::Table(_) | Message::TableData(_) => Ok(()),
         }
     }
 

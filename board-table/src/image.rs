@@ -1,0 +1,155 @@
+//! Image of a table: the estimator's configuration in postcard's form, every bit of it.
+//!
+//! One [`Head`], then each segment from the base. Segments are read one by one, so that a reader needs no second copy.
+
+use estimator_core::{AnchorConfig, ArmConfig, BiasFilterConfig, ContactConfig, Q, SegmentConfig, UncertaintyConfig};
+use heapless::{String, Vec};
+use serde::{Deserialize, Serialize};
+
+use crate::error::TableError;
+
+/// Room for the name of an arm, bytes.
+pub const ARM_NAME_BYTES: usize = 32;
+
+/// All of a table but its segments.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+struct Head {
+    arm: String<ARM_NAME_BYTES>,
+    checksum: u32,
+    segments: u8,
+    tare_samples: u32,
+    anchor: AnchorConfig,
+    bias_filter: Option<BiasFilterConfig>,
+    contact: Option<ContactConfig>,
+    uncertainty: Option<UncertaintyConfig>,
+}
+
+/// Writes the image of a table into `out` and returns its length in bytes. `checksum` is the number by which board and
+/// host compare their tables; a longer name than [`ARM_NAME_BYTES`] is cut.
+///
+/// # Errors
+/// [`TableError::TooLong`] if it does not fit; [`TableError::Segments`] for more than 255 segments.
+pub fn write_image(arm: &str, checksum: u32, config: &ArmConfig<'_, Q>, out: &mut [u8]) -> Result<usize, TableError> {
+    let head = Head {
+        arm: cut(arm),
+        checksum,
+        segments: u8::try_from(config.segments.len()).map_err(|_| TableError::Segments)?,
+        tare_samples: config.tare_samples,
+        anchor: config.anchor,
+        bias_filter: config.bias_filter,
+        contact: config.contact,
+        uncertainty: config.uncertainty,
+    };
+    let mut length = append(&head, out, 0)?;
+    for segment in config.segments {
+        length = append(segment, out, length)?;
+    }
+    Ok(length)
+}
+
+/// Appends a value after `length` bytes and returns the new length.
+fn append<T: Serialize>(value: &T, out: &mut [u8], length: usize) -> Result<usize, TableError> {
+    let room = out.get_mut(length..).ok_or(TableError::TooLong)?;
+    let used = postcard::to_slice(value, room).map_err(|_| TableError::TooLong)?;
+    Ok(length + used.len())
+}
+
+/// Cuts a name at the room for it.
+fn cut(name: &str) -> String<ARM_NAME_BYTES> {
+    let mut text = String::new();
+    for character in name.chars() {
+        if text.push(character).is_err() {
+            break;
+        }
+    }
+    text
+}
+
+/// A table that was read from its image, with room for N segments.
+///
+/// It is large: make it as a static, and [read](Self::read) it there.
+#[derive(Debug, Clone)]
+pub struct BoardTable<const N: usize> {
+    head: Option<Head>,
+    segments: Vec<SegmentConfig<Q>, N>,
+}
+
+impl<const N: usize> BoardTable<N> {
+    /// A table without content.
+    pub const fn new() -> Self {
+        Self { head: None, segments: Vec::new() }
+    }
+
+    /// Reads an image. `window` is the longest window of the anchor that the board's estimator has room for. After an
+    /// error the table has no content.
+    ///
+    /// # Errors
+    /// [`TableError::Image`], [`TableError::Segments`] or [`TableError::Window`].
+    pub fn read(&mut self, image: &[u8], window: u16) -> Result<(), TableError> {
+        self.head = None;
+        self.segments.clear();
+        let head = read_image(image, N, window, &mut |segment| {
+            // `read_image` has compared the number of segments with N.
+            let _ = self.segments.push(segment);
+        })?;
+        self.head = Some(head);
+        Ok(())
+    }
+
+    /// Name of the arm; empty without content.
+    pub fn arm(&self) -> &str {
+        self.head.as_ref().map_or("", |head| &head.arm)
+    }
+
+    /// Checksum by which board and host compare their tables; 0 without content.
+    pub fn checksum(&self) -> u32 {
+        self.head.as_ref().map_or(0, |head| head.checksum)
+    }
+
+    /// The estimator's configuration; `None` without content.
+    pub fn config(&self) -> Option<ArmConfig<'_, Q>> {
+        self.head.as_ref().map(|head| ArmConfig {
+            segments: &self.segments,
+            tare_samples: head.tare_samples,
+            anchor: head.anchor,
+            bias_filter: head.bias_filter,
+            contact: head.contact,
+            uncertainty: head.uncertainty,
+        })
+    }
+}
+
+impl<const N: usize> Default for BoardTable<N> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// Checks that an image can be read by an estimator with room for so many segments and so long a window.
+///
+/// # Errors
+/// As [`BoardTable::read`].
+pub(crate) fn check(image: &[u8], segments: usize, window: u16) -> Result<(), TableError> {
+    read_image(image, segments, window, &mut |_| {}).map(|_| ())
+}
+
+fn read_image(
+    image: &[u8],
+    room: usize,
+    window: u16,
+    visit: &mut dyn FnMut(SegmentConfig<Q>),
+) -> Result<Head, TableError> {
+    let (head, mut rest) = postcard::take_from_bytes::<Head>(image).map_err(|_| TableError::Image)?;
+    if head.segments == 0 || usize::from(head.segments) > room {
+        return Err(TableError::Segments);
+    }
+    if head.anchor.window == 0 || head.anchor.window > window {
+        return Err(TableError::Window);
+    }
+    for _ in 0..head.segments {
+        let (segment, after) = postcard::take_from_bytes(rest).map_err(|_| TableError::Image)?;
+        visit(segment);
+        rest = after;
+    }
+    rest.is_empty().then_some(head).ok_or(TableError::Image)
+}

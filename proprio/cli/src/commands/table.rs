@@ -1,0 +1,68 @@
+//! `proprio table`.
+
+use std::io::Write;
+use std::path::Path;
+
+use proprio_link::table::{erase, pull, push, state};
+use proprio_session::{LoadedTable, OutputFile};
+use telemetry::TableStatus;
+
+use super::link;
+use crate::args::{LinkArgs, TableCommand};
+use crate::error::Error;
+use crate::progress_bar::Bar;
+use crate::{terminal, text_tables};
+
+pub fn run(command: &TableCommand) -> Result<(), Error> {
+    match command {
+        TableCommand::Push { file, link } => push_file(file, link),
+        TableCommand::Pull { output, link } => pull_into(output, link),
+        TableCommand::Show { link } => show(link),
+        TableCommand::Erase { link } => {
+            let (_, link, _) = link::open(link)?;
+            erase(&link)?;
+            terminal::print("the board has no table and sends samples alone\n")
+        }
+    }
+}
+
+fn push_file(file: &Path, args: &LinkArgs) -> Result<(), Error> {
+    let stored = link::stored(&LoadedTable::load(file)?)?;
+    let (_, link, _) = link::open(args)?;
+    let hello = push(&link, &stored, &mut Bar::new())?;
+    let bytes = stored.image.len() + stored.source.len();
+    let (file, checksum, arm) = (file.display(), hello.table, hello.arm);
+    terminal::print(&format!("{file}: on the board and in use, table {checksum:08x} of arm {arm}, {bytes} bytes\n"))
+}
+
+fn pull_into(output: &Path, args: &LinkArgs) -> Result<(), Error> {
+    let (_, link, _) = link::open(args)?;
+    let table = pull(&link, &mut Bar::new())?;
+    let mut file = OutputFile::create(output, &[])?;
+    file.write_all(table.toml.as_bytes()).map_err(|error| file.error(error))?;
+    file.finish()?;
+    terminal::eprint_line(&format_args!("table {} of the board: {}", table.generation, output.display()));
+    Ok(())
+}
+
+fn show(args: &LinkArgs) -> Result<(), Error> {
+    let (_, link, _) = link::open(args)?;
+    let state = state(&link)?;
+    let hello = link.state().hello;
+    let (arm, checksum) = hello.as_ref().map_or(("", 0), |hello| (hello.arm.as_str(), hello.table));
+    let status = match state.status {
+        TableStatus::InUse => "in use",
+        TableStatus::Missing => "missing: the board sends samples alone; store one with `proprio table push`",
+        TableStatus::Damaged => "damaged: the board sends samples alone; store it again with `proprio table push`",
+        TableStatus::Foreign => "of another version of the firmware; store it again with `proprio table push`",
+        TableStatus::Unusable => "for a larger arm than the firmware has room for",
+    };
+    let lines = [
+        ("state", status.to_owned()),
+        ("arm", arm.to_owned()),
+        ("checksum", format!("{checksum:08x}")),
+        ("number", state.generation.to_string()),
+        ("size", format!("{} bytes, and {} bytes of source", state.image_bytes, state.source_bytes)),
+    ];
+    terminal::print(&text_tables::pairs(&lines))
+}

@@ -1,0 +1,202 @@
+//! Transfer of a table to a board and back.
+
+use std::io;
+use std::time::{Duration, Instant};
+
+use board_table::body_crc;
+use proprio_session::Progress;
+use telemetry::{
+    Command, Hello, Message, Refusal, TABLE_CHUNK_BYTES, TableAnnouncement, TableChunk, TableState, TableStatus,
+};
+
+use super::stored::{StoredTable, expand};
+use crate::error::LinkError;
+use crate::event::EventKind;
+use crate::handle::Link;
+use crate::requests::RequestError;
+use crate::shared::Subscription;
+
+/// Longest wait for a message that follows a reply.
+const MESSAGE: Duration = Duration::from_secs(2);
+
+/// Longest wait for the `Hello` of a board that restarts with another table.
+const RESTART: Duration = Duration::from_secs(5);
+
+/// Number of times that an interrupted transfer is resumed.
+const RESUMPTIONS: u32 = 5;
+
+/// Reason why a transfer failed.
+#[derive(Debug, thiserror::Error)]
+pub enum TransferError {
+    /// The line, or a refusal of the board.
+    #[error(transparent)]
+    Link(#[from] LinkError),
+    /// The board does not send what follows a reply.
+    #[error("the board does not send the state of its table")]
+    NoState,
+    /// The board has no table to send.
+    #[error("the board has no table: {0}")]
+    NoTable(&'static str),
+    /// What arrived has another checksum.
+    #[error("the table that arrived is damaged")]
+    Damaged,
+    /// The source cannot be expanded.
+    #[error("the table's source is damaged: {0}")]
+    Source(#[from] io::Error),
+    /// After the transfer the board has another table.
+    #[error("the board restarted with table {found:08x} instead of {expected:08x}")]
+    OtherTable {
+        /// Checksum of the table that was sent.
+        expected: u32,
+        /// Checksum of the board's table.
+        found: u32,
+    },
+}
+
+/// A table that was read from a board.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct PulledTable {
+    /// Text of the TOML file, as it was written.
+    pub toml: String,
+    /// Number of the table on the board.
+    pub generation: u32,
+}
+
+/// Sends a table to a board, which checks it, restarts and uses it; returns the board's `Hello` after that. `progress` is
+/// told of the bytes that were sent. An interrupted transfer is resumed.
+///
+/// # Errors
+/// [`TransferError`]: the board goes on with the table that it had.
+pub fn push(link: &Link, table: &StoredTable, progress: &mut dyn Progress) -> Result<Hello, TransferError> {
+    let events = link.subscribe();
+    let announced = table.announcement();
+    let announcement = TableAnnouncement {
+        image_bytes: announced.image_bytes,
+        source_bytes: announced.source_bytes,
+        crc: announced.crc,
+    };
+    let body = table.body();
+    let mut resumptions = 0;
+    loop {
+        link.request(Command::TableBegin(announcement))?;
+        let state = next_state(&events)?;
+        match send(link, &body, state.received_bytes as usize, progress) {
+            Err(LinkError::Request(RequestError::Refused(Refusal::TableOrder) | RequestError::Interrupted))
+                if resumptions < RESUMPTIONS =>
+            {
+                resumptions += 1;
+            }
+            result => break result?,
+        }
+    }
+    link.request(Command::TableCommit)?;
+    let hello = next_hello(&events)?;
+    let (expected, found) = (table.checksum, hello.table);
+    if found == expected { Ok(hello) } else { Err(TransferError::OtherTable { expected, found }) }
+}
+
+/// Sends the body from an offset on.
+fn send(link: &Link, body: &[u8], from: usize, progress: &mut dyn Progress) -> Result<(), LinkError> {
+    let mut offset = from;
+    while let Some(rest) = body.get(offset..).filter(|rest| !rest.is_empty()) {
+        let bytes = rest.iter().take(TABLE_CHUNK_BYTES).copied().collect();
+        link.request(Command::TableWrite(TableChunk { offset: offset as u32, bytes }))?;
+        offset += rest.len().min(TABLE_CHUNK_BYTES);
+        progress.advance("table", (offset as u64, body.len() as u64));
+    }
+    Ok(())
+}
+
+/// Reads the table of a board.
+///
+/// # Errors
+/// [`TransferError`].
+pub fn pull(link: &Link, progress: &mut dyn Progress) -> Result<PulledTable, TransferError> {
+    let events = link.subscribe();
+    let state = state(link)?;
+    match state.status {
+        TableStatus::InUse | TableStatus::Unusable => {}
+        TableStatus::Missing => return Err(TransferError::NoTable("none was stored")),
+        TableStatus::Damaged => return Err(TransferError::NoTable("the stored one is damaged")),
+        TableStatus::Foreign => return Err(TransferError::NoTable("the stored one is of another version")),
+    }
+    let length = (state.image_bytes + state.source_bytes) as usize;
+    let mut body = Vec::with_capacity(length);
+    while body.len() < length {
+        let offset = body.len() as u32;
+        link.request(Command::TableRead(offset))?;
+        let chunk = next_chunk(&events, offset)?;
+        if chunk.bytes.is_empty() {
+            return Err(TransferError::Damaged);
+        }
+        body.extend_from_slice(&chunk.bytes);
+        progress.advance("table", (body.len() as u64, length as u64));
+    }
+    let source = body.get(state.image_bytes as usize..length).ok_or(TransferError::Damaged)?;
+    if body_crc([&body[..]]) != state.crc {
+        return Err(TransferError::Damaged);
+    }
+    Ok(PulledTable { toml: expand(source)?, generation: state.generation })
+}
+
+/// Requests the state of the table on a board.
+///
+/// # Errors
+/// [`TransferError`]; a board of an earlier version sends no state.
+pub fn state(link: &Link) -> Result<TableState, TransferError> {
+    let events = link.subscribe();
+    link.request(Command::Ping)?;
+    next_state(&events)
+}
+
+/// Erases the table of a board, which restarts without one.
+///
+/// # Errors
+/// [`TransferError`].
+pub fn erase(link: &Link) -> Result<Hello, TransferError> {
+    let events = link.subscribe();
+    link.request(Command::TableErase)?;
+    next_hello(&events)
+}
+
+/// The `Hello` of the board's next boot.
+fn next_hello(events: &Subscription) -> Result<Hello, TransferError> {
+    let mut restarted = false;
+    next(events, RESTART, |kind| {
+        restarted |= matches!(kind, EventKind::Restarted);
+        match kind {
+            EventKind::Message(Message::Hello(hello)) if restarted => Some(hello.clone()),
+            _ => None,
+        }
+    })
+}
+
+fn next_state(events: &Subscription) -> Result<TableState, TransferError> {
+    next(events, MESSAGE, |kind| match kind {
+        EventKind::Message(Message::Table(state)) => Some(*state),
+        _ => None,
+    })
+}
+
+fn next_chunk(events: &Subscription, offset: u32) -> Result<TableChunk, TransferError> {
+    next(events, MESSAGE, |kind| match kind {
+        EventKind::Message(Message::TableData(chunk)) if chunk.offset == offset => Some(chunk.clone()),
+        _ => None,
+    })
+}
+
+/// The first event that `pick` takes.
+fn next<T>(
+    events: &Subscription,
+    wait: Duration,
+    mut pick: impl FnMut(&EventKind) -> Option<T>,
+) -> Result<T, TransferError> {
+    let end = Instant::now() + wait;
+    loop {
+        let left = end.saturating_duration_since(Instant::now());
+        let event = events.next(left).ok_or(TransferError::NoState)?;
+        if let Some(found) = pick(&event.kind) {
+            return Ok(found);
+        }
+    }
+}
