@@ -18,6 +18,8 @@ const DRIFT: f64 = 0.1 * std::f64::consts::PI / 180.0;
 const LAST_TURN: f64 = 10.0 * std::f64::consts::PI / 180.0;
 /// Least change of the pose that follows, as a share of the segment's length and in rad.
 const CATCH_UP: f64 = 0.02;
+/// The same in steps of a truth that is rounded coarsely.
+const RESOLUTIONS: f64 = 2.5;
 /// Largest difference of the turns by truth and IMU, as a share of the latter.
 const DISAGREEMENT: f64 = 0.5;
 /// Step of the pose that catches up, over the next step.
@@ -49,17 +51,31 @@ struct Ended {
     step: f64,
 }
 
+/// Smallest changes of a pose, which are those of its rounding or less.
+#[derive(Debug, Clone, Copy)]
+struct Resolution {
+    place: f64,
+    heading: f64,
+}
+
 /// The rule.
 #[derive(Debug)]
 pub(super) struct Holds {
     lengths: Vec<f64>,
+    resolutions: [Resolution; MAX_SEGMENTS],
     holds: [Hold; MAX_SEGMENTS],
     ended: [Option<Ended>; MAX_SEGMENTS],
 }
 
 impl Holds {
     pub fn new(lengths: &[f64]) -> Self {
-        Self { lengths: lengths.to_vec(), holds: [Hold::default(); MAX_SEGMENTS], ended: [None; MAX_SEGMENTS] }
+        let resolution = Resolution { place: f64::INFINITY, heading: f64::INFINITY };
+        Self {
+            lengths: lengths.to_vec(),
+            resolutions: [resolution; MAX_SEGMENTS],
+            holds: [Hold::default(); MAX_SEGMENTS],
+            ended: [None; MAX_SEGMENTS],
+        }
     }
 
     /// True where the pose of segment `i` is that of the row before.
@@ -83,8 +99,12 @@ impl Holds {
         let any_turned = segments.clone().any(|i| turn(&self.holds[i], i).is_some_and(|(_, is_turned)| is_turned));
         let mut caught_up = [false; MAX_SEGMENTS];
         for i in segments.clone() {
-            let Some(pose) = row.poses[i] else { continue };
             let hold = &mut self.holds[i];
+            let Some(pose) = row.poses[i] else {
+                // A held pose is in every row.
+                *hold = Hold::default();
+                continue;
+            };
             let turned = turn(hold, i);
             if hold.pose == Some(pose) {
                 let is_turned = turned.is_some_and(|(_, is_turned)| is_turned) || all && any_turned;
@@ -96,8 +116,16 @@ impl Holds {
                 }
                 continue;
             }
-            caught_up[i] = hold.turned.count > 0
-                && (hold.is_confirmed || hold.catches_up(&pose, turned.map(|(turn, _)| turn), self.lengths[i] * scale));
+            let resolution = &mut self.resolutions[i];
+            if let Some(before) = &hold.pose {
+                resolution.update(before, &pose);
+            }
+            let limits = [
+                (CATCH_UP * self.lengths[i] * scale).max(RESOLUTIONS * resolution.place),
+                CATCH_UP.max(RESOLUTIONS * resolution.heading),
+            ];
+            let turned = turned.map(|(turn, _)| turn);
+            caught_up[i] = hold.turned.count > 0 && (hold.is_confirmed || hold.catches_up(&pose, turned, limits));
         }
         let any_caught_up = segments.clone().any(|i| caught_up[i] && self.holds[i].all);
         for i in segments {
@@ -124,7 +152,9 @@ impl Holds {
                 faults.push(Fault { segment: i, rows: ended.rows, kind: kind(ended.all) });
             }
         }
-        if hold.repeats.count > 0 && hold.imu.is_none() && step > CATCH_UP * length {
+        let Resolution { place, heading } = self.resolutions[i];
+        let limit = (CATCH_UP * length).max(RESOLUTIONS * (place + length * heading));
+        if hold.repeats.count > 0 && hold.imu.is_none() && step > limit {
             self.ended[i] = Some(Ended { rows: hold.repeats, all: hold.all, step });
         }
     }
@@ -139,14 +169,22 @@ impl Holds {
     }
 }
 
+impl Resolution {
+    fn update(&mut self, before: &Truth, pose: &Truth) {
+        let smaller = |least: f64, change: f64| if change > 0.0 { least.min(change) } else { least };
+        self.place = smaller(smaller(self.place, (pose.x_m - before.x_m).abs()), (pose.y_m - before.y_m).abs());
+        self.heading = smaller(self.heading, turn_between(pose, before).abs());
+    }
+}
+
 impl Hold {
     /// True where the change to `pose` is that of the IMU.
-    fn catches_up(&self, pose: &Truth, imu_turn: Option<f64>, length: f64) -> bool {
+    fn catches_up(&self, pose: &Truth, imu_turn: Option<f64>, limits: [f64; 2]) -> bool {
         let Some(before) = self.pose else { return false };
         let turn = turn_between(pose, &before);
         let agrees = pose.heading_rad.is_none()
             || imu_turn.is_some_and(|imu| (turn - imu).abs() <= TURN.max(DISAGREEMENT * imu.abs()));
-        agrees && (distance(pose, &before) > CATCH_UP * length || turn.abs() > CATCH_UP)
+        agrees && (distance(pose, &before) > limits[0] || turn.abs() > limits[1])
     }
 
     fn fault(&self, segment: usize) -> Fault {

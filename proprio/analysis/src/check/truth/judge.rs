@@ -96,7 +96,10 @@ impl Judge {
     }
 
     fn judge_waiting(&mut self, faults: &mut Vec<Fault>, judged: &mut Vec<TruthRow>) {
-        self.usual.find();
+        if !self.waiting.is_empty() {
+            self.usual.find();
+            self.noise = std::array::from_fn(|i| self.usual.change(i));
+        }
         for row in std::mem::take(&mut self.waiting) {
             self.advance(row, faults, judged);
         }

@@ -15,7 +15,14 @@ const FIRST: usize = 1000;
 pub(super) struct Usual {
     links: Vec<Vec<[Vector2<f64>; 2]>>,
     rows: usize,
-    found: Option<(f64, [Vector2<f64>; MAX_SEGMENTS])>,
+    found: Option<(f64, [Link; MAX_SEGMENTS])>,
+}
+
+/// Usual values of a link.
+#[derive(Debug, Clone, Copy, Default)]
+struct Link {
+    residual: Vector2<f64>,
+    change: f64,
 }
 
 impl Usual {
@@ -35,7 +42,12 @@ impl Usual {
 
     /// True end of segment `i` less the expected one, in the frame of its start.
     pub fn residual(&self, i: usize) -> Vector2<f64> {
-        self.found.map_or(Vector2::zeros(), |(_, residuals)| residuals[i])
+        self.found.map_or(Vector2::zeros(), |(_, links)| links[i].residual)
+    }
+
+    /// Median change of this difference from row to row, m.
+    pub fn change(&self, i: usize) -> f64 {
+        self.found.map_or(0.0, |(_, links)| links[i].change)
     }
 
     pub fn add(&mut self, row: &TruthRow, chain: &Chain) {
@@ -49,18 +61,17 @@ impl Usual {
 
     /// Finds the values from the rows that were added.
     pub fn find(&mut self) {
-        if self.found.is_some() {
-            return;
-        }
         let links = std::mem::take(&mut self.links);
         let ratios = links.iter().flatten().map(|[end, expected]| end.norm() / expected.norm());
         let scale = median(ratios.collect()).filter(|scale| *scale > 0.0).unwrap_or(1.0);
-        let mut residuals = [Vector2::zeros(); MAX_SEGMENTS];
-        for (residual, links) in residuals.iter_mut().zip(&links) {
-            let of = |axis: usize| links.iter().map(|[end, expected]| end[axis] - scale * expected[axis]).collect();
-            *residual = Vector2::new(median(of(0)).unwrap_or(0.0), median(of(1)).unwrap_or(0.0));
+        let mut found = [Link::default(); MAX_SEGMENTS];
+        for (found, links) in found.iter_mut().zip(&links) {
+            let residuals: Vec<Vector2<f64>> = links.iter().map(|[end, expected]| end - expected * scale).collect();
+            let of = |axis: usize| median(residuals.iter().map(|residual| residual[axis]).collect()).unwrap_or(0.0);
+            let changes = residuals.windows(2).map(|pair| (pair[1] - pair[0]).norm());
+            *found = Link { residual: Vector2::new(of(0), of(1)), change: median(changes.collect()).unwrap_or(0.0) };
         }
-        self.found = Some((scale, residuals));
+        self.found = Some((scale, found));
     }
 }
 
