@@ -101,16 +101,19 @@ impl TruthJudge {
     }
 
     /// Judges the next row.
-    pub fn update(&mut self, row: TruthRow) {
-        let faults = self.check.update(row);
-        faults.iter().for_each(|fault| self.left_out.add(fault));
+    pub fn update(&mut self, row: &TruthRow) {
+        for fault in self.check.update(row) {
+            self.left_out.add(fault);
+        }
     }
 
     /// The result, and the wrong poses.
     pub fn finish(self) -> Result<(JudgedTruth, LeftOut), Error> {
         let Self { path, given_mm, check, mut left_out } = self;
         let (report, faults): (TruthReport, Vec<Fault>) = check.finish();
-        faults.iter().for_each(|fault| left_out.add(fault));
+        for fault in &faults {
+            left_out.add(fault);
+        }
         let TruthReport { findings, scale, lag_s, wrong_share } = report;
         let lengths = scale.map(|scale| TruthLengths { scale, given_mm });
         let refuse = |source| Error::Truth { path: path.clone(), source };
@@ -143,7 +146,7 @@ pub(crate) fn judge(
     let mut number = 0;
     while let Some(row) = reader.next_row()? {
         number += 1;
-        judge.update(TruthRow::of(&row, number));
+        judge.update(&TruthRow::of(&row, number));
         progress.advance(&work, reader.progress());
     }
     judge.finish()

@@ -97,7 +97,7 @@ impl SessionCheck {
         self.new_zero.update(frame);
         self.steps.update(frame);
         self.twins.update(frame);
-        self.truth.update(TruthRow::of(row, frame.row));
+        self.truth.update(&TruthRow::of(row, frame.row));
     }
 
     /// The findings, after the last row.

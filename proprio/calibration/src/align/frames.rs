@@ -141,7 +141,7 @@ fn judge(
                 end[frame].map(|Pose { x_m, y_m, heading_rad }| Truth { x_m, y_m, heading_rad: Some(heading_rad) });
         }
         let row = frame as u64 + 1;
-        judge.update(TruthRow { row, time_s: first_s + time_s, starts: false, poses, imu: [None; MAX_SEGMENTS] });
+        judge.update(&TruthRow { row, time_s: first_s + time_s, starts: false, poses, imu: [None; MAX_SEGMENTS] });
     }
     judge.finish()
 }

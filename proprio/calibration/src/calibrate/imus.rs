@@ -65,15 +65,20 @@ fn are_same(one: &[Option<f64>], other: &[Option<f64>]) -> bool {
         for row in rows.skip(1) {
             let (now, before) = (one[row].zip(other[row]), one[row - 1].zip(other[row - 1]));
             let Some(((a, b), (a_before, b_before))) = now.zip(before) else { continue };
-            if a != a_before && b != b_before {
+            if !are_equal(a, a_before) && !are_equal(b, b_before) {
                 changed += 1;
-                let turns = (a - b) / std::f64::consts::TAU;
-                equal += usize::from((turns - turns.round()).abs() < EQUAL_TURNS);
+                equal += usize::from(are_equal(a, b));
             }
         }
         (changed >= LEAST_ROWS / 2).then(|| equal as f64 / changed as f64)
     };
     median(pieces(one.len()).map(share)).is_some_and(|share| share > SAME)
+}
+
+/// True for the same direction.
+fn are_equal(a_rad: f64, b_rad: f64) -> bool {
+    let turns = (a_rad - b_rad) / std::f64::consts::TAU;
+    (turns - turns.round()).abs() < EQUAL_TURNS
 }
 
 /// Change of each row over the next `lag` rows of the same run.

@@ -80,7 +80,7 @@ impl Training {
         let mut distances = Vec::new();
         let mut judge = TruthJudge::new(session, &table.file);
         while let Some(row) = reader.next_row()? {
-            judge.update(TruthRow::of(&row, samples.len() as u64 + 1));
+            judge.update(&TruthRow::of(&row, samples.len() as u64 + 1));
             distances.push(constant_curvature_error(&row, segments));
             samples.push(row.sample);
             measured.extend(row.truth.iter().take(segments.len()).map(|truth| Measured::unknown(*truth)));

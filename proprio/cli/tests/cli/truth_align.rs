@@ -83,7 +83,9 @@ fn a_marker_that_is_held_is_not_in_the_truth() {
         let first = frames[0];
         for name in parts(6) {
             let cell = camera.cell(first, &name).to_owned();
-            frames.iter().for_each(|frame| camera.set(*frame, &name, &cell));
+            for frame in &frames {
+                camera.set(*frame, &name, &cell);
+            }
         }
     });
     assert!(stderr.contains("truth6, ") && stderr.contains("repeated while the arm moves"), "{stderr}");

@@ -19,7 +19,9 @@ pub fn number(cell: &str) -> f64 {
 /// A lost marker, written as zeros.
 pub fn zeros(session: &mut Csv, segment: usize, rows: impl IntoIterator<Item = usize>) {
     for row in rows {
-        parts(segment).iter().for_each(|name| session.set(row, name, "0.0000"));
+        for name in parts(segment) {
+            session.set(row, &name, "0.0000");
+        }
     }
 }
 

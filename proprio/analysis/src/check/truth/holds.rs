@@ -63,7 +63,7 @@ struct Resolution {
 pub(super) struct Holds {
     lengths: Vec<f64>,
     resolutions: [Resolution; MAX_SEGMENTS],
-    holds: [Hold; MAX_SEGMENTS],
+    current: [Hold; MAX_SEGMENTS],
     ended: [Option<Ended>; MAX_SEGMENTS],
 }
 
@@ -73,19 +73,19 @@ impl Holds {
         Self {
             lengths: lengths.to_vec(),
             resolutions: [resolution; MAX_SEGMENTS],
-            holds: [Hold::default(); MAX_SEGMENTS],
+            current: [Hold::default(); MAX_SEGMENTS],
             ended: [None; MAX_SEGMENTS],
         }
     }
 
     /// True where the pose of segment `i` is that of the row before.
     pub fn is_repeated(&self, i: usize, row: &TruthRow) -> bool {
-        row.poses[i].is_some() && row.poses[i] == self.holds[i].pose
+        row.poses[i].is_some() && row.poses[i] == self.current[i].pose
     }
 
     /// Marks the present repeat of segment `i` as wrong.
     pub fn confirm(&mut self, i: usize) {
-        self.holds[i].is_confirmed = true;
+        self.current[i].is_confirmed = true;
     }
 
     /// Adds a row; `scale` is that of the truth over the arm's lengths.
@@ -96,10 +96,10 @@ impl Holds {
             turn.map(|turn| (turn, turn.abs() >= TURN + DRIFT * (row.time_s - hold.since_s)))
         };
         let all = segments.clone().all(|i| row.poses[i].is_none() || self.is_repeated(i, row));
-        let any_turned = segments.clone().any(|i| turn(&self.holds[i], i).is_some_and(|(_, is_turned)| is_turned));
+        let any_turned = segments.clone().any(|i| turn(&self.current[i], i).is_some_and(|(_, is_turned)| is_turned));
         let mut caught_up = [false; MAX_SEGMENTS];
         for i in segments.clone() {
-            let hold = &mut self.holds[i];
+            let hold = &mut self.current[i];
             let Some(pose) = row.poses[i] else {
                 // A held pose is in every row.
                 *hold = Hold::default();
@@ -127,21 +127,21 @@ impl Holds {
             let turned = turned.map(|(turn, _)| turn);
             caught_up[i] = hold.turned.count > 0 && (hold.is_confirmed || hold.catches_up(&pose, turned, limits));
         }
-        let any_caught_up = segments.clone().any(|i| caught_up[i] && self.holds[i].all);
+        let any_caught_up = segments.clone().any(|i| caught_up[i] && self.current[i].all);
         for i in segments {
-            let Some(pose) = row.poses[i].filter(|pose| Some(*pose) != self.holds[i].pose) else { continue };
-            let hold = &self.holds[i];
+            let Some(pose) = row.poses[i].filter(|pose| Some(*pose) != self.current[i].pose) else { continue };
+            let hold = &self.current[i];
             if caught_up[i] || hold.all && any_caught_up {
                 faults.push(hold.fault(i));
             }
             self.catch_up_without_imu(i, &pose, scale, faults);
-            self.holds[i] = Hold { pose: Some(pose), imu: row.imu[i], since_s: row.time_s, ..Hold::default() };
+            self.current[i] = Hold { pose: Some(pose), imu: row.imu[i], since_s: row.time_s, ..Hold::default() };
         }
     }
 
     /// Compares the step that ended a repeat with the one after it, where there is no IMU.
     fn catch_up_without_imu(&mut self, i: usize, pose: &Truth, scale: f64, faults: &mut Vec<Fault>) {
-        let hold = &self.holds[i];
+        let hold = &self.current[i];
         let Some(before) = hold.pose else { return };
         let length = self.lengths[i] * scale;
         let step = distance(pose, &before) + length * turn_between(pose, &before).abs();
@@ -161,7 +161,7 @@ impl Holds {
 
     /// Adds the faults at the end of the session.
     pub fn finish(&mut self, faults: &mut Vec<Fault>) {
-        for (i, hold) in self.holds.iter().enumerate() {
+        for (i, hold) in self.current.iter().enumerate() {
             if hold.turned.count > 0 && (hold.is_confirmed || hold.turn > LAST_TURN) {
                 faults.push(hold.fault(i));
             }

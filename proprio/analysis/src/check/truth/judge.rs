@@ -76,7 +76,7 @@ impl Judge {
     pub fn update(&mut self, mut row: TruthRow, faults: &mut Vec<Fault>, judged: &mut Vec<TruthRow>) {
         take_zeros(&mut row, self.chain.count(), faults);
         if self.usual.is_known() {
-            self.advance(row, faults, judged);
+            self.advance(&row, faults, judged);
             return;
         }
         self.usual.add(&row, &self.chain);
@@ -100,14 +100,14 @@ impl Judge {
             self.usual.find();
             self.noise = std::array::from_fn(|i| self.usual.change(i));
         }
-        for row in std::mem::take(&mut self.waiting) {
+        for row in &std::mem::take(&mut self.waiting) {
             self.advance(row, faults, judged);
         }
     }
 
-    fn advance(&mut self, next: TruthRow, faults: &mut Vec<Fault>, judged: &mut Vec<TruthRow>) {
-        if let Some(row) = self.current.replace(next) {
-            self.judge(row, Some(&next), faults, judged);
+    fn advance(&mut self, next: &TruthRow, faults: &mut Vec<Fault>, judged: &mut Vec<TruthRow>) {
+        if let Some(row) = self.current.replace(*next) {
+            self.judge(row, Some(next), faults, judged);
         }
     }
 
@@ -151,7 +151,7 @@ impl Judge {
         let mut suspects = Vec::new();
         let mut last = None;
         for to in (0..self.chain.count()).filter(|i| row.poses[*i].is_some()) {
-            let from = std::mem::replace(&mut last, Some(to));
+            let from = last.replace(to);
             let is_jump = from.map_or(0, |from| from + 1) == to && self.is_jump(to, row, next);
             let is_misplaced = self.is_misplaced(from, to, &row.poses);
             if is_jump || is_misplaced {

@@ -86,11 +86,11 @@ impl TruthCheck {
     }
 
     /// Checks the next row, and returns the wrong poses that it has revealed, in this row and earlier ones.
-    pub fn update(&mut self, row: TruthRow) -> &[Fault] {
+    pub fn update(&mut self, row: &TruthRow) -> &[Fault] {
         self.faults.clear();
         if row.poses.iter().any(Option::is_some) {
-            self.tally.add(&row);
-            self.judge.update(row, &mut self.faults, &mut self.judged);
+            self.tally.add(row);
+            self.judge.update(*row, &mut self.faults, &mut self.judged);
             self.take();
         }
         &self.faults

@@ -71,7 +71,7 @@ impl Pieces {
         let from_s = *self.current.from_s.get_or_insert(row.time_s);
         if row.time_s - from_s >= PIECE_S {
             let piece = std::mem::take(&mut self.current);
-            self.end(piece);
+            self.end(&piece);
             self.current.from_s = Some(row.time_s);
         }
         self.current.add(row, &self.chain);
@@ -82,13 +82,13 @@ impl Pieces {
         let seconds = self.current.from_s.map_or(0.0, |from_s| self.current.last_s - from_s);
         if seconds >= LEAST_S || self.all.is_empty() {
             let piece = std::mem::take(&mut self.current);
-            self.end(piece);
+            self.end(&piece);
         }
         let of = |value: fn(&Values) -> Option<f64>| median(self.all.iter().filter_map(value).collect());
         Values { scale: of(|piece| piece.scale), turn: of(|piece| piece.turn), lag_s: of(|piece| piece.lag_s) }
     }
 
-    fn end(&mut self, piece: Piece) {
+    fn end(&mut self, piece: &Piece) {
         let mut values = piece.values();
         let is_compared = self.all.len() < FIRST_PIECES || self.all.len().is_multiple_of(EVERY);
         if let Some(motion) = piece.motion().filter(|_| is_compared) {
