@@ -4,11 +4,15 @@ use atsam3x8e_hal::tc::Mono;
 use atsam3x8e_hal::uart::Rx;
 use board_core::{Actuator, CommandServer, Execution, Schedule, Task};
 use rtic::Mutex;
+use rtic_sync::channel::Sender;
 use telemetry::{Actuation, Command, DecodeError, Decoder, Message, Refusal, Reply, Request, RequestOutcome};
 
 use crate::downlink::TelemetrySender;
 use crate::parameters::RECEIVE_BYTES;
 use crate::supervision::SUPERVISOR;
+
+/// Requests that wait for the table task. A host sends pieces of a table ahead, so that the line is never idle.
+pub const TABLE_REQUESTS: usize = 4;
 
 /// State that requests set for the other tasks.
 pub struct Control {
@@ -31,20 +35,19 @@ pub struct CommandTask {
     rx: Rx,
     decoder: Decoder<Request>,
     server: CommandServer,
+    to_table: Sender<'static, Request, TABLE_REQUESTS>,
 }
 
 impl CommandTask {
     /// The task before its first byte.
-    pub const fn new(rx: Rx) -> Self {
-        Self { rx, decoder: Decoder::new(), server: CommandServer::new() }
+    pub const fn new(rx: Rx, to_table: Sender<'static, Request, TABLE_REQUESTS>) -> Self {
+        Self { rx, decoder: Decoder::new(), server: CommandServer::new(), to_table }
     }
 
-    /// Handles the bytes since the last tick; `start` begins a request about the table in its task, if that is free.
-    /// Returns whether a reboot was requested.
+    /// Handles the bytes since the last tick. Returns whether a reboot was requested.
     pub fn run(
         &mut self,
         tick: u32,
-        mut start: impl FnMut(Request) -> Result<(), Request>,
         mut actuator: impl Mutex<T = Actuator>,
         mut control: impl Mutex<T = Control>,
         mut sender: impl Mutex<T = TelemetrySender>,
@@ -60,7 +63,7 @@ impl CommandTask {
                 Some(Ok(request)) => self.server.answer(&request, tick, |command| {
                     let result = if is_about_table(command) {
                         let may_change = actuator.lock(|actuator| actuator.state() == Actuation::Disarmed);
-                        start_table_task(&request, may_change, &mut start)
+                        send_to_table_task(&request, may_change, &mut self.to_table)
                     } else {
                         control
                             .lock(|control| actuator.lock(|actuator| execute(command, actuator, control, &mut reboot)))
@@ -97,16 +100,16 @@ const fn is_about_table(command: &Command) -> bool {
     )
 }
 
-/// Begins a request about the table in its task. Only the reading of the table is admitted while the pressures are armed.
-fn start_table_task(
+/// Sends a request about the table to its task. Only the reading of the table is admitted while the pressures are armed.
+fn send_to_table_task(
     request: &Request,
     may_change: bool,
-    start: &mut impl FnMut(Request) -> Result<(), Request>,
+    to_table: &mut Sender<'static, Request, TABLE_REQUESTS>,
 ) -> Result<Execution, Refusal> {
     if !may_change && !matches!(request.command, Command::TableRead(_)) {
         return Err(Refusal::Armed);
     }
-    start(request.clone()).map(|()| Execution::Pending).map_err(|_| Refusal::Busy)
+    to_table.try_send(request.clone()).map(|()| Execution::Pending).map_err(|_| Refusal::Busy)
 }
 
 fn execute(

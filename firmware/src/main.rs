@@ -48,11 +48,13 @@ mod app {
     use board_core::{Actuator, BoardEstimator, Schedule};
     use board_table::BoardTable;
     use estimator_core::{ArmConfig, Q};
+    use rtic_sync::channel::Receiver;
+    use rtic_sync::make_channel;
     use rtic_sync::signal::{Signal, SignalReader};
     use telemetry::{Request, SEGMENTS, TableStatus};
 
     use crate::board::{self, Buffers};
-    use crate::command_task::{CommandTask, Control};
+    use crate::command_task::{CommandTask, Control, TABLE_REQUESTS};
     use crate::cpu_load;
     use crate::downlink::TelemetrySender;
     use crate::estimation::EstimationTask;
@@ -75,6 +77,7 @@ mod app {
         estimation_task: EstimationTask,
         estimation_ticks: SignalReader<'static, Tick>,
         table_task: TableTask,
+        table_requests: Receiver<'static, Request, TABLE_REQUESTS>,
     }
 
     #[init(local = [
@@ -94,6 +97,7 @@ mod app {
         log_boot(&board.hello, &board.table_state, safe_mode);
         let (to_commands, command_ticks) = cx.local.for_commands.split();
         let (to_estimation, estimation_ticks) = cx.local.for_estimation.split();
+        let (to_table, table_requests) = make_channel!(Request, TABLE_REQUESTS);
         let ticker = Ticker {
             trigger: board.trigger,
             start_us: board.start_us,
@@ -113,6 +117,7 @@ mod app {
         // Each is spawned once and never ends, so that there is room for it.
         let _ = commands::spawn();
         let _ = estimation::spawn();
+        let _ = table::spawn();
         let control = Control {
             schedule: Schedule::default(),
             tare_requested: false,
@@ -125,11 +130,12 @@ mod app {
             Shared { actuator: Actuator::new(LIMITS_PA), control, sender: TelemetrySender::new(board.tx) },
             Local {
                 ticker,
-                command_task: CommandTask::new(board.rx),
+                command_task: CommandTask::new(board.rx, to_table),
                 command_ticks,
                 estimation_task,
                 estimation_ticks,
                 table_task: TableTask::new(board.tables),
+                table_requests,
             },
         )
     }
@@ -183,7 +189,7 @@ mod app {
         loop {
             let tick = cx.local.command_ticks.wait().await;
             let (actuator, control, sender) = (&mut shared.actuator, &mut shared.control, &mut shared.sender);
-            if cx.local.command_task.run(tick.number, table::spawn, actuator, control, sender) {
+            if cx.local.command_task.run(tick.number, actuator, control, sender) {
                 // Time to send the reply and to vent the arm.
                 Mono::delay(50u64.millis()).await;
                 reset::reset();
@@ -203,13 +209,16 @@ mod app {
     }
 
     /// Requests about the table in the flash.
-    #[task(priority = 1, shared = [control, sender], local = [table_task])]
-    async fn table(cx: table::Context, request: Request) {
+    #[task(priority = 1, shared = [control, sender], local = [table_task, table_requests])]
+    async fn table(cx: table::Context) {
         let mut shared = cx.shared;
-        if cx.local.table_task.run(&request, &mut shared.control, &mut shared.sender) {
-            // Time to send the reply.
-            Mono::delay(50u64.millis()).await;
-            reset::reset();
+        // The sender is never dropped.
+        while let Ok(request) = cx.local.table_requests.recv().await {
+            if cx.local.table_task.run(&request, &mut shared.control, &mut shared.sender) {
+                // Time to send the reply.
+                Mono::delay(50u64.millis()).await;
+                reset::reset();
+            }
         }
     }
 }

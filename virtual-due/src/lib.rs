@@ -32,7 +32,7 @@ mod peripheral_map;
 pub mod rig;
 
 pub use elf::ElfError;
-pub use machine::{Machine, Reset};
+pub use machine::{FLASH_BYTES, Machine, Reset};
 pub use rig::WiredRig;
 pub use sam3x_models::WarningLog;
 pub use sam3x_models::model::{self, CYCLES_PER_SECOND, Cause, Cycles};

@@ -7,6 +7,9 @@ use crate::engine::Engine;
 use sam3x_models::flash::{BANK, FLASH};
 use sam3x_models::model::{Cause, Cycles, Memory, World};
 
+/// Size of the flash, bytes: both banks.
+pub const FLASH_BYTES: usize = 2 * BANK as usize;
+
 /// A reset that happened.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Reset {

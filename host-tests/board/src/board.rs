@@ -3,11 +3,12 @@
 use rig_twin::{EndPose, MotionProgram, REGULATORS, SEGMENTS};
 use telemetry::{
     Command, Decoder, Encoder, Estimate, Event, Health, Hello, MAX_FRAME, Message, Request, RequestOutcome, Sample,
-    SetPressures, Uncertainty,
+    SetPressures, TableState, Uncertainty,
 };
 use virtual_due::{CYCLES_PER_SECOND, Cycles, Machine, WiredRig};
 
 use crate::build::firmware;
+use crate::flash::machine;
 
 /// The serial port of the programming port: the UART.
 pub const UART: usize = 0;
@@ -37,13 +38,27 @@ pub struct Board {
 }
 
 impl Board {
-    /// A board with the firmware in its flash, in a rig, with power just come up.
+    /// A board with the firmware and the reference arm's table in its flash, in a rig, with power just come up.
     ///
     /// # Panics
     /// If the firmware does not build.
     #[must_use]
     pub fn new(rig: WiredRig) -> Self {
-        let machine = Machine::new(firmware(), rig).expect("cargo built an ELF for the board");
+        Self::start(machine(rig))
+    }
+
+    /// A board with the firmware and another content of the flash beside it.
+    ///
+    /// # Panics
+    /// If the firmware does not build.
+    #[must_use]
+    pub fn with_flash(rig: WiredRig, flash: &[u8]) -> Self {
+        let mut machine = Machine::new(firmware(), rig).expect("cargo built an ELF for the board");
+        machine.load_flash(flash);
+        Self::start(machine)
+    }
+
+    fn start(machine: Machine<WiredRig>) -> Self {
         Self {
             machine,
             decoder: Decoder::new(),
@@ -199,6 +214,14 @@ impl Board {
     pub fn events(&self) -> impl DoubleEndedIterator<Item = Event> {
         self.received.iter().filter_map(|received| match &received.message {
             Message::Event(event) => Some(*event),
+            _ => None,
+        })
+    }
+
+    /// All states of the table, in order.
+    pub fn table_states(&self) -> impl DoubleEndedIterator<Item = &TableState> {
+        self.received.iter().filter_map(|received| match &received.message {
+            Message::Table(state) => Some(state),
             _ => None,
         })
     }

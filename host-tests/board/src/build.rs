@@ -5,7 +5,7 @@ use std::process::Command;
 use std::sync::OnceLock;
 use std::{env, fs};
 
-/// The firmware's ELF for the reference arm, built as a user builds it.
+/// The firmware's ELF, built as a user builds it.
 ///
 /// # Panics
 /// If it cannot be built; cargo's own message is on stderr.
@@ -24,7 +24,6 @@ pub fn elf(package: &str, binary: &str) -> Vec<u8> {
     let status = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
         .current_dir(&root)
         .args(["build", "--quiet", "--profile", "firmware", "--package", package, "--bin", binary, "--target", TARGET])
-        .env_remove("PROPRIO_TABLE")
         .status()
         .expect("cargo, which runs this, can be run");
     assert!(

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStdin, Command, Stdio};
 
 use crate::build::firmware;
+use crate::flash::{flash_with, stored_table};
 
 /// Path of a tool of this workspace: in this program's folder, or the one above, as cargo builds tests in `deps`.
 ///
@@ -35,8 +36,9 @@ impl DueProcess {
     #[must_use]
     pub fn start(folder: &Path) -> Self {
         fs::write(folder.join("firmware"), firmware()).expect("there is room");
+        fs::write(folder.join("flash"), flash_with(&stored_table())).expect("there is room");
         let mut command = Command::new(tool("virtual-due"));
-        command.current_dir(folder).args(["run", "firmware", "--speed", "real", "--serial", "pty"]);
+        command.current_dir(folder).args(["run", "firmware", "--flash", "flash", "--speed", "real", "--serial", "pty"]);
         let mut child = command.stdin(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("the emulator starts");
         let mut lines = BufReader::new(child.stderr.take().expect("a pipe")).lines().map_while(Result::ok);
         let first = lines.next().expect("the emulator prints its port");

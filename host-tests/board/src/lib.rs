@@ -5,10 +5,12 @@ mod board;
 pub mod browser;
 mod build;
 pub mod due;
+mod flash;
 mod replay;
 mod view;
 
 pub use board::{Board, Received, UART};
 pub use build::{elf, firmware};
+pub use flash::{flash_with, machine, stored_table};
 pub use replay::{Replayed, replay, table};
 pub use view::View;

@@ -6,7 +6,7 @@ use calibration_tables::ArmFile;
 use estimator_core::{Estimator, Method, Q};
 use telemetry::{Estimate, Event, SEGMENTS, Sample, TICK_HZ, Uncertainty, contact_flags};
 
-/// The reference arm's table, which the firmware has compiled in.
+/// The reference arm's table, which the boards of the tests have in their flash.
 ///
 /// # Panics
 /// If the committed file is not a valid table.

@@ -28,7 +28,7 @@
 //! | `stream_decoder.rs` | bytes to messages; losses, mismatches and restarts |
 //! | `requests.rs` | ids, answers and repetitions |
 //! | `event.rs`, `queue.rs` | events with their time of arrival, and a queue for each subscription |
-//! | `file_recorder.rs` | recording to a file |
+//! | `file_recorder.rs`, `history.rs` | recording to a file; the bytes that one needs which begins later |
 //! | `drive/`, `status.rs` | pressures over time; the state of a board within seconds |
 //! | `table/` | transfer of the table to the board and back |
 //! | `source.rs` | [`Source`]: opens a line, once or again |
@@ -39,6 +39,7 @@ mod error;
 mod event;
 mod file_recorder;
 mod handle;
+mod history;
 mod ports;
 mod queue;
 mod requests;
@@ -54,7 +55,8 @@ mod worker;
 pub use error::LinkError;
 pub use event::{EventKind, LinkEvent, Mismatch};
 pub use file_recorder::FileRecorder;
-pub use handle::Link;
+pub use handle::{Link, PendingRequest};
+pub use history::ReceivedBytes;
 pub use ports::{Port, PortKind, find_due, list};
 pub use requests::RequestError;
 pub use serial::{Baud, PortSource};

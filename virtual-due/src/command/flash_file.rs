@@ -4,11 +4,8 @@ use std::fs;
 use std::io::{self, ErrorKind};
 use std::path::PathBuf;
 
-use virtual_due::Machine;
 use virtual_due::model::World;
-
-/// Size of the flash, bytes (datasheet chapter 7).
-const FLASH_BYTES: usize = 512 * 1024;
+use virtual_due::{FLASH_BYTES, Machine};
 
 /// The file of the flash's content.
 pub struct FlashFile {

@@ -10,12 +10,12 @@ mod figures {
     use std::time::{Duration, Instant};
 
     use board_tests::browser::{Browser, MonitorRun};
-    use board_tests::{UART, firmware};
+    use board_tests::{UART, firmware, machine};
     use proprio_link::{Link, LinkError, Source, Transport};
     use proprio_monitor::{Monitor, Options};
     use proprio_session::LoadedTable;
     use rig_twin::Scenario;
-    use virtual_due::{CYCLES_PER_SECOND, Machine, WiredRig};
+    use virtual_due::{CYCLES_PER_SECOND, WiredRig};
 
     const LIVE: &str = "document.getElementById('arm-values')?.textContent.startsWith('tip x') ?? false";
     /// History that the page has, s.
@@ -131,8 +131,7 @@ mod figures {
     }
 
     fn run(output: &SyncSender<Vec<u8>>, input: &Receiver<Vec<u8>>) {
-        let mut machine =
-            Machine::new(firmware(), WiredRig::new(Scenario::FreeSwing, 1)).expect("cargo built an ELF for the board");
+        let mut machine = machine(WiredRig::new(Scenario::FreeSwing, 1));
         let history = HISTORY_S * CYCLES_PER_SECOND;
         let mut began = None;
         loop {

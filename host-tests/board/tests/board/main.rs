@@ -16,6 +16,7 @@ mod recording;
 mod replay;
 mod requests;
 mod sensors;
+mod table;
 #[cfg(unix)]
 mod terminal;
 #[cfg(unix)]

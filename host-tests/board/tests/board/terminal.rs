@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 use std::io::{Read, Write};
 use std::time::{Duration, Instant};
 
-use board_tests::{UART, firmware};
+use board_tests::{UART, machine};
 use rig_twin::Scenario;
 use serialport::{SerialPort, TTYPort};
 use virtual_due::{CYCLES_PER_SECOND, Machine, WiredRig};
@@ -32,8 +32,7 @@ impl Terminal {
         let (mut line, theirs) = TTYPort::pair().expect("the system has pseudo-terminals");
         let port = theirs.name().expect("it has a name");
         line.set_timeout(Duration::from_millis(1)).expect("it is set");
-        let machine =
-            Machine::new(firmware(), WiredRig::new(Scenario::FreeSwing, 1)).expect("cargo built an ELF for the board");
+        let machine = machine(WiredRig::new(Scenario::FreeSwing, 1));
         Self { machine, line, port, disturb: Box::new(|bytes| bytes), to_host: VecDeque::new() }
     }
 

@@ -53,7 +53,7 @@ fn a_push_is_reported_within_half_a_second_and_the_time_of_the_line() {
             "{push:?} was reported at {reported_s:?}"
         );
     }
-    assert_replays(&board);
+    assert_replays(&board, 0);
 }
 
 #[test]

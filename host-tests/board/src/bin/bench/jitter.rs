@@ -1,9 +1,9 @@
 //! Jitter of the instant at which the bend sensors are sampled.
 
-use board_tests::{UART, firmware};
+use board_tests::{UART, machine};
 use rig_twin::Scenario;
 use virtual_due::model::{I2c, Pin, Reception, World};
-use virtual_due::{CYCLES_PER_SECOND, Cycles, Machine, WiredRig};
+use virtual_due::{CYCLES_PER_SECOND, Cycles, WiredRig};
 
 /// The ADC channel under observation: that of A7, the first of a scan.
 const CHANNEL: u8 = 0;
@@ -21,7 +21,7 @@ struct Watched {
 /// If the firmware does not sample.
 pub fn cycles() -> f64 {
     let world = Watched { rig: WiredRig::new(Scenario::FreeSwing, 1), conversions: Vec::new() };
-    let mut machine = Machine::new(firmware(), world).expect("a firmware for the Due");
+    let mut machine = machine(world);
     for second in 0..20 {
         // Noise on the line, so that the processor's work is not the same every time.
         let now = machine.now();
