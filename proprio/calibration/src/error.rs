@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use crate::align::AlignmentError;
 use crate::calibrate::CalibrationError;
-use crate::truth::TruthError;
+use crate::truth_error::TruthError;
 use crate::tune::TuningError;
 
 /// A table that cannot be made, or truth that cannot be aligned.

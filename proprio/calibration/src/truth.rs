@@ -8,6 +8,7 @@ use proprio_analysis::check::{Finding, Kind};
 use proprio_session::{Progress, RequiredColumns, SessionReader};
 
 use crate::error::Error;
+use crate::truth_error::{TruthError, TruthLengths};
 
 /// Share of wrong poses above which truth is refused. The poses that are found to be wrong differ from those of the arm by a
 /// tenth of a segment or more; where every fifth pose is, smaller errors of the same cause must be expected in the others.
@@ -15,46 +16,7 @@ const MOST_WRONG: f64 = 0.2;
 /// Difference of the truth's lengths from the arm's above which no table can be made, as a share.
 const MOST_STRETCH: f64 = 0.1;
 
-/// Truth that cannot be used.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum TruthError {
-    /// Places or headings in another unit.
-    #[error("{0}")]
-    Unit(Finding),
-    /// The lengths of another arm.
-    #[error("{0}")]
-    Lengths(TruthLengths),
-    /// Too many wrong poses.
-    #[error(
-        "{percent:.0} % of the truth's poses are wrong, expected at most {most:.0} %; the most frequent fault: {worst}"
-    )]
-    Wrong {
-        /// Share of the wrong poses, %.
-        percent: f64,
-        /// Allowed share, %.
-        most: f64,
-        /// The finding of the most rows.
-        worst: Finding,
-    },
-}
-
-/// Lengths that the markers fit, in terms of the first segment.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct TruthLengths {
-    /// Lengths by the truth over those of the arm.
-    pub scale: f64,
-    /// Length of the first segment in the arm description, mm.
-    pub given_mm: f64,
-}
-
-impl std::fmt::Display for TruthLengths {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { scale, given_mm } = self;
-        write!(f, "the markers fit lengths of {:.1} mm, the arm description has {given_mm} mm", scale * given_mm)
-    }
-}
-
-/// What was found about the truth of one file.
+/// Findings about the truth of one file.
 #[derive(Debug, Clone)]
 pub struct JudgedTruth {
     /// The file.
