@@ -3,16 +3,20 @@
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Weak};
 use std::thread::JoinHandle;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use telemetry::Command;
 
 use crate::error::LinkError;
+use crate::event::EventKind;
 use crate::history::ReceivedBytes;
 use crate::requests::{Answer, RequestError, TIME_LIMIT};
 use crate::shared::{LinkRequest, LinkState, SharedLink, Subscription};
 use crate::source::Source;
 use crate::worker::Worker;
+
+/// Longest wait for a board to acknowledge a Ping: an emulated one may start slowly.
+const CONNECTION: Duration = Duration::from_secs(10);
 
 /// A link to a board, from its opening until it is dropped.
 #[derive(Debug)]
@@ -76,6 +80,37 @@ impl Link {
     #[must_use]
     pub fn state(&self) -> LinkState {
         self.shared.state().clone()
+    }
+
+    /// Waits until the board has acknowledged a Ping.
+    ///
+    /// # Errors
+    /// [`LinkError::Ended`], and [`LinkError::Silent`] after ten seconds.
+    pub fn wait_until_connected(&self) -> Result<(), LinkError> {
+        let (start, events) = (Instant::now(), self.subscribe());
+        while !self.state().is_connected {
+            if let Some(EventKind::Ended(reason)) = events.next(Duration::from_millis(20)).map(|event| event.kind) {
+                return Err(LinkError::Ended(reason));
+            }
+            if start.elapsed() >= CONNECTION {
+                return Err(self.silent(CONNECTION));
+            }
+        }
+        Ok(())
+    }
+
+    /// The error of a board that was silent for so long.
+    pub(crate) fn silent(&self, time: Duration) -> LinkError {
+        let state = self.state();
+        if let Some(mismatch) = state.mismatches.first() {
+            return LinkError::Ended(mismatch.to_string());
+        }
+        LinkError::Silent {
+            port: state.port.unwrap_or_else(|| "the line".to_owned()),
+            seconds: time.as_secs(),
+            received: state.counts.received,
+            damaged: state.counts.damaged,
+        }
     }
 
     /// Sends a request to the board and waits until it is done. It is sent again until it is answered; the board executes

@@ -72,6 +72,7 @@ pub struct PulledTable {
 /// # Errors
 /// [`TransferError`]: the board goes on with the table that it had.
 pub fn push(link: &Link, table: &StoredTable, progress: &mut dyn Progress) -> Result<Hello, TransferError> {
+    link.wait_until_connected()?;
     let events = link.subscribe();
     let announced = table.announcement();
     let announcement = TableAnnouncement {
@@ -153,6 +154,7 @@ pub fn pull(link: &Link, progress: &mut dyn Progress) -> Result<PulledTable, Tra
 /// # Errors
 /// [`TransferError`]; a board of an earlier version sends no state.
 pub fn state(link: &Link) -> Result<TableState, TransferError> {
+    link.wait_until_connected()?;
     let events = link.subscribe();
     link.request(Command::Ping)?;
     next_state(&events)
@@ -163,6 +165,7 @@ pub fn state(link: &Link) -> Result<TableState, TransferError> {
 /// # Errors
 /// [`TransferError`].
 pub fn erase(link: &Link) -> Result<Hello, TransferError> {
+    link.wait_until_connected()?;
     let events = link.subscribe();
     link.request(Command::TableErase)?;
     next_hello(&events)
