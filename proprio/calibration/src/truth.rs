@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use calibration_tables::ArmFile;
-use proprio_analysis::check::truth::{Fault, LeftOut, TruthCheck, TruthReport, TruthRow};
-use proprio_analysis::check::{Finding, Kind};
+use proprio_check::truth::{Fault, LeftOut, TruthCheck, TruthReport, TruthRow};
+use proprio_check::{Finding, Kind};
 use proprio_session::{Progress, RequiredColumns, SessionReader};
 
 use crate::error::Error;

@@ -1,6 +1,6 @@
 //! Errors of truth that cannot be used.
 
-use proprio_analysis::check::Finding;
+use proprio_check::Finding;
 
 /// Truth that cannot be used.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use estimator_core::ArmConfig;
-use proprio_analysis::check::SessionCheck;
+use proprio_check::SessionCheck;
 use proprio_link::{EventKind, Link, LinkEvent, Subscription};
 use proprio_session::HostNs;
 

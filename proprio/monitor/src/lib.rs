@@ -42,7 +42,7 @@ use std::thread::JoinHandle;
 
 use calibration_tables::CompiledTable;
 use estimator_core::Q;
-use proprio_analysis::check::Finding;
+use proprio_check::Finding;
 use proprio_link::{Link, Subscription};
 use proprio_session::LoadedTable;
 use telemetry::{Command, SEGMENTS, TICK_HZ};

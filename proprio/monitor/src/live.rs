@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use proprio_analysis::check::{Finding, SessionCheck};
+use proprio_check::{Finding, SessionCheck};
 use proprio_link::status::MessageRates;
 use proprio_link::{EventKind, LinkEvent};
 use proprio_session::{ClockSync, HostNs, Row, RowAssembler};

@@ -8,7 +8,7 @@ use std::sync::{Mutex, PoisonError};
 
 use calibration_tables::ArmFile;
 use estimator_core::Q;
-use proprio_analysis::check::{Finding, SessionCheck};
+use proprio_check::{Finding, SessionCheck};
 use proprio_session::{LoadedTable, Mark, SessionError, SessionReader};
 use serde::Serialize;
 use tempfile::TempPath;

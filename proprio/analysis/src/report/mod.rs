@@ -33,13 +33,13 @@ use self::plot::Figure;
 use self::shapes::Shapes;
 use self::tip_error::TipErrors;
 use self::v_orient::Readings;
-use crate::check::{Finding, SessionCheck};
 use crate::error::Error;
 use crate::metrics::ErrorMetrics;
 use crate::outcome::Outcome;
 use crate::replay::{NotComparable, SessionSummary, replay};
 use crate::session_metrics::{AllMetrics, ByMethod, SessionMetrics};
 use crate::smooth;
+use proprio_check::{Finding, SessionCheck};
 
 /// Builder of a report, session by session. Its memory grows with their number and not with their length.
 pub struct ReportBuilder<'t> {

@@ -2,7 +2,7 @@
 
 use proprio_session::FileDefects;
 
-use proprio_analysis::clock_fit::{Clocks, ComparedSensors};
+use proprio_check::clock_fit::{Clocks, ComparedSensors};
 
 use super::frames::Frames;
 use super::motion::Readings;

@@ -3,7 +3,7 @@
 use std::cmp::Ordering;
 use std::sync::Arc;
 
-use proprio_analysis::clock_fit::{ComparedSensors, GRID_S, Motion, Signal};
+use proprio_check::clock_fit::{ComparedSensors, GRID_S, Motion, Signal};
 use rustfft::num_complex::Complex;
 use rustfft::{Fft, FftPlanner};
 

@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use calibration_tables::{ArmFile, MAX_SEGMENTS};
-use proprio_analysis::check::truth::{LeftOut, TruthRow};
-use proprio_analysis::clock_fit::Reading;
+use proprio_check::clock_fit::Reading;
+use proprio_check::truth::{LeftOut, TruthRow};
 use proprio_session::{CameraReader, FileDefects, Pose, Progress, SessionError, SessionProblem, Truth};
 
 use super::angle::unwrap_near;

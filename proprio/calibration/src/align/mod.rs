@@ -19,12 +19,12 @@ mod truth;
 
 use std::path::Path;
 
-use proprio_analysis::clock_fit::{self, ClockFit};
+use proprio_check::clock_fit::{self, ClockFit};
 use proprio_session::{LoadedTable, Progress};
 
 pub use alignment::{Alignment, AlignmentReport};
 pub use error::AlignmentError;
-pub use proprio_analysis::clock_fit::ComparedSensors;
+pub use proprio_check::clock_fit::ComparedSensors;
 pub use truth::Written;
 
 use crate::error::Error;

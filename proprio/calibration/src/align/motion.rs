@@ -5,7 +5,7 @@ use std::path::Path;
 
 use calibration_tables::ArmFile;
 use estimator_core::{ImuReading, SENSORS_PER_SEGMENT};
-use proprio_analysis::clock_fit::{ComparedSensors, Motion, Pair, Reading, Signal};
+use proprio_check::clock_fit::{ComparedSensors, Motion, Pair, Reading, Signal};
 use proprio_session::{
     FileDefects, FileFormat, Progress, RequiredColumns, Row, SessionError, SessionProblem, SessionReader,
 };

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use calibration_tables::{ArmFile, MAX_SEGMENTS};
 use estimator_core::{HeadingTracker, ImuReading, Phase, SENSORS_PER_SEGMENT, SegmentConfig, Turns};
-use proprio_analysis::check::truth::{LeftOut, geometry};
+use proprio_check::truth::{LeftOut, geometry};
 use proprio_session::{
     FileDefects, Progress, RequiredColumns, Row, SENSOR_NAMES, SessionError, SessionProblem, SessionReader,
 };

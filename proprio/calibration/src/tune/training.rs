@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use calibration_tables::{ArmFile, MAX_SEGMENTS};
 use estimator_core::{Estimator, Sample};
 use proprio_analysis::HostEstimator;
-use proprio_analysis::check::truth::{LeftOut, TruthRow};
+use proprio_check::truth::{LeftOut, TruthRow};
 use proprio_session::{FileDefects, LoadedTable, Progress, RequiredColumns, SessionReader};
 
 use super::error::TuningError;

@@ -3,8 +3,8 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use proprio_analysis::check::{Finding, Kind};
 use proprio_calibration::calibrate::{Calibration, CalibrationOptions, HysteresisMode, MapMode, calibrate};
+use proprio_check::{Finding, Kind};
 use proprio_session::{LoadedTable, OutputFile};
 
 use super::truth;

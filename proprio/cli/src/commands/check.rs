@@ -2,7 +2,7 @@
 
 use std::process::ExitCode;
 
-use proprio_analysis::check::{CheckedSession, Finding, check};
+use proprio_check::{CheckedSession, Finding, check};
 use proprio_session::LoadedTable;
 use serde::Serialize;
 

@@ -4,12 +4,12 @@ use std::path::{Path, PathBuf};
 
 use estimator_core::{FusedOps, Q, saturations};
 use proprio_analysis::agreement::Comparison;
-use proprio_analysis::check::SessionCheck;
 use proprio_analysis::estimates::EstimateWriter;
 use proprio_analysis::metrics::ErrorMetrics;
 use proprio_analysis::replay::{NotComparable, SessionSummary, replay};
 use proprio_analysis::session_metrics::{AllMetrics, ByMethod, SessionMetrics};
 use proprio_analysis::{Outcome, smooth};
+use proprio_check::SessionCheck;
 use proprio_session::{LoadedTable, OutputFile, Row};
 
 use super::warnings::{warn_of_defects, warn_of_findings};

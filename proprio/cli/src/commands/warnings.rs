@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use proprio_analysis::check::{Finding, check};
 use proprio_calibration::Error as CalibrationError;
+use proprio_check::{Finding, check};
 use proprio_session::{FileDefects, LoadedTable};
 
 use crate::error::Error;

@@ -1,6 +1,6 @@
 //! Remedies of the findings of a session check.
 
-use proprio_analysis::check::{Finding, Kind, Source};
+use proprio_check::{Finding, Kind, Source};
 
 use super::Help;
 

@@ -1,4 +1,4 @@
-//! `proprio check`: faults of a session, found in one pass over its rows, in memory that does not grow with their number.
+//! Faults of a session of a soft robot arm, found in one pass over its rows, in memory that does not grow with their number.
 //!
 //! The thresholds were chosen on simulated arms 1 to 12 and 30 (`proprio simulate --arm-seed`, each with a table calibrated on a
 //! sweep of its own) in scenarios 1 to 3 and all motions that begin with a straight arm at rest, and judged on arms 21 to 29. That
@@ -18,10 +18,12 @@
 //! | `steps.rs`, `wiring.rs` | steps of the IMUs against those of the bend sensors |
 //! | `quaternions.rs` | quaternions in another order, IMUs on their side |
 //! | `truth/` | the truth by itself, against the lengths and against the sensors' clock |
+//! | `clock_fit/` | the camera's clock against the sensors', by their motion |
 //! | `twins.rs` | a bend sensor that leaves its twin and the IMU |
 
 mod bend_range;
 mod clock;
+pub mod clock_fit;
 mod finding;
 mod frame;
 mod frozen;
@@ -37,7 +39,7 @@ mod wiring;
 
 use std::path::Path;
 
-use proprio_session::{FileDefects, LoadedTable, Progress, RequiredColumns, Row, SessionReader};
+use proprio_session::{Error, FileDefects, LoadedTable, Progress, RequiredColumns, Row, SessionReader};
 
 pub use finding::{Finding, Kind, Rows, Source};
 
@@ -52,7 +54,6 @@ use self::steps::Steps;
 use self::tare::Tare;
 use self::truth::{TruthCheck, TruthRow};
 use self::twins::Twins;
-use crate::error::Error;
 
 /// A check of one session, row by row.
 pub struct SessionCheck {

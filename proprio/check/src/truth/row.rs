@@ -4,7 +4,7 @@ use calibration_tables::MAX_SEGMENTS;
 use estimator_core::{ImuReading, Phase};
 use proprio_session::{Row, Truth};
 
-use crate::check::finding::Rows;
+use crate::finding::Rows;
 
 /// The truth of one row.
 #[derive(Debug, Clone, Copy)]

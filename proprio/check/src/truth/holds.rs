@@ -9,7 +9,7 @@ use proprio_session::Truth;
 use super::fault::{Fault, FaultKind};
 use super::links::{distance, wrapped};
 use super::row::TruthRow;
-use crate::check::finding::Rows;
+use crate::finding::Rows;
 
 /// Least turn of the IMU, rad, and what drift may add to it, rad/s.
 const TURN: f64 = 1.0 * std::f64::consts::PI / 180.0;

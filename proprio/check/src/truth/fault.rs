@@ -1,6 +1,6 @@
 //! Poses of the truth that are wrong.
 
-use crate::check::finding::Rows;
+use crate::finding::Rows;
 
 /// Wrong poses of one segment's end in consecutive rows.
 #[derive(Debug, Clone, Copy)]

@@ -4,7 +4,7 @@ use calibration_tables::MAX_SEGMENTS;
 
 use super::fault::{Fault, FaultKind};
 use super::row::TruthRow;
-use crate::check::finding::{Finding, Kind, Rows, Source};
+use crate::finding::{Finding, Kind, Rows, Source};
 
 /// Least number of times that truth of a lower rate is held, least number of its repeats, and their least share in the rows in which the arm moves.
 const HOLDS: u64 = 10;
