@@ -21,7 +21,7 @@ const ERASED: u8 = 0xFF;
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum ImageError {
     /// It is not an ELF file of 32 bits, or a damaged one.
-    #[error("not a 32-bit ELF file ({0})")]
+    #[error("not a 32-bit ELF file ({0}); give the linker's output")]
     NotElf(String),
     /// It is for another processor.
     #[error("an ELF file for another processor; build for ARM Cortex-M3 (thumbv7m-none-eabi, -mcpu=cortex-m3)")]
@@ -70,8 +70,7 @@ pub fn segments(elf: &[u8]) -> Result<Vec<(u32, &[u8])>, ImageError> {
         if segment.p_type(endian) != PT_LOAD {
             continue;
         }
-        let data =
-            segment.data(endian, elf).map_err(|()| ImageError::NotElf("a segment is cut off".to_owned()))?;
+        let data = segment.data(endian, elf).map_err(|()| ImageError::NotElf("a segment is cut off".to_owned()))?;
         if data.is_empty() {
             continue;
         }

@@ -108,6 +108,20 @@ pub fn find_due(ports: &[Port]) -> Result<&Port, LinkError> {
     Err(LinkError::NoDue)
 }
 
+/// A udev rule file for the programming port of the Due: access for the user at the computer (`uaccess`) and the group plugdev,
+/// and no ModemManager, whose probing resets the board. ModemManager reads its mark on the USB device, above the tty.
+#[must_use]
+pub fn udev_rules() -> String {
+    let mut rules =
+        "# Arduino Due, programming port: access, and no ModemManager, which would reset the board.\n".to_owned();
+    for vendor in ARDUINO {
+        let due = format!("ATTRS{{idVendor}}==\"{vendor:04x}\", ATTRS{{idProduct}}==\"{PROGRAMMING:04x}\"");
+        rules += &format!("{due}, ENV{{ID_MM_DEVICE_IGNORE}}=\"1\"\n");
+        rules += &format!("SUBSYSTEM==\"tty\", {due}, MODE=\"0660\", GROUP=\"plugdev\", TAG+=\"uaccess\"\n");
+    }
+    rules
+}
+
 #[cfg(test)]
 mod tests {
     use serialport::UsbPortInfo;

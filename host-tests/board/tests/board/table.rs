@@ -65,7 +65,8 @@ fn push(board: &mut Board, table: &StoredTable) -> Cycles {
     assert_eq!(request(board, begin(table)), RequestOutcome::Ack);
     // Two pieces ahead of their replies, as `proprio table push` sends them.
     let acknowledged = |board: &Board| {
-        let is_ack = |message: &Message| matches!(message, Message::Reply(reply) if reply.outcome == RequestOutcome::Ack);
+        let is_ack =
+            |message: &Message| matches!(message, Message::Reply(reply) if reply.outcome == RequestOutcome::Ack);
         board.received().iter().filter(|received| is_ack(&received.message)).count()
     };
     let before = acknowledged(board);
