@@ -106,12 +106,12 @@ impl EstimationTask {
             }
             (actuator.state(), actuator.pressures_pa())
         });
-        let (mut due, damaged_frames) = control.lock(|control| {
-            let due = control.schedule.due(tick.number);
-            let hello = core::mem::take(&mut control.hello_requested) || due.hello;
-            (DueMessages { hello, ..due }, control.damaged_frames)
+        let (mut due, requested, damaged_frames) = control.lock(|control| {
+            let requested = core::mem::take(&mut control.hello_requested);
+            (control.schedule.due(tick.number), requested, control.damaged_frames)
         });
-        due.hello |= self.last_tick.is_none();
+        let introduce = requested || self.last_tick.is_none();
+        due.hello |= introduce;
         self.last_tick = Some(tick.number);
         result.events.iter().for_each(log);
         let has_table = !self.config.segments.is_empty();
@@ -119,7 +119,7 @@ impl EstimationTask {
         due.uncertainty &= has_table;
         let uncertainty = due.uncertainty.then(|| self.estimator.uncertainty(tick.number));
         sender.lock(|sender| {
-            self.send(sender, &result, due);
+            self.send(sender, &result, due, introduce);
             if let Some(uncertainty) = uncertainty {
                 sender.send(&Message::Uncertainty(uncertainty));
             }
@@ -167,9 +167,12 @@ impl EstimationTask {
         CycleResult { sample, estimate, events }
     }
 
-    fn send(&self, sender: &mut TelemetrySender, result: &CycleResult, due: DueMessages) {
+    /// Sends the messages of a tick; `introduce`: the first tick, or a host has sent a Ping.
+    fn send(&self, sender: &mut TelemetrySender, result: &CycleResult, due: DueMessages, introduce: bool) {
         if due.hello {
             sender.send(&Message::Hello(self.hello.clone()));
+        }
+        if introduce {
             sender.send(&Message::Table(self.table));
         }
         // Samples first: a replay needs them.

@@ -7,7 +7,7 @@ use host_tests::parallel::in_parallel;
 use host_tests::twin::{TwinSession, replay_smoothed};
 use proprio_analysis::metrics::ErrorMetrics;
 use proprio_calibration::calibrate::{CalibrationOptions, calibrate};
-use proprio_session::{LoadedTable, NoProgress, OutputFile};
+use proprio_session::{Existing, LoadedTable, NoProgress, OutputFile};
 use proprio_simulation::{ImuColumns, SessionWriter, Simulation};
 use rig_twin::{Motion, Scenario, Setup};
 
@@ -21,7 +21,7 @@ fn setup(arm_seed: u64, scenario: Scenario, seed: u64) -> Setup {
 /// The table of an arm's own sweep.
 fn table(arm_seed: u64, folder: &Path) -> ArmFile {
     let sweep = folder.join(format!("sweep-{arm_seed}.csv"));
-    let file = OutputFile::create(&sweep, &[]).expect("a temporary folder can be written to");
+    let file = OutputFile::create(&sweep, &[], Existing::Keep).expect("a temporary folder can be written to");
     let mut writer = SessionWriter::new(file, ImuColumns::Quaternion).expect("a temporary file can be written");
     let samples = Simulation::of(&setup(arm_seed, Scenario::Sweep, 0), 900.0, 10.0).expect("a rate and a duration");
     samples.for_each(|sample| writer.write(&sample).expect("a temporary file can be written"));

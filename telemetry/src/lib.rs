@@ -27,7 +27,7 @@
 //! // The board decodes the received bytes one by one and replies.
 //! let mut requests = Decoder::<Request>::new();
 //! let received = frame.iter().find_map(|&byte| requests.push(byte));
-//! assert_eq!(received, Some(Ok(request)));
+//! assert_eq!(received, Some(Ok(request.clone())));
 //! let mut board = Encoder::new();
 //! let reply = Message::Reply(Reply { id: request.id, outcome: RequestOutcome::Nack(Refusal::Busy) });
 //! let mut line = board.encode(&reply, &mut buffer)?.to_vec();

@@ -33,7 +33,7 @@ pub enum Message {
     Reply(Reply),
     /// Covariance of an estimate, and contact.
     Uncertainty(Uncertainty),
-    /// State of the table in the board's flash; with each `Hello`, and after each request about the table.
+    /// State of the table in the board's flash: after a start, after a ping, and after requests about the table.
     Table(TableState),
     /// A piece of the table, on request.
     TableData(TableChunk),

@@ -15,7 +15,7 @@ pub fn run() -> Result<(), String> {
     let tool = Tool::build("accept")?;
     tool.take("calibration-tables/arms/planar-6.toml", "arms/planar-6.toml")?;
     for command in commands.lines() {
-        tool.run(command)?;
+        tool.run(&format!("{command} --force"))?;
         match command.split_whitespace().last() {
             // The sweep is large and only a step to the table.
             None | Some("sweep.csv") => {}

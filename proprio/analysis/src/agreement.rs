@@ -187,6 +187,14 @@ impl fmt::Display for Comparison {
             );
         }
         let compared = self.estimates - self.not_compared;
+        if compared == 0 {
+            return write!(
+                f,
+                "none of the {} recorded estimates can be compared, as samples since the board's last tare before them are not \
+                 in the recording",
+                self.estimates
+            );
+        }
         if let Some(difference) = &self.first_difference {
             let Difference { tick, segment, recorded, computed } = difference;
             write!(

@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use calibration_tables::ArmFile;
 use estimator_core::{FusedOps, Method, SegmentShape};
-use proprio_session::{Error, OutputFile};
+use proprio_session::{Error, OutputFile, WrittenFile};
 
 use crate::Outcome;
 
@@ -34,8 +34,8 @@ impl EstimateWriter {
     /// Completes the file and gives it its name.
     ///
     /// # Errors
-    /// [`Error::Output`].
-    pub fn finish(self) -> Result<(), Error> {
+    /// [`Error::Output`] and [`Error::Exists`].
+    pub fn finish(self) -> Result<WrittenFile, Error> {
         self.file.finish()
     }
 }

@@ -1,5 +1,6 @@
 //! A session through the estimator, row by row.
 
+use std::fmt;
 use std::path::Path;
 
 use estimator_core::{Estimator, FusedOps, Q};
@@ -18,12 +19,30 @@ pub struct SessionSummary {
     pub samples: u64,
     /// Time from the first row to the last, s.
     pub seconds: f64,
+    /// Number of rows before which the board's estimator had samples that are not in the recording: a replay has another
+    /// tare than the board, or lacks some of its samples.
+    pub not_comparable: u64,
     /// True where the file's last line has a line end; otherwise its last number may be cut.
     pub ends_with_line: bool,
     /// The damaged parts of a recording, which are left out.
     pub holes: Vec<HoleTimes>,
     /// Facts about a board's recording; `None` for a CSV.
     pub recording: Option<RecordingFacts>,
+}
+
+/// Text about the rows of a recording whose estimates cannot be compared with the board's.
+#[derive(Debug)]
+pub struct NotComparable<'s>(pub &'s SessionSummary);
+
+impl fmt::Display for NotComparable<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let SessionSummary { samples, not_comparable, .. } = self.0;
+        write!(
+            f,
+            "{not_comparable} of {samples} samples cannot be compared with the board: samples since its last tare before them \
+             are not in the recording, so a replay has another tare or drift until the board's next tare"
+        )
+    }
 }
 
 /// Facts about a recording that is replayed.
@@ -53,7 +72,7 @@ impl RecordingFacts {
     }
 }
 
-/// Replays a session and passes every row with its outcome to `visit`.
+/// Replays a session and passes every row with its outcome to `visit`, but those from before the begin of a recording.
 ///
 /// # Errors
 /// Errors of the session, the table and `visit`.
@@ -71,7 +90,10 @@ pub fn replay<S: FusedOps>(
     let compiled = compiled.config();
     let mut estimator: Box<HostEstimator<S>> = Box::new(Estimator::new(&compiled).expect("the file was checked"));
     while let Some(row) = rows.next_row()? {
-        visit(&row, &Outcome::of_row(&mut estimator, &row))?;
+        let outcome = Outcome::of_row(&mut estimator, &row);
+        if row.is_recorded() {
+            visit(&row, &outcome)?;
+        }
     }
     rows.summary(table)
 }
@@ -82,6 +104,7 @@ pub(crate) struct SessionRows<'p> {
     progress: &'p mut dyn Progress,
     work: String,
     samples: u64,
+    not_comparable: u64,
     first_us: Option<u64>,
     last_us: u64,
 }
@@ -96,7 +119,7 @@ impl<'p> SessionRows<'p> {
     ) -> Result<Self, Error> {
         let reader = SessionReader::open(session, &table.required_columns()?)?;
         let work = format!("{work} {}", session.display());
-        Ok(Self { reader, progress, work, samples: 0, first_us: None, last_us: 0 })
+        Ok(Self { reader, progress, work, samples: 0, not_comparable: 0, first_us: None, last_us: 0 })
     }
 
     /// Rate of the rows; that of the table where there are too few.
@@ -107,10 +130,11 @@ impl<'p> SessionRows<'p> {
     /// The next row.
     pub fn next_row(&mut self) -> Result<Option<Row>, Error> {
         let row = self.reader.next_row()?;
-        if let Some(row) = &row {
+        if let Some(row) = row.as_ref().filter(|row| row.is_recorded()) {
             self.last_us = row.sample.time_us;
             self.first_us.get_or_insert(self.last_us);
             self.samples += 1;
+            self.not_comparable += u64::from(!row.is_comparable());
             self.progress.advance(&self.work, self.reader.progress());
         }
         Ok(row)
@@ -118,13 +142,14 @@ impl<'p> SessionRows<'p> {
 
     /// The summary, after the last row.
     pub fn summary(self, table: &LoadedTable) -> Result<SessionSummary, Error> {
-        let Self { reader, samples, first_us, last_us, .. } = self;
+        let Self { reader, samples, not_comparable, first_us, last_us, .. } = self;
         let recording =
             if reader.kind() == FileFormat::Csv { None } else { Some(RecordingFacts::new(reader.hello(), table)?) };
         let seconds = (last_us - first_us.unwrap_or(last_us)) as f64 / 1e6;
         Ok(SessionSummary {
             samples,
             seconds,
+            not_comparable,
             ends_with_line: reader.ends_with_line(),
             holes: reader.holes().to_vec(),
             recording,

@@ -8,7 +8,7 @@ use calibration_tables::ArmFile;
 use divan::Bencher;
 use divan::counter::ItemsCount;
 use proprio_calibration::tune::Tuner;
-use proprio_session::{LoadedTable, NoProgress, OutputFile};
+use proprio_session::{Existing, LoadedTable, NoProgress, OutputFile};
 use proprio_simulation::{ImuColumns, SessionWriter, Simulation};
 use rig_twin::Scenario;
 
@@ -26,7 +26,7 @@ fn main() {
 fn session() -> PathBuf {
     let folder = FOLDER.get_or_init(|| {
         let folder = tempfile::tempdir().expect("a temporary folder");
-        let file = OutputFile::create(&folder.path().join("session.csv"), &[]).expect("a session file");
+        let file = OutputFile::create(&folder.path().join("session.csv"), &[], Existing::Keep).expect("a session file");
         let mut writer = SessionWriter::new(file, ImuColumns::Deg).expect("room on the disk");
         for sample in Simulation::new(Scenario::FreeSwing, 7, SECONDS, RATE_HZ).expect("a valid run") {
             writer.write(&sample).expect("room on the disk");

@@ -1,5 +1,6 @@
 //! Arguments of the program.
 
+mod force;
 mod link;
 
 use std::path::PathBuf;
@@ -8,6 +9,7 @@ use clap::builder::Styles;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 
+pub use force::ForceArgs;
 pub use link::{
     ConvertArgs, DriveArgs, FlashArgs, LinkArgs, MonitorArgs, PortsArgs, RecordArgs, RecoverArgs, StatusArgs,
     TableArgs, TableCommand,
@@ -78,6 +80,8 @@ pub struct AlignArgs {
     /// Session with truth to write
     #[arg(short, long, value_name = "ALIGNED.csv")]
     pub output: PathBuf,
+    #[command(flatten)]
+    pub force: ForceArgs,
 }
 
 #[derive(Debug, Args)]
@@ -91,6 +95,8 @@ pub struct CalibrateArgs {
     /// Table to write
     #[arg(short, long, value_name = "TABLE.toml")]
     pub output: PathBuf,
+    #[command(flatten)]
+    pub force: ForceArgs,
     /// V–Orient maps of the bend sensors
     #[arg(long, value_enum, default_value_t = MapName::Auto)]
     pub map: MapName,
@@ -130,6 +136,8 @@ pub struct TuneArgs {
     /// Table to write
     #[arg(short, long, value_name = "TABLE.toml")]
     pub output: PathBuf,
+    #[command(flatten)]
+    pub force: ForceArgs,
 }
 
 #[derive(Debug, Args)]
@@ -156,6 +164,8 @@ pub struct ReplayArgs {
     /// Write the estimates of the session: bend angles and world points of all methods
     #[arg(long, value_name = "EST.csv")]
     pub out: Option<PathBuf>,
+    #[command(flatten)]
+    pub force: ForceArgs,
     /// Smooth: use the readings after each sample, too; needs a table with the bias filter
     #[arg(long)]
     pub smooth: bool,
@@ -178,6 +188,8 @@ pub struct ReportArgs {
     /// Page to write
     #[arg(short, long, value_name = "REPORT.html")]
     pub output: PathBuf,
+    #[command(flatten)]
+    pub force: ForceArgs,
     /// Write the numbers of the figures as JSON
     #[arg(long, value_name = "FILE.json")]
     pub json: Option<PathBuf>,
@@ -215,6 +227,8 @@ pub struct SimulateArgs {
     /// Session to write
     #[arg(short, long, value_name = "SESSION.csv")]
     pub output: PathBuf,
+    #[command(flatten)]
+    pub force: ForceArgs,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]

@@ -68,6 +68,13 @@ pub enum Error {
     Ramp(f64),
 }
 
+impl Error {
+    /// True for a fault of proprio itself.
+    pub fn is_fault(&self) -> bool {
+        matches!(self, Self::Monitor(proprio_monitor::Error::RecorderPanicked(_)))
+    }
+}
+
 impl From<proprio_session::SessionError> for Error {
     fn from(error: proprio_session::SessionError) -> Self {
         Self::File(error.into())

@@ -43,7 +43,7 @@ pub fn run() -> ExitCode {
             terminal::eprint_line(&format_args!(
                 "{error_style}error:{error_style:#} {error}\n{help_style}  help:{help_style:#} {help}"
             ));
-            ExitCode::from(2)
+            ExitCode::from(if error.is_fault() { 1 } else { 2 })
         }
         Err(_) => {
             terminal::eprint_line(

@@ -2,6 +2,9 @@
 
 use std::fmt::Display;
 use std::io::{self, Write};
+use std::path::Path;
+
+use proprio_session::is_stdout;
 
 use crate::error::Error;
 
@@ -12,6 +15,16 @@ pub fn print(text: &str) -> Result<(), Error> {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(Error::Stdout(error)),
         _ => Ok(()),
     }
+}
+
+/// Writes a whole text to standard output, or to standard error where `output`, a file of this command, is standard output.
+pub fn print_beside(output: Option<&Path>, text: &str) -> Result<(), Error> {
+    if output.is_some_and(is_stdout) {
+        // As for every line on standard error, a failure is no error of the command.
+        let _ = anstream::stderr().write_all(text.as_bytes());
+        return Ok(());
+    }
+    print(text)
 }
 
 /// A report as JSON, on one line.

@@ -1,21 +1,22 @@
 //! Recording of a link to a file.
 
-use std::fs::{self, File, OpenOptions};
-use std::io::{self, BufWriter};
+use std::fs::{self, OpenOptions};
+use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use proprio_session::recording::Recorder;
-use proprio_session::{Error, HostClock, HostNs};
+use proprio_session::{Error, HostClock, HostNs, is_stdout};
 use telemetry::SetPressures;
 
 use crate::event::{EventKind, LinkEvent};
 use crate::handle::Link;
+use crate::history::ReceivedBytes;
 use crate::shared::Subscription;
 
-/// Recording of a link to a new file.
+/// Recording of a link to a new file, or to standard output.
 pub struct FileRecorder {
-    recorder: Recorder<BufWriter<File>>,
+    recorder: Recorder<BufWriter<Box<dyn Write + Send>>>,
     path: PathBuf,
     clock: HostClock,
 }
@@ -24,7 +25,7 @@ impl FileRecorder {
     /// Creates the file, with the table of the board attached as its TOML stands.
     ///
     /// # Errors
-    /// [`Error::Exists`] where there is a file of this name, which is never replaced; [`Error::Output`].
+    /// [`Error::RecordingExists`] where there is a file of this name, which is never replaced; [`Error::Output`].
     pub fn create(path: &Path, link: &Link, clock: HostClock, table_toml: Option<&[u8]>) -> Result<Self, Error> {
         let failed = |source| Error::Output { path: path.to_owned(), source };
         let line = link.state().port.unwrap_or_default();
@@ -33,6 +34,16 @@ impl FileRecorder {
             recorder.attach_table(clock.now(), toml).map_err(failed)?;
         }
         Ok(Self { recorder, path: path.to_owned(), clock })
+    }
+
+    /// Writes the bytes that were received before the first event, so that a replay begins with the state of the board's
+    /// estimator.
+    ///
+    /// # Errors
+    /// [`Error::Output`].
+    pub fn history(&mut self, history: Vec<ReceivedBytes>) -> Result<(), Error> {
+        let written = history.into_iter().try_for_each(|(at, bytes)| self.recorder.history(at, &bytes));
+        self.named(written)
     }
 
     /// Its file.
@@ -114,12 +125,16 @@ impl FileRecorder {
 }
 
 /// Creates a file that did not exist: a recording cannot be made again, and none is replaced. A pipe or device is written to.
-fn create(path: &Path) -> Result<File, Error> {
+fn create(path: &Path) -> Result<Box<dyn Write + Send>, Error> {
+    if is_stdout(path) {
+        return Ok(Box::new(io::stdout()));
+    }
     let is_other = fs::metadata(path).is_ok_and(|found| !found.is_file() && !found.is_dir());
     let mut options = OpenOptions::new();
     let options = if is_other { options.write(true) } else { options.write(true).create_new(true) };
-    options.open(path).map_err(|source| match source.kind() {
-        io::ErrorKind::AlreadyExists => Error::Exists(path.to_owned()),
-        _ => Error::Output { path: path.to_owned(), source },
-    })
+    match options.open(path) {
+        Ok(file) => Ok(Box::new(file)),
+        Err(error) if error.kind() == io::ErrorKind::AlreadyExists => Err(Error::RecordingExists(path.to_owned())),
+        Err(source) => Err(Error::Output { path: path.to_owned(), source }),
+    }
 }

@@ -1,16 +1,22 @@
 //! Handle of a link: its state, requests and subscriptions.
 
-use std::sync::Arc;
-use std::sync::mpsc::{Sender, channel};
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::{Arc, Weak};
 use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
 
 use telemetry::Command;
 
 use crate::error::LinkError;
-use crate::requests::RequestError;
+use crate::event::EventKind;
+use crate::history::ReceivedBytes;
+use crate::requests::{Answer, RequestError, TIME_LIMIT};
 use crate::shared::{LinkRequest, LinkState, SharedLink, Subscription};
 use crate::source::Source;
 use crate::worker::Worker;
+
+/// Longest wait for a board to acknowledge a Ping: an emulated one may start slowly.
+const CONNECTION: Duration = Duration::from_secs(10);
 
 /// A link to a board, from its opening until it is dropped.
 #[derive(Debug)]
@@ -26,9 +32,28 @@ impl Link {
     ///
     /// # Errors
     /// [`LinkError`] where the line cannot be opened the first time.
-    pub fn start(mut source: Box<dyn Source>, table: Option<u32>) -> Result<(Self, Subscription), LinkError> {
+    pub fn start(source: Box<dyn Source>, table: Option<u32>) -> Result<(Self, Subscription), LinkError> {
+        Self::start_with(source, table, SharedLink::default())
+    }
+
+    /// The same for a link of which recordings may begin later: it holds the bytes since the last start of the board's
+    /// estimator, up to 256 MB.
+    ///
+    /// # Errors
+    /// [`LinkError`] where the line cannot be opened the first time.
+    pub fn start_with_history(source: Box<dyn Source>, table: Option<u32>) -> Result<(Self, Subscription), LinkError> {
+        let shared = SharedLink::default();
+        shared.keep_history();
+        Self::start_with(source, table, shared)
+    }
+
+    fn start_with(
+        mut source: Box<dyn Source>,
+        table: Option<u32>,
+        shared: SharedLink,
+    ) -> Result<(Self, Subscription), LinkError> {
         let (name, transport) = source.open()?;
-        let shared = Arc::new(SharedLink::default());
+        let shared = Arc::new(shared);
         let (requests, received) = channel();
         shared.state().port = Some(name.clone());
         let subscription = shared.subscribe();
@@ -44,10 +69,48 @@ impl Link {
         self.shared.subscribe()
     }
 
+    /// Subscribes to all events from now on, and returns the bytes from the last start of the board's estimator until now;
+    /// `None` where they are not all held.
+    #[must_use]
+    pub fn subscribe_with_history(&self) -> (Subscription, Option<Vec<ReceivedBytes>>) {
+        self.shared.subscribe_with_history()
+    }
+
     /// Current state of the link.
     #[must_use]
     pub fn state(&self) -> LinkState {
         self.shared.state().clone()
+    }
+
+    /// Waits until the board has acknowledged a Ping.
+    ///
+    /// # Errors
+    /// [`LinkError::Ended`], and [`LinkError::Silent`] after ten seconds.
+    pub fn wait_until_connected(&self) -> Result<(), LinkError> {
+        let (start, events) = (Instant::now(), self.subscribe());
+        while !self.state().is_connected {
+            if let Some(EventKind::Ended(reason)) = events.next(Duration::from_millis(20)).map(|event| event.kind) {
+                return Err(LinkError::Ended(reason));
+            }
+            if start.elapsed() >= CONNECTION {
+                return Err(self.silent(CONNECTION));
+            }
+        }
+        Ok(())
+    }
+
+    /// The error of a board that was silent for so long.
+    pub(crate) fn silent(&self, time: Duration) -> LinkError {
+        let state = self.state();
+        if let Some(mismatch) = state.mismatches.first() {
+            return LinkError::Ended(mismatch.to_string());
+        }
+        LinkError::Silent {
+            port: state.port.unwrap_or_else(|| "the line".to_owned()),
+            seconds: time.as_secs(),
+            received: state.counts.received,
+            damaged: state.counts.damaged,
+        }
     }
 
     /// Sends a request to the board and waits until it is done. It is sent again until it is answered; the board executes
@@ -56,11 +119,52 @@ impl Link {
     /// # Errors
     /// [`RequestError`]: refused, not answered within two seconds, or interrupted by a restart.
     pub fn request(&self, command: Command) -> Result<(), LinkError> {
-        let (answer, answered) = channel();
-        let sent = self.requests.send(LinkRequest::Command(command, answer));
-        let outcome = sent.ok().and_then(|()| answered.recv().ok()).unwrap_or(Err(RequestError::Interrupted));
-        outcome.map_err(LinkError::Request)
+        self.begin_request(command).wait()
     }
+
+    /// Begins a request without waiting until it is done.
+    pub fn begin_request(&self, command: Command) -> PendingRequest {
+        let asker = Arc::new(());
+        let answered = self.send(Arc::downgrade(&asker), command);
+        PendingRequest { answered, _asker: asker }
+    }
+
+    /// As [`Link::request`] for an asker who may leave earlier: once it is dropped, the request is not sent any more.
+    ///
+    /// # Errors
+    /// [`RequestError`].
+    pub fn request_of(&self, asker: &Weak<()>, command: Command) -> Result<(), LinkError> {
+        outcome(&self.send(asker.clone(), command))
+    }
+
+    fn send(&self, asker: Weak<()>, command: Command) -> Receiver<Result<(), RequestError>> {
+        let (sender, answered) = channel();
+        let answer = Answer { sender, asker, deadline: Instant::now() + TIME_LIMIT };
+        // Without a thread the channel is closed, which is an interruption.
+        let _ = self.requests.send(LinkRequest::Command(command, answer));
+        answered
+    }
+}
+
+/// A request whose answer is not there yet. Once it is dropped, it is not sent any more.
+#[derive(Debug)]
+pub struct PendingRequest {
+    answered: Receiver<Result<(), RequestError>>,
+    _asker: Arc<()>,
+}
+
+impl PendingRequest {
+    /// Waits until the request is done.
+    ///
+    /// # Errors
+    /// As [`Link::request`].
+    pub fn wait(self) -> Result<(), LinkError> {
+        outcome(&self.answered)
+    }
+}
+
+fn outcome(answered: &Receiver<Result<(), RequestError>>) -> Result<(), LinkError> {
+    answered.recv().unwrap_or(Err(RequestError::Interrupted)).map_err(LinkError::Request)
 }
 
 impl Drop for Link {

@@ -28,7 +28,7 @@
 //! | `stream_decoder.rs` | bytes to messages; losses, mismatches and restarts |
 //! | `requests.rs` | ids, answers and repetitions |
 //! | `event.rs`, `queue.rs` | events with their time of arrival, and a queue for each subscription |
-//! | `file_recorder.rs` | recording to a file |
+//! | `file_recorder.rs`, `history.rs` | recording to a file; the bytes that one needs which begins later |
 //! | `drive/`, `status.rs` | pressures over time; the state of a board within seconds |
 //! | `table/` | transfer of the table to the board and back |
 //! | `source.rs` | [`Source`]: opens a line, once or again |
@@ -41,6 +41,7 @@ mod event;
 mod file_recorder;
 mod firmware_path;
 mod handle;
+mod history;
 mod ports;
 mod queue;
 mod requests;
@@ -57,7 +58,8 @@ pub use error::LinkError;
 pub use event::{EventKind, LinkEvent, Mismatch};
 pub use file_recorder::FileRecorder;
 pub use firmware_path::{built_firmware, firmware_path};
-pub use handle::Link;
+pub use handle::{Link, PendingRequest};
+pub use history::ReceivedBytes;
 pub use ports::{Port, PortKind, find_due, list, udev_rules};
 pub use requests::RequestError;
 pub use serial::{Baud, PortSource};

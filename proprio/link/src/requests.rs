@@ -1,9 +1,11 @@
-//! The host's side of requests: one after the other, each under its own id and repeated until it is answered.
+//! The host's side of requests: one after the other, each under its own id and repeated until it is answered. The pieces of
+//! a table alone are sent ahead of their replies, so that the line is never idle.
 //!
 //! A host begins with a Ping: no other request is sent before one is acknowledged. No request outlives the run of the board
-//! that it was made for: one that arms the pressures must not arrive after a restart.
+//! that it was made for, its time limit, or its asker: one that arms the pressures must not arrive when nobody expects it.
 
 use std::collections::VecDeque;
+use std::sync::Weak;
 use std::sync::mpsc::Sender;
 use std::time::{Duration, Instant};
 
@@ -12,8 +14,8 @@ use telemetry::{Command, Encoder, MAX_FRAME, Refusal, Reply, Request, RequestOut
 /// Time without an answer after which a request is sent again.
 const AGAIN: Duration = Duration::from_millis(100);
 
-/// Number of times that a request is sent before it fails.
-const TRIES: u32 = 20;
+/// Time from the asking after which a request fails, whether or not it was sent.
+pub const TIME_LIMIT: Duration = Duration::from_secs(2);
 
 /// A request that was not acknowledged.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
@@ -29,25 +31,48 @@ pub enum RequestError {
     Interrupted,
 }
 
-/// Channel for the answer to a request.
-pub type Answer = Sender<Result<(), RequestError>>;
+/// The way back to the asker of a request.
+#[derive(Debug)]
+pub struct Answer {
+    /// Channel for the outcome.
+    pub sender: Sender<Result<(), RequestError>>,
+    /// The asker, who has left when it is dropped.
+    pub asker: Weak<()>,
+    /// Time from which on nobody waits for the outcome.
+    pub deadline: Instant,
+}
 
-/// The requests that wait, and the one that is under way.
+impl Answer {
+    /// True while the asker waits.
+    fn is_awaited(&self, now: Instant) -> bool {
+        now < self.deadline && self.asker.strong_count() > 0
+    }
+
+    fn send(&self, outcome: Result<(), RequestError>) {
+        // The asker may have left.
+        let _ = self.sender.send(outcome);
+    }
+}
+
+/// Pieces of a table under way at once: they fill less than the board's receive buffer.
+const PIECES_AHEAD: usize = 2;
+
+/// The requests that wait, and those under way.
 #[derive(Debug, Default)]
 pub struct Requests {
     encoder: Encoder,
     last_id: u32,
     is_connected: bool,
-    current: Option<Current>,
+    /// In the order in which they were sent; more than one are pieces of a table.
+    under_way: VecDeque<UnderWay>,
     waiting: VecDeque<(Command, Answer)>,
 }
 
 #[derive(Debug)]
-struct Current {
+struct UnderWay {
     request: Request,
     /// `None` for the Ping of the handshake, which is repeated without limit.
     answer: Option<Answer>,
-    sent: u32,
     due: Instant,
 }
 
@@ -64,64 +89,192 @@ impl Requests {
 
     /// The bytes to send now, if any: a zero, which ends the rest of a damaged frame, and a frame.
     pub fn due(&mut self, now: Instant) -> Option<Vec<u8>> {
-        if self.current.as_ref().is_some_and(|current| current.sent >= TRIES && current.due <= now) {
-            self.finish(Err(RequestError::NoAnswer));
+        self.give_up(now);
+        if self.may_begin() {
+            self.begin(now);
         }
-        if self.current.is_none() {
-            self.begin(now)?;
-        }
-        let current = self.current.as_mut().filter(|current| current.due <= now)?;
-        current.sent = if current.answer.is_some() { current.sent + 1 } else { 1 };
-        current.due = now + AGAIN;
+        let due = self.under_way.iter_mut().find(|one| one.due <= now)?;
+        due.due = now + AGAIN;
         let mut buffer = [0; MAX_FRAME];
-        let frame = self.encoder.encode(&current.request, &mut buffer).ok()?;
+        let frame = self.encoder.encode(&due.request, &mut buffer).ok()?;
         Some([&[0], frame].concat())
     }
 
-    /// Makes the next request the one under way.
-    fn begin(&mut self, now: Instant) -> Option<()> {
+    /// Ends the requests for whose answer nobody waits any more.
+    fn give_up(&mut self, now: Instant) {
+        let is_over = |one: &UnderWay| one.answer.as_ref().is_some_and(|answer| !answer.is_awaited(now));
+        while let Some(place) = self.under_way.iter().position(is_over) {
+            self.finish(place, Err(RequestError::NoAnswer));
+        }
+        self.waiting.retain(|(_, answer)| {
+            let is_awaited = answer.is_awaited(now);
+            if !is_awaited {
+                answer.send(Err(RequestError::NoAnswer));
+            }
+            is_awaited
+        });
+    }
+
+    /// True where nothing is under way, or pieces of a table alone and the next one is another.
+    fn may_begin(&self) -> bool {
+        let is_piece = |command: &Command| matches!(command, Command::TableWrite(_));
+        let next = self.waiting.front().is_some_and(|(command, _)| is_piece(command));
+        let pieces_alone = self.under_way.iter().all(|one| is_piece(&one.request.command));
+        self.under_way.is_empty() || (next && pieces_alone && self.under_way.len() < PIECES_AHEAD)
+    }
+
+    /// Adds the next request to those under way.
+    fn begin(&mut self, now: Instant) {
         let (command, answer) = if self.is_connected {
-            let (command, answer) = self.waiting.pop_front()?;
+            let Some((command, answer)) = self.waiting.pop_front() else { return };
             (command, Some(answer))
         } else {
             (Command::Ping, None)
         };
         self.last_id = self.last_id.wrapping_add(1);
         let request = Request { id: self.last_id, command };
-        self.current = Some(Current { request, answer, sent: 0, due: now });
-        Some(())
+        self.under_way.push_back(UnderWay { request, answer, due: now });
     }
 
     /// Handles a reply of the board.
     pub fn replied(&mut self, reply: Reply) {
-        let Some(current) = self.current.as_ref().filter(|current| current.request.id == reply.id) else { return };
+        let Some(place) = self.under_way.iter().position(|one| one.request.id == reply.id) else { return };
+        let is_handshake = self.under_way.get(place).is_some_and(|one| one.answer.is_none());
         match reply.outcome {
             RequestOutcome::Ack => {
                 self.is_connected = true;
-                self.finish(Ok(()));
+                self.finish(place, Ok(()));
             }
             // The board has not processed it: it is sent again.
             RequestOutcome::Nack(Refusal::Busy) => {}
             // An earlier host has used higher ids. The board accepts a Ping with a lower one after its session timeout.
-            RequestOutcome::Nack(_) if current.answer.is_none() => {}
-            RequestOutcome::Nack(refusal) => self.finish(Err(refusal.into())),
+            RequestOutcome::Nack(_) if is_handshake => {}
+            RequestOutcome::Nack(refusal) => self.finish(place, Err(refusal.into())),
         }
     }
 
     /// Ends all requests after a restart of the board or the loss of its line; none of them is sent again.
     pub fn interrupt(&mut self) {
-        self.finish(Err(RequestError::Interrupted));
+        while !self.under_way.is_empty() {
+            self.finish(0, Err(RequestError::Interrupted));
+        }
         for (_, answer) in self.waiting.drain(..) {
-            // The requesting thread may have stopped waiting.
-            let _ = answer.send(Err(RequestError::Interrupted));
+            answer.send(Err(RequestError::Interrupted));
         }
         self.is_connected = false;
     }
 
-    fn finish(&mut self, outcome: Result<(), RequestError>) {
-        if let Some(answer) = self.current.take().and_then(|current| current.answer) {
-            // The requesting thread may have stopped waiting.
-            let _ = answer.send(outcome);
+    /// Ends the request at a place among those under way.
+    fn finish(&mut self, place: usize, outcome: Result<(), RequestError>) {
+        if let Some(answer) = self.under_way.remove(place).and_then(|one| one.answer) {
+            answer.send(outcome);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+    use std::sync::mpsc::{Receiver, TryRecvError, channel};
+
+    use telemetry::{Decoder, SetPressures, TableChunk};
+
+    use super::*;
+
+    /// A request with its asker and the channel of its outcome.
+    struct Asked {
+        asker: Arc<()>,
+        outcome: Receiver<Result<(), RequestError>>,
+    }
+
+    fn ask(requests: &mut Requests, command: Command, now: Instant) -> Asked {
+        let (asker, (sender, outcome)) = (Arc::new(()), channel());
+        requests.push(command, Answer { sender, asker: Arc::downgrade(&asker), deadline: now + TIME_LIMIT });
+        Asked { asker, outcome }
+    }
+
+    /// The request that is sent at a time, if any.
+    fn sent(requests: &mut Requests, now: Instant) -> Option<Request> {
+        let mut decoder = Decoder::<Request>::new();
+        requests.due(now)?.into_iter().find_map(|byte| decoder.push(byte)).and_then(Result::ok)
+    }
+
+    fn acknowledge(requests: &mut Requests, request: Option<Request>) {
+        let id = request.expect("a request was sent").id;
+        requests.replied(Reply { id, outcome: RequestOutcome::Ack });
+    }
+
+    const PRESSURES: Command = Command::SetPressures(SetPressures { pressures_pa: [0; 6], valid_ms: 300 });
+
+    #[test]
+    fn a_request_that_was_made_before_the_board_answers_is_given_up_two_seconds_after_the_asking() {
+        let (mut requests, start) = (Requests::default(), Instant::now());
+        let after = |ms| start + Duration::from_millis(ms);
+        let arm = ask(&mut requests, Command::Arm, start);
+        for ms in [0, 500, 1000, 1500, 1999] {
+            assert_eq!(sent(&mut requests, after(ms)).map(|request| request.command), Some(Command::Ping));
+        }
+        assert_eq!(arm.outcome.try_recv(), Err(TryRecvError::Empty));
+        sent(&mut requests, after(2000));
+        assert_eq!(arm.outcome.try_recv(), Ok(Err(RequestError::NoAnswer)));
+
+        let ping = sent(&mut requests, after(20_000));
+        acknowledge(&mut requests, ping);
+        assert_eq!(sent(&mut requests, after(20_001)), None, "the board answers, and gets nothing of old");
+    }
+
+    #[test]
+    fn a_request_behind_another_is_given_up_two_seconds_after_its_own_asking() {
+        let (mut requests, start) = (Requests::default(), Instant::now());
+        let after = |ms| start + Duration::from_millis(ms);
+        let ping = sent(&mut requests, start);
+        acknowledge(&mut requests, ping);
+        let arm = ask(&mut requests, Command::Arm, start);
+        let pressures = ask(&mut requests, PRESSURES, after(300));
+        assert_eq!(sent(&mut requests, start).map(|request| request.command), Some(Command::Arm));
+        assert_eq!(sent(&mut requests, after(2000)).map(|request| request.command), Some(PRESSURES));
+        assert_eq!(arm.outcome.try_recv(), Ok(Err(RequestError::NoAnswer)));
+        assert_eq!(sent(&mut requests, after(2300)), None);
+        assert_eq!(pressures.outcome.try_recv(), Ok(Err(RequestError::NoAnswer)));
+    }
+
+    fn piece(offset: u32) -> Command {
+        Command::TableWrite(TableChunk { offset, bytes: [].into_iter().collect() })
+    }
+
+    #[test]
+    fn two_pieces_of_a_table_are_under_way_at_once_and_no_other_request_beside_them() {
+        let (mut requests, now) = (Requests::default(), Instant::now());
+        let ping = sent(&mut requests, now);
+        acknowledge(&mut requests, ping);
+        let asked: Vec<_> = [piece(0), piece(1), piece(2), Command::TableCommit]
+            .into_iter()
+            .map(|command| ask(&mut requests, command, now))
+            .collect();
+        let (first, second) = (sent(&mut requests, now), sent(&mut requests, now));
+        assert_eq!(second.as_ref().map(|request| request.command.clone()), Some(piece(1)));
+        assert_eq!(sent(&mut requests, now), None);
+        acknowledge(&mut requests, first);
+        let third = sent(&mut requests, now);
+        assert_eq!(third.as_ref().map(|request| request.command.clone()), Some(piece(2)));
+        acknowledge(&mut requests, second);
+        assert_eq!(sent(&mut requests, now), None, "the commit waits for the last piece");
+        acknowledge(&mut requests, third);
+        assert_eq!(sent(&mut requests, now).map(|request| request.command), Some(Command::TableCommit));
+        assert_eq!(asked[2].outcome.try_recv(), Ok(Ok(())));
+    }
+
+    #[test]
+    fn a_request_whose_asker_has_left_is_dropped() {
+        let (mut requests, start) = (Requests::default(), Instant::now());
+        let ping = sent(&mut requests, start);
+        let arm = ask(&mut requests, Command::Arm, start);
+        let tare = ask(&mut requests, Command::Tare, start);
+        acknowledge(&mut requests, ping);
+        drop(arm.asker);
+        let next = sent(&mut requests, start);
+        assert_eq!(next.as_ref().map(|request| request.command.clone()), Some(Command::Tare));
+        acknowledge(&mut requests, next);
+        assert_eq!(tare.outcome.try_recv(), Ok(Ok(())));
     }
 }

@@ -6,6 +6,7 @@ use std::time::Duration;
 use telemetry::{Command, Counts, Hello};
 
 use crate::event::{EventKind, LinkEvent, Mismatch};
+use crate::history::{History, ReceivedBytes};
 use crate::queue::Queue;
 use crate::requests::Answer;
 
@@ -31,6 +32,8 @@ pub(super) struct SharedLink {
 #[derive(Debug, Default)]
 struct Subscribers {
     queues: Vec<Weak<Queue<LinkEvent>>>,
+    /// Where recordings may begin later than the link.
+    history: Option<History>,
     /// The last event of a line that is gone for good, for later subscribers.
     end: Option<LinkEvent>,
 }
@@ -61,15 +64,20 @@ impl SharedLink {
         self.subscribers.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
+    /// Holds a history from now on.
+    pub fn keep_history(&self) {
+        self.subscribers().history = Some(History::new());
+    }
+
     /// Adds a subscriber.
     pub fn subscribe(&self) -> Subscription {
-        let queue = Arc::new(Queue::new(CAPACITY));
+        self.subscribers().add()
+    }
+
+    /// Adds a subscriber, and returns the bytes from the last start of the board's estimator to its first event.
+    pub fn subscribe_with_history(&self) -> (Subscription, Option<Vec<ReceivedBytes>>) {
         let mut subscribers = self.subscribers();
-        if let Some(end) = &subscribers.end {
-            queue.push(end.clone());
-        }
-        subscribers.queues.push(Arc::downgrade(&queue));
-        Subscription { queue }
+        (subscribers.add(), subscribers.history.as_ref().and_then(History::whole))
     }
 
     /// The state, locked.
@@ -83,7 +91,21 @@ impl SharedLink {
         if matches!(event.kind, EventKind::Ended(_)) {
             subscribers.end = Some(event.clone());
         }
+        if let Some(history) = &mut subscribers.history {
+            history.take(event);
+        }
         subscribers.queues.retain(|queue| queue.upgrade().inspect(|queue| queue.push(event.clone())).is_some());
+    }
+}
+
+impl Subscribers {
+    fn add(&mut self) -> Subscription {
+        let queue = Arc::new(Queue::new(CAPACITY));
+        if let Some(end) = &self.end {
+            queue.push(end.clone());
+        }
+        self.queues.push(Arc::downgrade(&queue));
+        Subscription { queue }
     }
 }
 

@@ -138,26 +138,13 @@ impl Status {
                 });
             }
             if start.elapsed().as_secs() >= TIMEOUT_S && seen.health.is_none() {
-                return Err(silent(link));
+                return Err(link.silent(Duration::from_secs(TIMEOUT_S)));
             }
             // An emulated board may be slow and settle late.
             if start.elapsed().as_secs() >= 3 * TIMEOUT_S {
-                return Err(silent(link));
+                return Err(link.silent(Duration::from_secs(TIMEOUT_S)));
             }
         }
-    }
-}
-
-fn silent(link: &Link) -> LinkError {
-    let state = link.state();
-    if let Some(mismatch) = state.mismatches.first() {
-        return LinkError::Ended(mismatch.to_string());
-    }
-    LinkError::Silent {
-        port: state.port.unwrap_or_else(|| "the line".to_owned()),
-        seconds: TIMEOUT_S,
-        received: state.counts.received,
-        damaged: state.counts.damaged,
     }
 }
 

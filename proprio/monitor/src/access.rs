@@ -19,6 +19,10 @@ pub(super) enum Refused {
     ReadOnly,
     #[error("the token is missing or wrong: open the address that `proprio monitor` has printed")]
     Token,
+    #[error("the request did not arrive whole within {0} s")]
+    Slow(u64),
+    #[error("the request is longer than {0} MB; put a long session into the folder of this monitor instead")]
+    Long(u64),
 }
 
 impl Refused {
@@ -26,6 +30,8 @@ impl Refused {
         match self {
             Self::Host(_) | Self::Origin | Self::ReadOnly => StatusCode::FORBIDDEN,
             Self::Token => StatusCode::UNAUTHORIZED,
+            Self::Slow(_) => StatusCode::REQUEST_TIMEOUT,
+            Self::Long(_) => StatusCode::PAYLOAD_TOO_LARGE,
         }
     }
 }

@@ -9,12 +9,12 @@ use axum::extract::{Query, State};
 use axum::http::header::{CONTENT_TYPE, HeaderName};
 use axum::http::{HeaderMap, StatusCode};
 use axum::response::{IntoResponse, Response};
-use http_body_util::BodyExt;
 use serde::Deserialize;
 use telemetry::{Command, REGULATORS, SetPressures};
 
 use super::access::Refused;
 use super::app_state::AppState;
+use super::body;
 use super::sessions::SessionEntry;
 
 const BYTES: [(HeaderName, &str); 1] = [(CONTENT_TYPE, "application/octet-stream")];
@@ -75,14 +75,11 @@ pub(super) struct Upload {
 }
 
 /// Receives a session from the browser, piece by piece.
-pub(super) async fn send(State(state): State<AppState>, Query(sent): Query<Upload>, mut body: Body) -> Answer<()> {
+pub(super) async fn send(State(state): State<AppState>, Query(sent): Query<Upload>, body: Body) -> Answer<()> {
     let failed = |error: &dyn std::fmt::Display| (StatusCode::CONFLICT, error.to_string()).into_response();
     let suffix = std::path::Path::new(&sent.name).extension().unwrap_or_default().to_string_lossy().into_owned();
     let mut file = tempfile::Builder::new().suffix(&format!(".{suffix}")).tempfile().map_err(|error| failed(&error))?;
-    while let Some(frame) = body.frame().await {
-        let data: Bytes = frame.map_err(|error| failed(&error))?.into_data().unwrap_or_default();
-        file.write_all(&data).map_err(|error| failed(&error))?;
-    }
+    body::read(body, body::SESSION_MB, |part| file.write_all(part)).await?;
     state.monitor.sessions.keep(&sent.name, file.into_temp_path());
     Ok(())
 }
@@ -115,6 +112,15 @@ pub(super) async fn mark(State(state): State<AppState>, Json(MarkRequest { text 
     is_marked.then_some(()).ok_or_else(|| (StatusCode::CONFLICT, "nothing is recorded: begin first").into_response())
 }
 
+/// Checks the token, before a page shows what needs it.
+pub(super) async fn unlock(State(state): State<AppState>, headers: HeaderMap) -> Answer<()> {
+    check_token(&state, &headers).map_err(Refused::into_response)
+}
+
+fn check_token(state: &AppState, headers: &HeaderMap) -> Result<(), Refused> {
+    state.monitor.token.as_ref().ok_or(Refused::ReadOnly)?.check(headers)
+}
+
 /// A request of the page to the board.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -143,17 +149,20 @@ impl From<Control> for Command {
 
 /// Sends a request to the board.
 pub(super) async fn control(State(state): State<AppState>, headers: HeaderMap, body: Bytes) -> Answer<()> {
-    let shared = Arc::clone(&state.monitor);
     // The token is checked before the body is parsed.
-    shared
-        .token
-        .as_ref()
-        .ok_or(Refused::ReadOnly)
-        .and_then(|token| token.check(&headers))
-        .map_err(Refused::into_response)?;
+    check_token(&state, &headers).map_err(Refused::into_response)?;
     let control: Control =
         serde_json::from_slice(&body).map_err(|error| (StatusCode::BAD_REQUEST, error.to_string()).into_response())?;
-    let requested = run_blocking(move || shared.link.as_ref().map(|link| link.request(control.into())));
+    let shared = Arc::clone(&state.monitor);
+    // This handler is dropped with its connection: nothing is sent for a page that has gone, except what vents.
+    let page = Arc::new(());
+    let asker = Arc::downgrade(&page);
+    let kept = (control == Control::Vent).then(|| Arc::clone(&page));
+    let requested = run_blocking(move || {
+        let done = shared.link.as_ref().map(|link| link.request_of(&asker, control.into()));
+        drop(kept);
+        done
+    });
     match requested.await? {
         Some(done) => done.map_err(|error| state.failure(&error.into())),
         None => Err(Refused::ReadOnly.into_response()),

@@ -1,6 +1,7 @@
 //! Errors of the live page's server.
 
 use std::io;
+use std::path::PathBuf;
 
 /// A page that cannot be served, or a file that it requests.
 #[derive(Debug, thiserror::Error)]
@@ -8,6 +9,9 @@ pub enum Error {
     /// A session, a table or a recording.
     #[error(transparent)]
     File(#[from] proprio_session::Error),
+    /// The recorder's thread has panicked.
+    #[error("{}: is incomplete: the recorder has stopped by a fault of proprio", .0.display())]
+    RecorderPanicked(PathBuf),
     /// A request to the board.
     #[error(transparent)]
     Link(#[from] proprio_link::LinkError),

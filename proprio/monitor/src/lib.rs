@@ -10,7 +10,7 @@
 //! | `hub.rs`, `feed.rs`, `history.rs` | batches and status; the last ten minutes |
 //! | `latency.rs` | latency from a sample to the screen |
 //! | `recording.rs`, `sessions.rs` | recording and opening of sessions |
-//! | `server.rs`, `socket.rs`, `actions.rs`, `access.rs` | HTTP: the page, the feed, handlers of requests, access control |
+//! | `server.rs`, `socket.rs`, `actions.rs`, `body.rs`, `access.rs` | HTTP: the page, the feed, handlers of requests, their limits, access control |
 //! | `monitor_state.rs`, `app_state.rs` | state of the threads; state of the handlers |
 //! | `plain.rs` | one line per second instead, for a terminal |
 //! | `page/` | the page, embedded in the program |
@@ -18,6 +18,7 @@
 mod access;
 mod actions;
 mod app_state;
+mod body;
 mod error;
 mod feed;
 mod history;
@@ -109,7 +110,7 @@ impl Monitor {
         let work = async move {
             let listener = tokio::net::TcpListener::from_std(listener)?;
             tokio::select! {
-                served = axum::serve(listener, server::router(state)) => served,
+                served = server::serve(listener, server::router(state)) => served,
                 _ = stopped => Ok(()),
             }
         };
@@ -137,7 +138,7 @@ impl Monitor {
     /// Ends the monitor: vents the board, where a page could have driven it, and completes the recording. Returns its path.
     ///
     /// # Errors
-    /// [`Error::File`] of a recording.
+    /// [`Error::File`] and [`Error::RecorderPanicked`] of a recording.
     pub fn finish(self) -> Result<Option<String>, Error> {
         if let (Some(link), Some(_)) = (&self.shared.link, &self.shared.token) {
             // A board that does not answer vents at its own deadline.

@@ -88,7 +88,7 @@ impl MonitorState {
     /// Completes the running recording, if there is one.
     pub fn finish_recording(&self) -> Result<Option<RecordingProgress>, Error> {
         let recording = lock(&self.recording).take();
-        Ok(recording.map(Recording::finish).transpose()?)
+        recording.map(Recording::finish).transpose()
     }
 
     /// Sets a mark in the running recording; returns false without a recording.

@@ -1,5 +1,6 @@
 //! A recording that was started from the page: a thread with its own queue, so that no browser slows it.
 
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
@@ -7,9 +8,11 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-use proprio_link::{FileRecorder, Link, Subscription};
-use proprio_session::{Error, HostClock, HostNs};
+use proprio_link::{FileRecorder, Link, ReceivedBytes, Subscription};
+use proprio_session::{HostClock, HostNs};
 use serde::Serialize;
+
+use crate::error::Error;
 
 /// Longest time between two checks for marks.
 const CHECK_PERIOD: Duration = Duration::from_millis(50);
@@ -18,6 +21,8 @@ const CHECK_PERIOD: Duration = Duration::from_millis(50);
 #[derive(Debug, Clone, Serialize)]
 pub(super) struct RecordingProgress {
     pub file: String,
+    /// A replay of it begins with the state of the board's estimator; otherwise it has another until the next tare.
+    pub is_comparable: bool,
     pub samples: u64,
     pub marks: u64,
     /// Events that were dropped because this machine was too slow.
@@ -44,6 +49,7 @@ struct MarkRequest {
 
 #[derive(Debug, Default)]
 struct Counts {
+    is_comparable: bool,
     samples: AtomicU64,
     marks: AtomicU64,
     dropped: AtomicU64,
@@ -55,11 +61,29 @@ impl Recording {
     pub fn begin(link: &Link, folder: &Path, table: Option<&[u8]>, clock: HostClock) -> Result<Self, Error> {
         let path = folder.join(format!("{}.mcap", name(clock.now())));
         let recorder = FileRecorder::create(&path, link, clock, table)?;
+        let (events, history) = link.subscribe_with_history();
+        let counts = Counts { is_comparable: history.is_some(), ..Counts::default() };
+        Self::start(path, counts, move |marks, counts| Work { recorder, events, marks, counts }.run(history))
+    }
+
+    /// Starts the thread, which does `work`.
+    fn start(
+        path: PathBuf,
+        counts: Counts,
+        work: impl FnOnce(Receiver<MarkRequest>, Arc<Counts>) -> Result<(), Error> + Send + 'static,
+    ) -> Result<Self, Error> {
         let (marks, received) = channel();
-        let counts = Arc::new(Counts::default());
-        let work = Work { recorder, events: link.subscribe(), marks: received, counts: Arc::clone(&counts) };
-        let thread = std::thread::Builder::new().name("recording".to_owned()).spawn(move || work.run());
-        let thread = thread.map_err(|source| Error::Output { path: path.clone(), source })?;
+        let counts = Arc::new(counts);
+        let shared = Arc::clone(&counts);
+        let run = move || {
+            let done = catch_unwind(AssertUnwindSafe(|| work(received, Arc::clone(&shared))));
+            done.unwrap_or_else(|panic| {
+                shared.fail("this is a fault of proprio".to_owned());
+                resume_unwind(panic)
+            })
+        };
+        let thread = std::thread::Builder::new().name("recording".to_owned()).spawn(run);
+        let thread = thread.map_err(|source| proprio_session::Error::Output { path: path.clone(), source })?;
         Ok(Self { marks, counts, thread: Some(thread), path })
     }
 
@@ -70,9 +94,10 @@ impl Recording {
     }
 
     pub fn progress(&self) -> RecordingProgress {
-        let Counts { samples, marks, dropped, failed } = self.counts.as_ref();
+        let Counts { is_comparable, samples, marks, dropped, failed } = self.counts.as_ref();
         RecordingProgress {
             file: self.path.display().to_string(),
+            is_comparable: *is_comparable,
             samples: samples.load(Ordering::Relaxed),
             marks: marks.load(Ordering::Relaxed),
             dropped_events: dropped.load(Ordering::Relaxed),
@@ -80,17 +105,23 @@ impl Recording {
         }
     }
 
-    /// Completes the file.
+    /// Completes the file, and returns the progress at its end.
     pub fn finish(mut self) -> Result<RecordingProgress, Error> {
-        let progress = self.progress();
         let (marks, _) = channel();
         // The thread ends when the sender of its marks is dropped.
         drop(std::mem::replace(&mut self.marks, marks));
-        let done = self.thread.take().map(JoinHandle::join);
-        match done {
+        match self.thread.take().map(JoinHandle::join) {
+            Some(Err(_)) => Err(Error::RecorderPanicked(self.path)),
             Some(Ok(Err(error))) => Err(error),
-            _ => Ok(progress),
+            Some(Ok(Ok(()))) | None => Ok(self.progress()),
         }
+    }
+}
+
+impl Counts {
+    /// Sets the reason of a failure.
+    fn fail(&self, reason: String) {
+        *self.failed.lock().unwrap_or_else(PoisonError::into_inner) = Some(reason);
     }
 }
 
@@ -103,36 +134,44 @@ struct Work {
 }
 
 impl Work {
-    fn run(mut self) -> Result<(), Error> {
-        let done = self.work();
+    fn run(mut self, history: Option<Vec<ReceivedBytes>>) -> Result<(), Error> {
+        let done = self.work(history.unwrap_or_default());
         if let Err(error) = &done {
             // The page shows the file's name with the reason.
-            let reason = match error {
-                Error::Output { source, .. } => source.to_string(),
+            self.counts.fail(match error {
+                Error::File(proprio_session::Error::Output { source, .. }) => source.to_string(),
                 other => other.to_string(),
-            };
-            *self.counts.failed.lock().unwrap_or_else(PoisonError::into_inner) = Some(reason);
+            });
         }
-        done.and_then(|()| self.recorder.finish())
+        done.and_then(|()| Ok(self.recorder.finish()?))
     }
 
-    fn work(&mut self) -> Result<(), Error> {
+    fn work(&mut self, history: Vec<ReceivedBytes>) -> Result<(), Error> {
+        self.recorder.history(history)?;
         loop {
             match self.events.next(CHECK_PERIOD) {
                 Some(event) => self.recorder.event(&event)?,
                 None => self.recorder.flush_if_due()?,
             }
-            self.counts.samples.store(self.recorder.samples(), Ordering::Relaxed);
-            self.counts.dropped.store(self.events.dropped(), Ordering::Relaxed);
+            self.count();
             match self.marks.try_recv() {
                 Ok(MarkRequest { at, text }) => {
                     self.recorder.mark(at, &text)?;
                     self.counts.marks.fetch_add(1, Ordering::Relaxed);
                 }
                 Err(TryRecvError::Empty) => {}
-                Err(TryRecvError::Disconnected) => return self.recorder.remaining_events(&self.events),
+                Err(TryRecvError::Disconnected) => {
+                    self.recorder.remaining_events(&self.events)?;
+                    self.count();
+                    return Ok(());
+                }
             }
         }
+    }
+
+    fn count(&self) {
+        self.counts.samples.store(self.recorder.samples(), Ordering::Relaxed);
+        self.counts.dropped.store(self.events.dropped(), Ordering::Relaxed);
     }
 }
 
@@ -154,7 +193,39 @@ fn name(at: HostNs) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{HostNs, name};
+    use std::path::PathBuf;
+    use std::sync::atomic::Ordering;
+
+    use super::{Counts, HostNs, Recording, name};
+    use crate::error::Error;
+
+    #[test]
+    fn a_panic_of_the_recorder_is_shown_and_fails_the_recording() {
+        let recording = Recording::start(PathBuf::from("a.mcap"), Counts::default(), |marks, _| {
+            let _ = marks.recv();
+            panic!("a fault, on purpose");
+        });
+        let recording = recording.expect("a thread starts");
+        assert_eq!(recording.progress().failed, None);
+        recording.mark(HostNs(0), String::new());
+        while recording.progress().failed.is_none() {
+            std::thread::yield_now();
+        }
+        assert_eq!(recording.progress().failed.as_deref(), Some("this is a fault of proprio"));
+        let finished = recording.finish();
+        assert!(matches!(&finished, Err(Error::RecorderPanicked(path)) if path.ends_with("a.mcap")), "{finished:?}");
+    }
+
+    #[test]
+    fn the_progress_at_the_end_is_that_of_the_finished_file() {
+        let recording = Recording::start(PathBuf::from("a.mcap"), Counts::default(), |marks, counts| {
+            // The end of the marks is the end of the recording; events that wait are written after it.
+            while marks.recv().is_ok() {}
+            counts.samples.store(7, Ordering::Relaxed);
+            Ok(())
+        });
+        assert_eq!(recording.expect("a thread starts").finish().expect("it has no fault").samples, 7);
+    }
 
     #[test]
     fn a_recording_is_named_by_the_date_and_time() {

@@ -1,6 +1,9 @@
 //! Routes of the server: the page, the feed, sessions and requests.
 
+use std::io;
+
 use axum::Router;
+use axum::body::Body;
 use axum::extract::{Request, State};
 use axum::http::Method;
 use axum::http::header::{
@@ -9,10 +12,14 @@ use axum::http::header::{
 use axum::middleware::{self, Next};
 use axum::response::{IntoResponse, Response};
 use axum::routing::{get, post};
+use hyper::server::conn::http1;
+use hyper_util::rt::{TokioIo, TokioTimer};
+use hyper_util::service::TowerToHyperService;
+use tokio::net::TcpListener;
 
 use super::access::{Refused, check_host, check_origin};
 use super::app_state::AppState;
-use super::{actions, socket};
+use super::{actions, body, socket};
 
 /// The files of the page, embedded in this program.
 const FILES: [(&str, &str, &str); 13] = [
@@ -53,26 +60,59 @@ pub(super) fn router(state: AppState) -> Router {
         .route("/session", get(actions::session))
         .route("/record", post(actions::record))
         .route("/mark", post(actions::mark))
+        .route("/unlock", post(actions::unlock))
         .route("/control", post(actions::control))
         .layer(middleware::from_fn_with_state(state.clone(), guard))
         .with_state(state)
 }
 
-/// Checks the access of every request and adds headers to every response.
+/// Serves connections until the listener fails.
+pub(super) async fn serve(listener: TcpListener, router: Router) -> io::Result<()> {
+    let mut http = http1::Builder::new();
+    http.timer(TokioTimer::new()).header_read_timeout(body::PART_TIMEOUT);
+    loop {
+        let (stream, _) = listener.accept().await?;
+        let service = TowerToHyperService::new(router.clone());
+        let connection = http.serve_connection(TokioIo::new(stream), service).with_upgrades();
+        // A page that leaves ends its connection.
+        tokio::spawn(async move { drop(connection.await) });
+    }
+}
+
+/// Checks the access of every request, receives its body, and adds headers to every response.
 async fn guard(State(state): State<AppState>, request: Request, next: Next) -> Response {
     let headers = request.headers();
     let mut checked = check_host(headers, state.port).map(drop);
     if request.method() != Method::GET || request.uri().path() == "/feed" {
         checked = check_origin(headers, state.port);
     }
-    let mut response = match checked {
-        Ok(()) => next.run(request).await,
-        Err(refused) => refused.into_response(),
+    let received = match checked {
+        Ok(()) => receive(request).await,
+        Err(refused) => Err(refused.into_response()),
+    };
+    let mut response = match received {
+        Ok(request) => next.run(request).await,
+        Err(response) => response,
     };
     for (name, value) in HEADERS {
         response.headers_mut().insert(name, HeaderValue::from_static(value));
     }
     response
+}
+
+/// Receives the body of a request; a session is received by its handler, piece by piece.
+async fn receive(request: Request) -> Result<Request, Response> {
+    if request.method() == Method::GET || request.uri().path() == "/sessions" {
+        return Ok(request);
+    }
+    let (head, body) = request.into_parts();
+    let mut whole = Vec::new();
+    body::read(body, body::REQUEST_MB, |part| {
+        whole.extend(part);
+        Ok(())
+    })
+    .await?;
+    Ok(Request::from_parts(head, Body::from(whole)))
 }
 
 impl IntoResponse for Refused {

@@ -128,7 +128,12 @@ impl Sessions {
             if read.starts {
                 replica.start();
             }
-            replica.step(&read.sample, &mut row);
+            if read.is_comparable() {
+                replica.step(&read.sample, &mut row);
+            }
+            if !read.is_recorded() {
+                continue;
+            }
             if let Some(estimate) = read.board.and_then(|board| board.estimate) {
                 row.set_estimate(&estimate.segments);
             }

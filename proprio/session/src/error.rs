@@ -32,9 +32,12 @@ pub enum Error {
     /// An output that would replace its own input.
     #[error("{}: is read by this command and cannot be its output as well", .0.display())]
     Overwrite(PathBuf),
-    /// An output that would replace a file which cannot be made again.
-    #[error("{}: is there already, and a recording cannot be had again", .0.display())]
+    /// An output that would replace a file unasked.
+    #[error("{}: is there already and is not replaced", .0.display())]
     Exists(PathBuf),
+    /// A recording that would replace a file.
+    #[error("{}: is there already, and a recording replaces no file", .0.display())]
+    RecordingExists(PathBuf),
     /// A name without the ending of a kind of file.
     #[error("{}: ends with none of .csv, .mcap and .bin, which select the format", .0.display())]
     OutputKind(PathBuf),

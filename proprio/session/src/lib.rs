@@ -49,7 +49,7 @@ pub use duration::{DurationError, check_seconds};
 pub use ellipse::{CHI2_2_95, Ellipse};
 pub use error::Error;
 pub use header::Header;
-pub use output::{OutputFile, discard_unfinished};
+pub use output::{Existing, OutputFile, WrittenFile, discard_unfinished, is_stdout};
 pub use pressures::{PressurePoint, read_pressures};
 pub use progress::{NoProgress, Progress};
 pub use reader::SessionReader;

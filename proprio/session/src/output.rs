@@ -1,5 +1,6 @@
-//! Output files that are complete or absent.
+//! Output files that are complete or absent, and replace no other file unasked.
 
+use std::fmt;
 use std::fs;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -9,49 +10,104 @@ use tempfile::NamedTempFile;
 
 use crate::Error;
 
+/// Treatment of a file that has the name of an output already.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Existing {
+    /// It stays, and the output is refused, unless the file is empty.
+    Keep,
+    /// The complete output replaces it.
+    Replace,
+}
+
+/// True for the name of an output that stands for standard output: `-`.
+#[must_use]
+pub fn is_stdout(path: &Path) -> bool {
+    path == Path::new("-")
+}
+
 /// An output file that is written under a temporary name and renamed when it is complete.
 ///
-/// A pipe or device of that name is written to directly.
+/// A pipe or device of that name is written to directly, and so is standard output.
 pub struct OutputFile {
     path: PathBuf,
+    existing: Existing,
     sink: Sink,
+    bytes: u64,
+}
+
+/// A complete output.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct WrittenFile {
+    /// Its name.
+    pub path: PathBuf,
+    /// Its length, bytes.
+    pub bytes: u64,
+}
+
+impl fmt::Display for WrittenFile {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {} bytes written", self.path.display(), self.bytes)
+    }
 }
 
 enum Sink {
     Aside(BufWriter<NamedTempFile>),
     Direct(BufWriter<fs::File>),
+    Stdout(BufWriter<io::Stdout>),
 }
 
 impl OutputFile {
-    /// Begins a file that is to be named `path`; an existing file of that name stays until [`OutputFile::finish`]. It must
-    /// not be one of the `inputs` that it is made from: a recording cannot be made again.
+    /// Begins a file that is to be named `path`, or standard output for `-`. It must not be one of the `inputs` that it is
+    /// made from: a recording cannot be made again.
     ///
     /// # Errors
-    /// [`Error::Overwrite`], and [`Error::Output`] where the folder does not exist or cannot be written to.
-    pub fn create(path: &Path, inputs: &[&Path]) -> Result<Self, Error> {
+    /// [`Error::Overwrite`], [`Error::Exists`], and [`Error::Output`] where the folder does not exist or cannot be written to.
+    pub fn create(path: &Path, inputs: &[&Path], existing: Existing) -> Result<Self, Error> {
+        if is_stdout(path) {
+            let sink = Sink::Stdout(BufWriter::new(io::stdout()));
+            return Ok(Self { path: PathBuf::from("standard output"), existing, sink, bytes: 0 });
+        }
         let same =
             |input: &&Path| fs::canonicalize(input).is_ok_and(|input| fs::canonicalize(path).is_ok_and(|p| p == input));
         if inputs.iter().any(same) {
             return Err(Error::Overwrite(path.to_owned()));
         }
+        existing.check(path)?;
+        // A file that is there may be replaced from here on, also one that this command's own standard output fills.
+        let existing = if path.exists() { Existing::Replace } else { existing };
         let target = target(path);
         let sink = Sink::open(&target).map_err(|source| Error::Output { path: path.to_owned(), source })?;
-        Ok(Self { path: target, sink })
+        Ok(Self { path: target, existing, sink, bytes: 0 })
     }
 
     /// Completes the file and gives it its name.
     ///
     /// # Errors
-    /// [`Error::Output`] where the disk is full or the file cannot be renamed; no temporary file is left.
-    pub fn finish(self) -> Result<(), Error> {
-        let path = self.path;
-        self.sink.finish(&path).map_err(|source| Error::Output { path, source })
+    /// [`Error::Output`] where the disk is full or the file cannot be renamed, [`Error::Exists`] where another program has
+    /// made a file of this name meanwhile; no temporary file is left.
+    pub fn finish(self) -> Result<WrittenFile, Error> {
+        let Self { path, existing, sink, bytes } = self;
+        if let Sink::Aside(_) = &sink {
+            existing.check(&path)?;
+        }
+        match sink.finish(&path) {
+            Ok(()) => Ok(WrittenFile { path, bytes }),
+            Err(source) => Err(Error::Output { path, source }),
+        }
     }
 
     /// An [`Error::Output`] of this file.
     #[must_use]
     pub fn error(&self, source: io::Error) -> Error {
         Error::Output { path: self.path.clone(), source }
+    }
+}
+
+impl Existing {
+    /// Refuses a file that would be replaced unasked.
+    fn check(self, path: &Path) -> Result<(), Error> {
+        let is_filled = fs::metadata(path).is_ok_and(|found| found.is_file() && found.len() > 0);
+        if self == Self::Keep && is_filled { Err(Error::Exists(path.to_owned())) } else { Ok(()) }
     }
 }
 
@@ -107,6 +163,7 @@ impl Sink {
     fn finish(self, path: &Path) -> io::Result<()> {
         match self {
             Self::Direct(mut file) => file.flush(),
+            Self::Stdout(mut stdout) => ignore_closed_reader(stdout.flush()),
             Self::Aside(file) => {
                 let file = file.into_inner().map_err(io::IntoInnerError::into_error)?;
                 file.as_file().sync_all()?;
@@ -118,16 +175,28 @@ impl Sink {
 
 impl Write for OutputFile {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        match &mut self.sink {
+        let count = match &mut self.sink {
             Sink::Aside(file) => file.write(bytes),
             Sink::Direct(file) => file.write(bytes),
-        }
+            Sink::Stdout(stdout) => ignore_closed_reader(stdout.write_all(bytes)).map(|()| bytes.len()),
+        }?;
+        self.bytes += count as u64;
+        Ok(count)
     }
 
     fn flush(&mut self) -> io::Result<()> {
         match &mut self.sink {
             Sink::Aside(file) => file.flush(),
             Sink::Direct(file) => file.flush(),
+            Sink::Stdout(stdout) => ignore_closed_reader(stdout.flush()),
         }
+    }
+}
+
+/// The result of a write to standard output, whose reader may close it early, as `head` does.
+fn ignore_closed_reader(written: io::Result<()>) -> io::Result<()> {
+    match written {
+        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
+        written => written,
     }
 }

@@ -60,6 +60,8 @@ pub struct BoardOutput {
     pub at: HostNs,
     /// Every sample since the estimator's start was received, so that a replica of the estimator gives the same result.
     pub complete: bool,
+    /// False for a sample from before the begin of the recording, which is there for the state of the estimator alone.
+    pub recorded: bool,
     /// The board's estimate, where it was received.
     pub estimate: Option<telemetry::Estimate>,
     /// Uncertainty of the estimate, where the board has sent one.
@@ -69,6 +71,18 @@ pub struct BoardOutput {
 }
 
 impl Row {
+    /// True where the row is part of the session: all but those from before the begin of a recording.
+    #[must_use]
+    pub fn is_recorded(&self) -> bool {
+        self.board.is_none_or(|board| board.recorded)
+    }
+
+    /// True where an estimator over the rows has the state of the board's, or there is no board.
+    #[must_use]
+    pub fn is_comparable(&self) -> bool {
+        self.board.is_none_or(|board| board.complete)
+    }
+
     /// True bend angle of segment `i` (from 0), rad: the difference of neighbouring headings, within ±π.
     #[must_use]
     pub fn true_theta(&self, i: usize) -> Option<f64> {

@@ -24,6 +24,8 @@ pub struct RowAssembler {
     base_us: u64,
     /// Every sample since the estimator's start was received.
     complete: bool,
+    /// The samples are from before the begin of a recording.
+    is_history: bool,
 }
 
 /// The last sample, and the state of the stream at it.
@@ -77,6 +79,11 @@ impl RowAssembler {
     /// Notes that the line was opened (again): the next sample is no repetition.
     pub fn line_opened(&mut self) {
         self.boots.opened();
+    }
+
+    /// Sets whether the next samples are part of a recording, or from before its begin.
+    pub(crate) fn set_recorded(&mut self, is_recorded: bool) {
+        self.is_history = !is_recorded;
     }
 
     /// Takes the row of the last sample where its estimate has arrived already, for display without delay.
@@ -134,6 +141,7 @@ impl RowAssembler {
                 time_us: sample.time_us,
                 at,
                 complete: self.complete,
+                recorded: !self.is_history,
                 estimate: None,
                 uncertainty: None,
                 contact: None,

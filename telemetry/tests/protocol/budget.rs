@@ -19,6 +19,8 @@ fn longest_frame(message: &Message) -> usize {
         Message::Event(_) => 22,
         Message::Reply(_) => 17,
         Message::Uncertainty(_) => 119,
+        Message::Table(_) => 36,
+        Message::TableData(_) => 177,
     }
 }
 
@@ -27,7 +29,7 @@ fn frames_are_as_long_as_the_protocol_page_says() {
     for message in longest_messages() {
         assert_eq!(encode(&mut Encoder::new(), &message).len(), longest_frame(&message), "{message:?}");
     }
-    assert_eq!(encode(&mut Encoder::new(), &longest_request()).len(), 49);
+    assert_eq!(encode(&mut Encoder::new(), &longest_request()).len(), 183);
 }
 
 #[test]
@@ -40,7 +42,7 @@ fn the_stream_leaves_a_fifth_of_the_line_free_at_worst() {
                 Message::Health(_) => 5,
                 Message::Uncertainty(_) => 4,
                 Message::Hello(_) => 1,
-                Message::Event(_) | Message::Reply(_) => 0,
+                Message::Event(_) | Message::Reply(_) | Message::Table(_) | Message::TableData(_) => 0,
             };
             per_second * encode(&mut Encoder::new(), message).len()
         })
@@ -66,7 +68,7 @@ struct Later(usize);
 
 impl Payload for Later {
     fn topic(&self) -> u8 {
-        8
+        10
     }
 
     fn write(&self, body: &mut [u8]) -> Option<usize> {
@@ -83,7 +85,7 @@ impl Payload for Later {
 fn the_longest_frame_arrives_and_a_longer_one_is_refused() {
     let frame = encode(&mut Encoder::new(), &Later(245));
     assert_eq!(frame.len(), MAX_FRAME);
-    assert_eq!(decode(&mut Decoder::<Message>::new(), &frame), [Err(DecodeError::Topic(8))]);
+    assert_eq!(decode(&mut Decoder::<Message>::new(), &frame), [Err(DecodeError::Topic(10))]);
     assert_eq!(Encoder::new().encode(&Later(246), &mut [0; 2 * MAX_FRAME]), Err(EncodeError::Room));
 }
 
@@ -91,6 +93,6 @@ proptest! {
     #[test]
     fn no_message_is_longer_than_the_longest(message in message(), request in request()) {
         prop_assert!(encode(&mut Encoder::new(), &message).len() <= longest_frame(&message));
-        prop_assert!(encode(&mut Encoder::new(), &request).len() <= 49);
+        prop_assert!(encode(&mut Encoder::new(), &request).len() <= 183);
     }
 }

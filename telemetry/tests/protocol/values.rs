@@ -20,6 +20,8 @@ pub fn message() -> impl Strategy<Value = Message> {
         event().prop_map(Message::Event),
         reply().prop_map(Message::Reply),
         uncertainty().prop_map(Message::Uncertainty),
+        table_state().prop_map(Message::Table),
+        chunk().prop_map(Message::TableData),
     ]
 }
 
@@ -30,7 +32,34 @@ pub fn request() -> impl Strategy<Value = Request> {
     let pressures = (prop::array::uniform(number!(u32)), number!(u16))
         .prop_map(|(pressures_pa, valid_ms)| Command::SetPressures(SetPressures { pressures_pa, valid_ms }));
     let plain = select(vec![Command::Ping, Command::Tare, Command::Arm, Command::Disarm, Command::Reboot]);
-    (number!(u32), prop_oneof![plain, rates, pressures]).prop_map(|(id, command)| Request { id, command })
+    let table = prop_oneof![
+        prop::array::uniform3(number!(u32)).prop_map(|[image_bytes, source_bytes, crc]| {
+            Command::TableBegin(TableAnnouncement { image_bytes, source_bytes, crc })
+        }),
+        chunk().prop_map(Command::TableWrite),
+        number!(u32).prop_map(Command::TableRead),
+        select(vec![Command::TableCommit, Command::TableErase]),
+    ];
+    (number!(u32), prop_oneof![plain, rates, pressures, table]).prop_map(|(id, command)| Request { id, command })
+}
+
+fn chunk() -> impl Strategy<Value = TableChunk> {
+    let bytes = prop::collection::vec(any::<u8>(), 0..=TABLE_CHUNK_BYTES);
+    (number!(u32), bytes).prop_map(|(offset, bytes)| TableChunk { offset, bytes: bytes.into_iter().collect() })
+}
+
+fn table_state() -> impl Strategy<Value = TableState> {
+    let status = select(vec![
+        TableStatus::InUse,
+        TableStatus::Missing,
+        TableStatus::Damaged,
+        TableStatus::Foreign,
+        TableStatus::Unusable,
+    ]);
+    (status, prop::array::uniform5(number!(u32))).prop_map(|(status, numbers)| {
+        let [generation, image_bytes, source_bytes, crc, received_bytes] = numbers;
+        TableState { status, generation, image_bytes, source_bytes, crc, received_bytes }
+    })
 }
 
 fn text<const N: usize>() -> impl Strategy<Value = Text<N>> {
@@ -158,6 +187,14 @@ fn reply() -> impl Strategy<Value = Reply> {
         Refusal::Deadline,
         Refusal::Disarmed,
         Refusal::Busy,
+        Refusal::Armed,
+        Refusal::NoTable,
+        Refusal::TableTooLong,
+        Refusal::TableCapacity,
+        Refusal::TableImage,
+        Refusal::TableOrder,
+        Refusal::TableChecksum,
+        Refusal::Flash,
     ]);
     let outcome = prop_oneof![Just(RequestOutcome::Ack), refusal.prop_map(RequestOutcome::Nack)];
     (number!(u32), outcome).prop_map(|(id, outcome)| Reply { id, outcome })
@@ -169,7 +206,7 @@ pub fn ping(id: u32) -> Request {
 }
 
 /// Of each kind the message that takes the most bytes.
-pub fn longest_messages() -> [Message; 7] {
+pub fn longest_messages() -> [Message; 9] {
     [
         Message::Hello(longest_hello()),
         Message::Sample(Sample {
@@ -195,7 +232,20 @@ pub fn longest_messages() -> [Message; 7] {
                 in_contact: true,
             }; SEGMENTS],
         }),
+        Message::Table(TableState {
+            status: TableStatus::Unusable,
+            generation: u32::MAX,
+            image_bytes: u32::MAX,
+            source_bytes: u32::MAX,
+            crc: u32::MAX,
+            received_bytes: u32::MAX,
+        }),
+        Message::TableData(longest_chunk()),
     ]
+}
+
+fn longest_chunk() -> TableChunk {
+    TableChunk { offset: u32::MAX, bytes: [u8::MAX; TABLE_CHUNK_BYTES].into_iter().collect() }
 }
 
 fn full<const N: usize>() -> Text<N> {
@@ -239,6 +289,5 @@ fn longest_health() -> Health {
 
 /// The request that takes the most bytes.
 pub fn longest_request() -> Request {
-    let command = Command::SetPressures(SetPressures { pressures_pa: [u32::MAX; REGULATORS], valid_ms: u16::MAX });
-    Request { id: u32::MAX, command }
+    Request { id: u32::MAX, command: Command::TableWrite(longest_chunk()) }
 }

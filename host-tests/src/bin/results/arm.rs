@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use calibration_tables::{ArmFile, DriftKind, DriftToml};
 use proprio_calibration::calibrate::{Calibration, CalibrationOptions, HysteresisMode, MapMode, calibrate};
-use proprio_session::{LoadedTable, NoProgress, OutputFile};
+use proprio_session::{Existing, LoadedTable, NoProgress, OutputFile};
 use proprio_simulation::{ImuColumns, SessionWriter, Simulation};
 use rig_twin::{Motion, Scenario, Setup};
 
@@ -62,7 +62,7 @@ impl Tables {
 /// Writes the sweep of an arm of the twin.
 pub fn sweep(arm_seed: u64, folder: &Path) -> Result<PathBuf, Problem> {
     let path = folder.join(format!("sweep-{arm_seed}.csv"));
-    let mut writer = SessionWriter::new(OutputFile::create(&path, &[])?, ImuColumns::Quaternion)?;
+    let mut writer = SessionWriter::new(OutputFile::create(&path, &[], Existing::Replace)?, ImuColumns::Quaternion)?;
     for sample in Simulation::of(&setup(arm_seed, Scenario::Sweep, Motion::Swings), SESSION_S, RATE_HZ)? {
         writer.write(&sample)?;
     }

@@ -37,7 +37,7 @@ use crate::check::{Finding, SessionCheck};
 use crate::error::Error;
 use crate::metrics::ErrorMetrics;
 use crate::outcome::Outcome;
-use crate::replay::{SessionSummary, replay};
+use crate::replay::{NotComparable, SessionSummary, replay};
 use crate::session_metrics::{AllMetrics, ByMethod, SessionMetrics};
 use crate::smooth;
 
@@ -115,7 +115,9 @@ impl<'t> ReportBuilder<'t> {
         let visit = |row: &Row, outcome: &Outcome<Q>| {
             check.update(row);
             errors.add(row, outcome);
-            drift.add(row, outcome);
+            if row.is_comparable() {
+                drift.add(row, outcome);
+            }
             tip_errors.add(row, outcome);
             shapes.add(row, outcome);
             readings.add(row);
@@ -201,7 +203,10 @@ impl<'t> ReportBuilder<'t> {
                     .to_owned(),
             );
         }
-        for Session { name, errors, .. } in &self.sessions {
+        for Session { name, errors, summary, .. } in &self.sessions {
+            if summary.not_comparable > 0 {
+                missing.push(format!("{name}: {}; their drift is not shown.", NotComparable(summary)));
+            }
             let has_tips = Method::ALL.iter().any(|method| errors.tips(*method).count() > 0);
             let has_angles = errors.metrics().iter().any(|figures| figures.theta_rmse_deg.is_some());
             match (has_tips, has_angles) {

@@ -41,7 +41,8 @@ use crate::error::Error;
 use crate::outcome::Outcome;
 use crate::replay::{SessionRows, SessionSummary};
 
-/// Replays a session with its smoothed estimates, and passes every row with its outcome to `visit`.
+/// Replays a session with its smoothed estimates, and passes every row with its outcome to `visit`, but those from before the
+/// begin of a recording.
 ///
 /// # Errors
 /// [`Error::NotSmoothed`] where the table has no bias filter; else as [`replay`](crate::replay::replay).
@@ -62,6 +63,7 @@ pub fn replay<S: FusedOps>(
         forward.add(&row);
     }
     drop(rows);
+    let mut visit = |row: &Row, outcome: &Outcome<S>| if row.is_recorded() { visit(row, outcome) } else { Ok(()) };
     let mut smoothing = SmoothingPass::new(&config, forward.finish());
     let mut rows = SessionRows::open(session, table, "smoothing", progress)?;
     while let Some(row) = rows.next_row()? {

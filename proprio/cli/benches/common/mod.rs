@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
 use calibration_tables::ArmFile;
-use proprio_session::{LoadedTable, OutputFile};
+use proprio_session::{Existing, LoadedTable, OutputFile};
 use proprio_simulation::{ImuColumns, SessionWriter, Simulation};
 use rig_twin::Scenario;
 
@@ -16,7 +16,7 @@ pub fn session(seconds: u32, rate_hz: u32) -> PathBuf {
     let folder = FOLDER.get_or_init(|| tempfile::tempdir().expect("a temporary folder"));
     let path = folder.path().join(format!("{seconds}-s-at-{rate_hz}-Hz.csv"));
     if !path.exists() {
-        let file = OutputFile::create(&path, &[]).expect("a session file");
+        let file = OutputFile::create(&path, &[], Existing::Keep).expect("a session file");
         let mut writer = SessionWriter::new(file, ImuColumns::Deg).expect("room on the disk");
         let run = Simulation::new(Scenario::FreeSwing, 1, f64::from(seconds), f64::from(rate_hz)).expect("a valid run");
         for sample in run {

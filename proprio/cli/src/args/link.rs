@@ -6,6 +6,8 @@ use clap::{Args, Subcommand};
 use proprio_link::Baud;
 use telemetry::REGULATORS;
 
+use super::force::ForceArgs;
+
 /// Selection of a board.
 #[derive(Debug, Args)]
 pub struct LinkArgs {
@@ -57,6 +59,8 @@ pub enum TableCommand {
         /// File to write; -: standard output
         #[arg(short, long, value_name = "TABLE.toml")]
         output: PathBuf,
+        #[command(flatten)]
+        force: ForceArgs,
         #[command(flatten)]
         link: LinkArgs,
     },
@@ -174,8 +178,10 @@ pub struct MonitorArgs {
 pub struct ConvertArgs {
     /// Session: CSV, recording or raw bytes (.bin)
     pub input: PathBuf,
-    /// File to write: .csv, .mcap or .bin
+    /// File to write: .csv, .mcap or .bin; - writes CSV to standard output
     pub output: PathBuf,
+    #[command(flatten)]
+    pub force: ForceArgs,
 }
 
 #[derive(Debug, Args)]
@@ -185,4 +191,6 @@ pub struct RecoverArgs {
     /// Recording to write
     #[arg(short, long, value_name = "WHOLE.mcap")]
     pub output: PathBuf,
+    #[command(flatten)]
+    pub force: ForceArgs,
 }

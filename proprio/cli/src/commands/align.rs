@@ -10,7 +10,7 @@ use crate::terminal;
 
 pub fn run(args: &AlignArgs) -> Result<(), Error> {
     let arm = LoadedTable::load(&args.arm)?;
-    let mut file = OutputFile::create(&args.output, &[&args.session, &args.camera, &args.arm])?;
+    let mut file = OutputFile::create(&args.output, &[&args.session, &args.camera, &args.arm], args.force.existing())?;
     let alignment = align(&args.session, &args.camera, &arm, &mut Bar::new())?;
     for (path, ends_with_line) in [&args.session, &args.camera].into_iter().zip(alignment.report.end_with_line) {
         if !ends_with_line {
@@ -19,8 +19,9 @@ pub fn run(args: &AlignArgs) -> Result<(), Error> {
     }
     let written = alignment.write(&args.session, &mut file)?;
     // Last, so that a command that fails leaves no file.
-    terminal::print(&text(&alignment.report, written))?;
-    Ok(file.finish()?)
+    terminal::print_beside(Some(&args.output), &text(&alignment.report, written))?;
+    terminal::eprint_line(&file.finish()?);
+    Ok(())
 }
 
 fn text(report: &AlignmentReport, Written { rows, with_truth }: Written) -> String {

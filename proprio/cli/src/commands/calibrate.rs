@@ -15,7 +15,7 @@ use crate::text_tables;
 pub fn run(args: &CalibrateArgs) -> Result<(), Error> {
     let arm = LoadedTable::load(&args.arm)?;
     let inputs: Vec<&Path> = args.sessions.iter().chain([&args.arm]).map(PathBuf::as_path).collect();
-    let mut file = OutputFile::create(&args.output, &inputs)?;
+    let mut file = OutputFile::create(&args.output, &inputs, args.force.existing())?;
     let options = CalibrationOptions { maps: args.map.into(), hysteresis: args.hysteresis.into() };
     let calibration = calibrate(&args.sessions, &arm, options, &mut Bar::new())?;
     let names: Vec<String> = args.sessions.iter().map(|session| session.display().to_string()).collect();
@@ -24,12 +24,12 @@ pub fn run(args: &CalibrateArgs) -> Result<(), Error> {
     }
     file.write_all(calibration.table.to_toml().as_bytes()).map_err(|error| file.error(error))?;
     // Last, so that a command that fails leaves no file.
-    terminal::print(&text_tables::sensors(&calibration.sensors))?;
-    terminal::print(&text_tables::segments(&calibration.segments))?;
-    if let Some(held_out) = &calibration.held_out {
-        terminal::print(&text_tables::held_out(held_out))?;
+    let tables = [text_tables::sensors(&calibration.sensors), text_tables::segments(&calibration.segments)];
+    for text in tables.into_iter().chain(calibration.held_out.as_ref().map(text_tables::held_out)) {
+        terminal::print_beside(Some(&args.output), &text)?;
     }
-    Ok(file.finish()?)
+    terminal::eprint_line(&file.finish()?);
+    Ok(())
 }
 
 impl From<MapName> for MapMode {

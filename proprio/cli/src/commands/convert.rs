@@ -1,6 +1,6 @@
 //! `proprio convert`.
 
-use proprio_session::convert::convert;
+use proprio_session::convert::{Converted, convert};
 
 use crate::args::ConvertArgs;
 use crate::error::Error;
@@ -8,8 +8,10 @@ use crate::progress_bar::Bar;
 use crate::terminal;
 
 pub fn run(args: &ConvertArgs) -> Result<(), Error> {
-    for left_out in convert(&args.input, &args.output, &mut Bar::new())? {
-        terminal::warn(&format_args!("{}: {left_out}", args.output.display()));
+    let Converted { written, left_out } = convert(&args.input, &args.output, args.force.existing(), &mut Bar::new())?;
+    for left_out in left_out {
+        terminal::warn(&format_args!("{}: {left_out}", written.path.display()));
     }
+    terminal::eprint_line(&written);
     Ok(())
 }

@@ -75,7 +75,7 @@ fn warn_of_slope(path: &Path, steepest: f64, row: usize, ramp: f64) {
 
 /// Refuses the name of a file that exists, before the board is touched.
 fn check_new(path: &Path) -> Result<(), Error> {
-    if path.is_file() { Err(proprio_session::Error::Exists(path.to_owned()).into()) } else { Ok(()) }
+    if path.is_file() { Err(proprio_session::Error::RecordingExists(path.to_owned()).into()) } else { Ok(()) }
 }
 
 /// A running drive.

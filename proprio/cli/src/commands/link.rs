@@ -5,7 +5,7 @@ use std::path::Path;
 use calibration_tables::{ArmFile, PLANAR_6_TABLE};
 use estimator_core::Q;
 use proprio_link::table::{StoredTable, TableImageError};
-use proprio_link::{FileRecorder, Flash, Link, PortSource, Source, Subscription, VirtualDue};
+use proprio_link::{FileRecorder, Flash, Link, LinkError, PortSource, Source, Subscription, VirtualDue};
 use proprio_session::{HostClock, LoadedTable};
 use telemetry::TICK_HZ;
 
@@ -14,6 +14,18 @@ use crate::error::Error;
 
 /// The given table, a link to the given board, and a subscription to its events.
 pub fn open(args: &LinkArgs) -> Result<(Option<LoadedTable<'_>>, Link, Subscription), Error> {
+    open_by(args, Link::start)
+}
+
+/// The same for a link of which recordings may begin later.
+pub fn open_with_history(args: &LinkArgs) -> Result<(Option<LoadedTable<'_>>, Link, Subscription), Error> {
+    open_by(args, Link::start_with_history)
+}
+
+/// Starts a link on the board's line, with the checksum of its table.
+type Start = fn(Box<dyn Source>, Option<u32>) -> Result<(Link, Subscription), LinkError>;
+
+fn open_by(args: &LinkArgs, start: Start) -> Result<(Option<LoadedTable<'_>>, Link, Subscription), Error> {
     let table = args.table.as_deref().map(LoadedTable::load).transpose()?;
     let checksum = table.as_ref().map(|table| Ok::<_, Error>(table.compile::<Q>(TICK_HZ)?.checksum())).transpose()?;
     let source: Box<dyn Source> = if args.emulated {
@@ -22,7 +34,7 @@ pub fn open(args: &LinkArgs) -> Result<(Option<LoadedTable<'_>>, Link, Subscript
     } else {
         Box::new(PortSource::new(args.port.clone(), args.baud))
     };
-    let (link, events) = Link::start(source, checksum)?;
+    let (link, events) = start(source, checksum)?;
     Ok((table, link, events))
 }
 

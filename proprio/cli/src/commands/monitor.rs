@@ -21,11 +21,12 @@ pub fn run(args: &args::MonitorArgs) -> Result<(), Error> {
     if args.session.is_some() {
         return show(args);
     }
-    let (table, link, events) = link::open(&args.link)?;
-    let shutdown = ShutdownGuard::new();
     if args.plain {
-        return plain(&link, &events, &shutdown);
+        let (_, link, events) = link::open(&args.link)?;
+        return plain(&link, &events, &ShutdownGuard::new());
     }
+    let (table, link, events) = link::open_with_history(&args.link)?;
+    let shutdown = ShutdownGuard::new();
     let warnings = link.subscribe();
     let monitor = start(args, Some((link, events)), table)?;
     // After the end of the line the page still shows the data until then.

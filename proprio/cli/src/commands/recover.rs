@@ -14,19 +14,19 @@ use crate::terminal;
 pub fn run(args: &RecoverArgs) -> Result<ExitCode, Error> {
     let fail = |problem| SessionError { path: args.input.clone(), line: None, column: None, problem };
     let source = File::open(&args.input).map_err(|error| fail(SessionProblem::Read(error)))?;
-    let mut file = OutputFile::create(&args.output, &[&args.input])?;
+    let mut file = OutputFile::create(&args.output, &[&args.input], args.force.existing())?;
     let recovery = recover(source, &mut file).map_err(|error| match error {
         RecoverError::Read(error) => fail(SessionProblem::Read(error)).into(),
         RecoverError::Source(error) => fail(SessionProblem::Recording(error)).into(),
         RecoverError::Sink(error) => file.error(error),
     })?;
     let Some((first, last)) = recovery.times_ns else { return Err(fail(SessionProblem::NothingWhole).into()) };
-    file.finish()?;
+    let written = file.finish()?;
     warn_of_loss(args, &recovery);
     let Recovery { messages, bytes, .. } = recovery;
     let seconds = (last - first) as f64 / 1e9;
     let source = source_text(&recovery);
-    let name = args.output.display();
+    let name = written.path.display();
     terminal::eprint_line(&format_args!(
         "{name}: {messages} messages of {seconds:.3} s, {source} ({bytes} bytes read)"
     ));

@@ -7,7 +7,7 @@ use proprio_analysis::agreement::Comparison;
 use proprio_analysis::check::{Finding, SessionCheck};
 use proprio_analysis::estimates::EstimateWriter;
 use proprio_analysis::metrics::ErrorMetrics;
-use proprio_analysis::replay::{SessionSummary, replay};
+use proprio_analysis::replay::{NotComparable, SessionSummary, replay};
 use proprio_analysis::session_metrics::{AllMetrics, ByMethod, SessionMetrics};
 use proprio_analysis::{Outcome, smooth};
 use proprio_session::recording::HoleTimes;
@@ -26,7 +26,7 @@ pub fn run(args: &ReplayArgs) -> Result<(), Error> {
     }
     let table = LoadedTable::load(&args.table)?;
     let inputs: Vec<&Path> = args.sessions.iter().map(PathBuf::as_path).chain([table.path]).collect();
-    let out = args.out.as_deref().map(|out| OutputFile::create(out, &inputs)).transpose()?;
+    let out = args.out.as_deref().map(|out| OutputFile::create(out, &inputs, args.force.existing())).transpose()?;
     let mut out = out.map(|file| EstimateWriter::new(file, &table.file, args.smooth)).transpose()?;
     let metrics = if args.float {
         // The board's fixed-point estimates differ from those of floats.
@@ -42,8 +42,11 @@ pub fn run(args: &ReplayArgs) -> Result<(), Error> {
     }
     let text = if args.json { terminal::json(&metrics) } else { text_tables::replay(&metrics) };
     // The file gets its name last, so that a command that fails leaves none.
-    terminal::print(&text)?;
-    Ok(out.map_or(Ok(()), EstimateWriter::finish)?)
+    terminal::print_beside(args.out.as_deref(), &text)?;
+    if let Some(out) = out {
+        terminal::eprint_line(&out.finish()?);
+    }
+    Ok(())
 }
 
 /// Warns of the damaged parts of a recording.
@@ -102,7 +105,11 @@ fn replay_all<S: FusedOps>(
         } else {
             replay(path, table, progress, visit)
         };
-        let SessionSummary { samples, seconds, ends_with_line, holes, recording } = summary?;
+        let summary = summary?;
+        if summary.not_comparable > 0 {
+            terminal::warn(&format_args!("{}: {}", path.display(), NotComparable(&summary)));
+        }
+        let SessionSummary { samples, seconds, ends_with_line, holes, recording, .. } = summary;
         if !ends_with_line {
             terminal::warn(&format_args!("{}: {LAST_LINE}", path.display()));
         }

@@ -4,6 +4,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use estimator_core::saturations;
+use proprio_analysis::replay::NotComparable;
 use proprio_analysis::report::ReportBuilder;
 use proprio_session::{LAST_LINE, LoadedTable, OutputFile};
 
@@ -21,7 +22,7 @@ pub fn run(args: &ReportArgs) -> Result<(), Error> {
     if let Some(twice) = (1..outputs.len()).find(|i| outputs[..*i].contains(&outputs[*i])) {
         return Err(Error::OutputTwice(outputs[twice].clone()));
     }
-    let create = |path: &PathBuf| OutputFile::create(path, &inputs);
+    let create = |path: &PathBuf| OutputFile::create(path, &inputs, args.force.existing());
     let page = create(&args.output)?;
     let json = args.json.as_ref().map(create).transpose()?;
     let csv = args.csv.as_ref().map(create).transpose()?;
@@ -30,6 +31,9 @@ pub fn run(args: &ReportArgs) -> Result<(), Error> {
     let mut builder = ReportBuilder::new(&table);
     for path in &args.sessions {
         let summary = builder.add(path, &mut progress)?;
+        if summary.not_comparable > 0 {
+            terminal::warn(&format_args!("{}: {}", path.display(), NotComparable(&summary)));
+        }
         for hole in &summary.holes {
             terminal::warn(&format_args!("{}: {hole}", path.display()));
         }
@@ -53,7 +57,10 @@ pub fn run(args: &ReportArgs) -> Result<(), Error> {
         files.push(written(csv, &report.csv())?);
     }
     // The files get their names last, so that a command that fails leaves none.
-    Ok(files.into_iter().try_for_each(OutputFile::finish)?)
+    for file in files {
+        terminal::eprint_line(&file.finish()?);
+    }
+    Ok(())
 }
 
 fn written(mut file: OutputFile, text: &str) -> Result<OutputFile, Error> {

@@ -10,6 +10,7 @@ use rig_twin::{Camera, Motion, Scenario, Setup};
 use crate::args::{ImuName, MotionName, ScenarioName, SimulateArgs};
 use crate::error::Error;
 use crate::progress_bar::Bar;
+use crate::terminal;
 
 pub fn run(args: &SimulateArgs) -> Result<(), Error> {
     let setup =
@@ -18,7 +19,7 @@ pub fn run(args: &SimulateArgs) -> Result<(), Error> {
     if args.camera.as_ref() == Some(&args.output) {
         return Err(Error::OutputTwice(args.output.clone()));
     }
-    let file = OutputFile::create(&args.output, &[])?;
+    let file = OutputFile::create(&args.output, &[], args.force.existing())?;
     let mut session = match &args.camera {
         None => SessionWriter::new(file, args.imu.into()),
         Some(_) => SessionWriter::without_truth(file, args.imu.into()),
@@ -26,7 +27,8 @@ pub fn run(args: &SimulateArgs) -> Result<(), Error> {
     .map_err(to_write(&args.output))?;
     let mut camera = None;
     if let Some(path) = &args.camera {
-        camera = Some(CameraWriter::new(OutputFile::create(path, &[])?).map_err(to_write(path))?);
+        let file = OutputFile::create(path, &[], args.force.existing())?;
+        camera = Some(CameraWriter::new(file).map_err(to_write(path))?);
         simulation = simulation.under(Camera::new(args.seed));
     }
 
@@ -41,8 +43,11 @@ pub fn run(args: &SimulateArgs) -> Result<(), Error> {
         done += 1;
         progress.advance("simulating", (done, total));
     }
-    camera.map_or(Ok(()), |camera| camera.into_inner().finish())?;
-    Ok(session.into_inner().finish()?)
+    drop(progress);
+    for file in camera.map(CameraWriter::into_inner).into_iter().chain([session.into_inner()]) {
+        terminal::eprint_line(&file.finish()?);
+    }
+    Ok(())
 }
 
 /// The error of a file that cannot be written.

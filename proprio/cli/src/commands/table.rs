@@ -4,7 +4,7 @@ use std::io::Write;
 use std::path::Path;
 
 use proprio_link::table::{erase, pull, push, state};
-use proprio_session::{LoadedTable, OutputFile};
+use proprio_session::{Existing, LoadedTable, OutputFile};
 use telemetry::TableStatus;
 
 use super::link;
@@ -16,7 +16,7 @@ use crate::{terminal, text_tables};
 pub fn run(command: &TableCommand) -> Result<(), Error> {
     match command {
         TableCommand::Push { file, link } => push_file(file, link),
-        TableCommand::Pull { output, link } => pull_into(output, link),
+        TableCommand::Pull { output, force, link } => pull_into(output, force.existing(), link),
         TableCommand::Show { link } => show(link),
         TableCommand::Erase { link } => {
             let (_, link, _) = link::open(link)?;
@@ -35,13 +35,12 @@ fn push_file(file: &Path, args: &LinkArgs) -> Result<(), Error> {
     terminal::print(&format!("{file}: on the board and in use, table {checksum:08x} of arm {arm}, {bytes} bytes\n"))
 }
 
-fn pull_into(output: &Path, args: &LinkArgs) -> Result<(), Error> {
+fn pull_into(output: &Path, existing: Existing, args: &LinkArgs) -> Result<(), Error> {
+    let mut file = OutputFile::create(output, &[], existing)?;
     let (_, link, _) = link::open(args)?;
     let table = pull(&link, &mut Bar::new())?;
-    let mut file = OutputFile::create(output, &[])?;
     file.write_all(table.toml.as_bytes()).map_err(|error| file.error(error))?;
-    file.finish()?;
-    terminal::eprint_line(&format_args!("table {} of the board: {}", table.generation, output.display()));
+    terminal::eprint_line(&file.finish()?);
     Ok(())
 }
 

@@ -17,7 +17,7 @@ use crate::text_tables;
 pub fn run(args: &TuneArgs) -> Result<(), Error> {
     let table = LoadedTable::load(&args.table)?;
     let inputs: Vec<&Path> = args.sessions.iter().map(PathBuf::as_path).chain([table.path]).collect();
-    let mut file = OutputFile::create(&args.output, &inputs)?;
+    let mut file = OutputFile::create(&args.output, &inputs, args.force.existing())?;
     let mut progress = Bar::new();
     let tuner = Tuner::new(&args.sessions, &table, &mut progress)?;
     for path in tuner.cut_sessions() {
@@ -29,8 +29,9 @@ pub fn run(args: &TuneArgs) -> Result<(), Error> {
     warnings(&record).for_each(|warning| terminal::warn(&warning));
     file.write_all(table.to_toml().as_bytes()).map_err(|error| file.error(error))?;
     // Last, so that a command that fails leaves no file.
-    terminal::print(&text_tables::tuning(&record, iteration_time))?;
-    Ok(file.finish()?)
+    terminal::print_beside(Some(&args.output), &text_tables::tuning(&record, iteration_time))?;
+    terminal::eprint_line(&file.finish()?);
+    Ok(())
 }
 
 /// Warnings about a tuning whose table is written.

@@ -31,7 +31,8 @@ impl Help for proprio_session::Error {
             Self::Session(error) => return error.problem.help(),
             Self::Table { source, .. } => return source.help(),
             Self::Output { .. } => "choose a folder that exists, can be written to and has room",
-            Self::Overwrite(_) | Self::Exists(_) => "give the output another name",
+            Self::Overwrite(_) | Self::RecordingExists(_) => "give the output another name",
+            Self::Exists(_) => "give the output another name, or replace the file with --force",
             Self::OutputKind(_) => "give the output one of these endings",
             Self::SameKind(_) => "copy the file, or give the output another ending",
         };
@@ -67,6 +68,10 @@ impl Help for proprio_monitor::Error {
         match self {
             Self::File(error) => error.help(),
             Self::Link(error) => error.help(),
+            Self::RecorderPanicked(_) => {
+                "save it with `proprio recover`, and report the fault, with the message above and the command"
+                    .to_owned()
+            }
             Self::Listen { .. } => "give another with --listen; is a monitor running already?".to_owned(),
             Self::Random(_) => "run the monitor without --allow-control".to_owned(),
         }

@@ -46,7 +46,7 @@ fn a_last_line_without_its_end_is_accepted() {
 #[test]
 fn a_last_line_without_its_end_is_warned_about() {
     let run = replay(session().to_string().trim_end(), &[]);
-    assert!(run.stderr.starts_with("warning: session.csv: ") && run.stderr.lines().count() == 1, "{}", run.stderr);
+    assert!(run.stderr.starts_with("warning: session.csv: ") && run.warnings().len() == 1, "{}", run.stderr);
 }
 
 #[test]
@@ -215,7 +215,7 @@ fn rounded_time_stamps_give_the_same_estimates() {
     session.map("time_s", |_, time| format!("{:.2}", time.parse::<f64>().expect("a time")));
     folder.write("rounded.csv", session.to_string());
     let estimates = |name: &str| {
-        folder.done(&["replay", &format!("{name}.csv"), "--table", table(), "--out", "est.csv"]);
+        folder.done(&["replay", &format!("{name}.csv"), "--table", table(), "--force", "--out", "est.csv"]);
         let mut estimates = folder.csv("est.csv");
         estimates.map("time_s", |_, _| String::new());
         estimates

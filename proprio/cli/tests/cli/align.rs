@@ -261,7 +261,7 @@ fn a_table_of_an_aligned_sweep_is_as_good_as_one_of_the_true_truth() {
     folder.write("true.csv", simulate(sweep).to_string());
     folder.write("other.csv", simulate("--scenario 2 --seconds 300 --seed 75").to_string());
     let fusion = |session: &str| {
-        folder.done(&["calibrate", session, "--arm", arm(), "-o", "table.toml"]);
+        folder.done(&["calibrate", session, "--arm", arm(), "--force", "-o", "table.toml"]);
         figure(
             &json(&folder.done(&["replay", "other.csv", "--table", "table.toml", "--json"])),
             "fusion",

@@ -58,9 +58,10 @@ fn true_theta_deg(session: &Csv, segment: usize) -> Vec<f64> {
 
 #[test]
 fn a_good_sweep_has_no_warning_but_that_the_segments_of_a_module_bend_alike() {
-    let stderr = Calibration::of(&sweep()).run.stderr;
-    assert_eq!(stderr.lines().count(), 1, "{stderr}");
-    assert!(stderr.contains("segments 1 and 2, 3 and 4, 5 and 6 bend alike"), "{stderr}");
+    let run = Calibration::of(&sweep()).run;
+    let warnings = run.warnings();
+    assert_eq!(warnings.len(), 1, "{warnings:?}");
+    assert!(warnings[0].contains("segments 1 and 2, 3 and 4, 5 and 6 bend alike"), "{warnings:?}");
 }
 
 #[test]

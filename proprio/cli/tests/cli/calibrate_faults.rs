@@ -15,12 +15,13 @@ fn refused(edit: impl FnOnce(&mut Csv)) -> String {
 fn warnings(edit: impl FnOnce(&mut Csv)) -> Vec<String> {
     let mut session = sweep();
     edit(&mut session);
-    let stderr = Calibration::of(&session).run.stderr;
+    let run = Calibration::of(&session).run;
+    let stderr = &run.stderr;
     let warning = |line: &str| {
         line.strip_prefix("warning: sweep.csv: ").unwrap_or_else(|| panic!("no warning: {stderr}")).to_owned()
     };
     // The two segments of the twin's modules are always coupled.
-    stderr.lines().map(warning).filter(|warning| !warning.contains("bend alike")).collect()
+    run.warnings().into_iter().map(warning).filter(|warning| !warning.contains("bend alike")).collect()
 }
 
 fn counts(cell: &str) -> u16 {

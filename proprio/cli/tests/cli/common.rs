@@ -24,6 +24,13 @@ impl From<Output> for Run {
     }
 }
 
+impl Run {
+    /// The lines on stderr other than those that name a written file.
+    pub fn warnings(&self) -> Vec<&str> {
+        self.stderr.lines().filter(|line| !line.ends_with(" bytes written")).collect()
+    }
+}
+
 /// A folder that the tool runs in.
 pub struct Folder(TempDir);
 

@@ -50,7 +50,7 @@ fn truth_goes_with_the_samples_and_the_figures_stay_the_same() {
     let run = convert(&folder, "a.csv", "a.mcap");
     assert!(!run.stderr.contains("rounded"), "{}", run.stderr);
     let figures = |name: &str| {
-        let run = folder.done(&["replay", name, "--table", table(), "--json", "--out", "est.csv"]);
+        let run = folder.done(&["replay", name, "--table", table(), "--json", "--force", "--out", "est.csv"]);
         (super::common::json(&run)["all"].clone(), folder.read("est.csv"))
     };
     let expected = figures("a.csv");

@@ -71,7 +71,7 @@ fn compensated(arm: &str, key: &str) -> [f64; 2] {
     folder.done(&["simulate", "--scenario", "sweep", "--seconds", "300", "--seed", "1", "-o", "sweep.csv"]);
     folder.write("arm.toml", arm);
     ["always", "never"].map(|hysteresis| {
-        let options = ["--map", "quadratic", "--hysteresis", hysteresis, "-o", "table.toml"];
+        let options = ["--map", "quadratic", "--hysteresis", hysteresis, "--force", "-o", "table.toml"];
         folder.done(&[&["calibrate", "sweep.csv", "--arm", "arm.toml"][..], &options].concat());
         assert_eq!(folder.read("table.toml").contains(key), hysteresis == "always", "{key}");
         let report = json(&folder.done(&["replay", "sweep.csv", "--table", "table.toml", "--json"]));

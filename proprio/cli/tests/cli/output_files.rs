@@ -10,6 +10,11 @@ fn replay_to(out: &str) -> [&str; 6] {
     ["replay", "session.csv", "--table", table(), "--out", out]
 }
 
+/// The same with `--force`.
+fn force_to(out: &str) -> [&str; 7] {
+    ["replay", "session.csv", "--table", table(), "--force", "--out", out]
+}
+
 #[test]
 fn a_complete_file_leaves_no_part_behind() {
     let folder = with_session();
@@ -21,11 +26,80 @@ fn a_complete_file_leaves_no_part_behind() {
 }
 
 #[test]
-fn an_older_file_is_replaced() {
+fn an_older_file_is_replaced_with_force() {
     let folder = with_session();
     folder.write("est.csv", "old");
-    folder.done(&replay_to("est.csv"));
+    folder.done(&force_to("est.csv"));
     assert!(folder.read("est.csv").starts_with("time_s,"));
+}
+
+#[test]
+fn no_command_replaces_a_file_unasked() {
+    let folder = with_session();
+    folder.write("old", "edited by a person");
+    folder.write("old.mcap", "edited by a person");
+    let simulate = ["simulate", "--scenario", "1", "--seconds", "1", "--seed", "1"];
+    let report = ["report", "session.csv", "--table", table()];
+    for args in [
+        &replay_to("old")[..],
+        &[&simulate[..], &["-o", "old"]].concat(),
+        &[&simulate[..], &["-o", "new", "--camera", "old"]].concat(),
+        &["align", "session.csv", "--camera", "session.csv", "--arm", arm(), "-o", "old"],
+        &["calibrate", "session.csv", "--arm", arm(), "-o", "old"],
+        &["tune", "session.csv", "--table", table(), "-o", "old"],
+        &[&report[..], &["-o", "old"]].concat(),
+        &[&report[..], &["-o", "new", "--json", "old"]].concat(),
+        &[&report[..], &["-o", "new", "--csv", "old"]].concat(),
+        &["convert", "session.csv", "old.mcap"],
+        &["recover", "session.csv", "-o", "old"],
+    ] {
+        let error = folder.refused(args);
+        assert!(error.ends_with("is there already and is not replaced"), "{args:?}: {error}");
+    }
+}
+
+/// As `mktemp` leaves one.
+#[test]
+fn an_empty_file_is_filled() {
+    let folder = Folder::with("session.csv", "");
+    folder.done(&["simulate", "--scenario", "1", "--seconds", "1", "--seed", "1", "-o", "session.csv"]);
+    assert_eq!(folder.csv("session.csv").rows.len(), 10);
+}
+
+#[test]
+fn a_command_names_each_file_that_it_has_written_and_its_length() {
+    let folder = with_session();
+    let run = folder.done(&["report", "session.csv", "--table", table(), "-o", "r.html", "--csv", "r.csv"]);
+    let line = |name: &str| format!("{name}: {} bytes written\n", folder.read(name).len());
+    assert_eq!(run.stderr, line("r.html") + &line("r.csv"));
+}
+
+#[test]
+fn a_dash_writes_the_estimates_to_standard_output_and_the_figures_to_standard_error() {
+    let folder = with_session();
+    let figures = folder.done(&replay_to("est.csv")).stdout;
+    let run = folder.done(&replay_to("-"));
+    assert_eq!(run.stdout, folder.read("est.csv"));
+    assert_eq!(run.stderr, format!("{figures}standard output: {} bytes written\n", run.stdout.len()));
+    assert!(!folder.path("-").exists());
+}
+
+#[test]
+fn a_dash_converts_to_csv() {
+    let folder = Folder::with("a.csv", super::common::quaternion_session().to_string());
+    folder.done(&["convert", "a.csv", "a.mcap"]);
+    folder.done(&["convert", "a.mcap", "b.csv"]);
+    assert_eq!(folder.done(&["convert", "a.mcap", "-"]).stdout, folder.read("b.csv"));
+}
+
+/// As `proprio simulate -o - | head -1` does when `head` has gone.
+#[test]
+fn a_reader_of_standard_output_that_goes_early_is_no_failure() {
+    let (reader, writer) = std::io::pipe().expect("the system has pipes");
+    drop(reader);
+    let folder = Folder::new();
+    let args = ["simulate", "--scenario", "1", "--seconds", "100", "--seed", "1", "-o", "-"];
+    assert!(folder.command(&args).stdout(writer).status().expect("the tool starts").success());
 }
 
 #[test]
@@ -34,7 +108,7 @@ fn an_older_file_stays_when_the_replay_fails() {
     bad.set(120, "bend1a_adc", "high");
     let folder = Folder::with("session.csv", bad.to_string());
     folder.write("est.csv", "old");
-    folder.refused(&replay_to("est.csv"));
+    folder.refused(&force_to("est.csv"));
     assert_eq!(folder.read("est.csv"), "old");
 }
 
@@ -44,7 +118,7 @@ fn an_older_table_stays_when_the_calibration_fails() {
     still.rows.truncate(40);
     let folder = Folder::with("session.csv", still.to_string());
     folder.write("table.toml", "old");
-    folder.refused(&["calibrate", "session.csv", "--arm", arm(), "-o", "table.toml"]);
+    folder.refused(&["calibrate", "session.csv", "--arm", arm(), "--force", "-o", "table.toml"]);
     assert_eq!(folder.read("table.toml"), "old");
 }
 
@@ -87,14 +161,14 @@ fn out_takes_one_session() {
 /// A slip of the hand must not cost a recording.
 #[test]
 fn the_session_itself_is_no_place_for_the_estimates() {
-    with_session().refused(&replay_to("session.csv"));
+    with_session().refused(&force_to("session.csv"));
 }
 
 #[test]
 fn the_session_by_another_name_is_no_place_for_the_estimates() {
     let folder = with_session();
     std::fs::create_dir(folder.path("sub")).expect("a temporary folder can be written to");
-    folder.refused(&replay_to("sub/../session.csv"));
+    folder.refused(&force_to("sub/../session.csv"));
 }
 
 #[cfg(unix)]
@@ -102,20 +176,20 @@ fn the_session_by_another_name_is_no_place_for_the_estimates() {
 fn a_link_to_the_session_is_no_place_for_the_estimates() {
     let folder = with_session();
     std::os::unix::fs::symlink("session.csv", folder.path("link.csv")).expect("a temporary folder can have links");
-    folder.refused(&replay_to("link.csv"));
+    folder.refused(&force_to("link.csv"));
 }
 
 #[test]
 fn the_session_itself_is_no_place_for_the_table() {
     let folder = Folder::with("sweep.csv", sweep().to_string());
-    folder.refused(&["calibrate", "sweep.csv", "--arm", arm(), "-o", "sweep.csv"]);
+    folder.refused(&["calibrate", "sweep.csv", "--arm", arm(), "--force", "-o", "sweep.csv"]);
 }
 
 #[test]
 fn the_table_itself_is_no_place_for_the_estimates() {
     let folder = with_session();
     std::fs::copy(table(), folder.path("table.toml")).expect("the reference table is committed");
-    folder.refused(&["replay", "session.csv", "--table", "table.toml", "--out", "table.toml"]);
+    folder.refused(&["replay", "session.csv", "--table", "table.toml", "--force", "--out", "table.toml"]);
 }
 
 #[cfg(target_os = "linux")]
@@ -137,7 +211,7 @@ fn a_link_stays_a_link() {
     let folder = with_session();
     folder.write("real.csv", "old");
     std::os::unix::fs::symlink("real.csv", folder.path("link.csv")).expect("a temporary folder can have links");
-    folder.done(&replay_to("link.csv"));
+    folder.done(&force_to("link.csv"));
     assert!(folder.path("link.csv").is_symlink());
     assert!(folder.read("real.csv").starts_with("time_s,"));
 }
@@ -233,7 +307,7 @@ fn a_longer_file_in_shared_memory_is_replaced_whole() {
     let shared = tempfile::Builder::new().tempdir_in("/dev/shm").expect("Linux has /dev/shm");
     let path = shared.path().join("est.csv");
     std::fs::write(&path, "old\n".repeat(1_000_000)).expect("there is room");
-    with_session().done(&replay_to(path.to_str().expect("a plain name")));
+    with_session().done(&force_to(path.to_str().expect("a plain name")));
     let estimates = std::fs::read_to_string(&path).expect("the estimates are there");
     assert!(estimates.starts_with("time_s,") && !estimates.contains("old"));
 }

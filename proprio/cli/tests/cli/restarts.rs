@@ -102,7 +102,7 @@ fn the_hysteresis_of_a_sweep_in_which_the_board_restarted_is_corrected_as_well()
 
 #[test]
 fn a_sweep_in_which_the_board_restarted_has_no_other_warning() {
-    let warnings = |session: &Csv| Calibration::of(session).run.stderr;
+    let warnings = |session: &Csv| Calibration::of(session).run.warnings().join("\n");
     assert_eq!(warnings(&restarted(sweep(), &[2000, 3333])), warnings(&sweep()));
 }
 

@@ -60,7 +60,18 @@ fn a_bias_filter_that_hardly_learns_becomes_a_better_one_for_other_runs_of_its_k
 
     folder.write("bias-filter.toml", with_bias_filter(drift, None));
     for seed in ["12", "13", "14"] {
-        folder.done(&["simulate", "--scenario", "1", "--seconds", "300", "--seed", seed, "-o", "unseen.csv"]);
+        folder.done(&[
+            "simulate",
+            "--scenario",
+            "1",
+            "--seconds",
+            "300",
+            "--seed",
+            seed,
+            "--force",
+            "-o",
+            "unseen.csv",
+        ]);
         let rmse_mm = |table| {
             let report = json(&folder.done(&["replay", "unseen.csv", "--table", table, "--json"]));
             figure(&report, "fusion", "tip_rmse_mm")
@@ -177,7 +188,18 @@ fn a_tuned_bias_filter_is_better_than_uncorrected_sensors_in_every_scenario() {
     folder.done(&["simulate", "--scenario", "1", "--seconds", "900", "--seed", "7", "-o", "session.csv"]);
     folder.done(&["tune", "session.csv", "--table", table(), "-o", "tuned.toml"]);
     for scenario in ["1", "2", "3"] {
-        folder.done(&["simulate", "--scenario", scenario, "--seconds", "900", "--seed", "12", "-o", "unseen.csv"]);
+        folder.done(&[
+            "simulate",
+            "--scenario",
+            scenario,
+            "--seconds",
+            "900",
+            "--seed",
+            "12",
+            "--force",
+            "-o",
+            "unseen.csv",
+        ]);
         let report = json(&folder.done(&["replay", "unseen.csv", "--table", "tuned.toml", "--json"]));
         let rmse_mm = |method| figure(&report, method, "tip_rmse_mm");
         let tuned = rmse_mm("fusion");

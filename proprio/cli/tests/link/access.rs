@@ -1,10 +1,13 @@
 //! Whom the live page's server answers, and for whom it drives the board.
 
+use std::io::{Read, Write};
+use std::net::{Shutdown, TcpStream};
+
 use proprio_monitor::Token;
 use telemetry::{Command, SetPressures};
 
 use super::http::Page;
-use super::line::Line;
+use super::line::{Line, PATIENCE};
 
 #[test]
 fn only_this_machine_s_own_names_are_answered() {
@@ -100,6 +103,78 @@ fn the_board_s_refusal_is_returned() {
     let answer = page.request("POST", "/control", &headers, r#""arm""#);
     assert_eq!(answer.status, 409);
     assert!(answer.text().contains("not armed"), "{}", answer.text());
+}
+
+#[test]
+fn a_wrong_token_is_refused_when_the_page_is_unlocked() {
+    let line = Line::new();
+    let token = Token::new().expect("the system has random numbers");
+    let page = Page::of(&line, Some(token.clone()));
+    let unlock = |token: &str| {
+        let (host, origin, token) = (page.host(), page.origin(), format!("Bearer {token}"));
+        let headers = [("Host", &*host), ("Origin", &*origin), ("Authorization", &*token)];
+        page.request("POST", "/unlock", &headers, "null").status
+    };
+    assert_eq!(page.post("/unlock", "null").status, 401);
+    assert_eq!((unlock("0"), unlock(&token.to_string())), (401, 200));
+    let watched = Page::of(&Line::new(), None);
+    assert_eq!(watched.post("/unlock", "null").status, 403);
+}
+
+#[test]
+fn a_request_of_a_page_that_has_gone_is_dropped() {
+    let line = Line::new();
+    line.board().answers_lost = usize::MAX;
+    let token = Token::new().expect("the system has random numbers");
+    let page = Page::of(&line, Some(token.clone()));
+    let body = r#""arm""#;
+    let head = format!("POST /control HTTP/1.1\r\nHost: {}\r\nOrigin: {}\r\n", page.host(), page.origin());
+    let length = body.len();
+    let mut stream = TcpStream::connect(page.monitor.address()).expect("it listens");
+    let request = format!("{head}Authorization: Bearer {token}\r\nContent-Length: {length}\r\n\r\n{body}");
+    stream.write_all(request.as_bytes()).expect("it listens");
+    stream.shutdown(Shutdown::Write).expect("it is open");
+    let mut answer = Vec::new();
+    stream.read_to_end(&mut answer).expect("the server closes it");
+    line.board().answers_lost = 0;
+    page.wait_for_status(|status| status["answers"] == true);
+    // Requests are sent in their order.
+    page.monitor.finish().expect("nothing was recorded");
+    let done = line.board().done.clone();
+    assert!(done.contains(&Command::Disarm) && !done.contains(&Command::Arm), "{done:?}");
+}
+
+/// The first two as of a program that stops in the middle, the third of a session that would fill the disk.
+#[test]
+fn half_a_request_times_out_and_a_huge_one_is_refused_at_once() {
+    let page = Page::of(&Line::new(), None);
+    let (host, origin) = (page.host(), page.origin());
+    let post = |path: &str, length: u64| {
+        format!("POST {path} HTTP/1.1\r\nHost: {host}\r\nOrigin: {origin}\r\nContent-Length: {length}\r\n\r\n")
+    };
+    let answer = |request: String| {
+        let mut stream = TcpStream::connect(page.monitor.address()).expect("it listens");
+        stream.set_read_timeout(Some(PATIENCE)).expect("a timeout");
+        stream.write_all(request.as_bytes()).expect("it listens");
+        let mut answer = String::new();
+        // Without a timeout of the server this fails after ours.
+        stream.read_to_string(&mut answer).expect("the server closes it");
+        answer
+    };
+    std::thread::scope(|scope| {
+        let head = scope.spawn(|| answer("GET / HTTP/1.1\r\nHo".to_owned()));
+        let body = scope.spawn(|| answer(post("/record", 11) + "{\"on"));
+        let session = scope.spawn(|| answer(post("/sessions?name=a.csv", 100) + "time_s"));
+        let huge = answer(post("/sessions?name=a.csv", 2_000_000_001));
+        assert!(huge.starts_with("HTTP/1.1 413 ") && huge.contains("2000 MB"), "{huge}");
+        let long = answer(post("/record", 1_000_001));
+        assert!(long.starts_with("HTTP/1.1 413 "), "{long}");
+        assert_eq!(head.join().expect("it was closed"), "");
+        for half in [body, session] {
+            let half = half.join().expect("it was closed");
+            assert!(half.starts_with("HTTP/1.1 408 ") && half.contains("within 10 s"), "{half}");
+        }
+    });
 }
 
 #[test]

@@ -58,7 +58,7 @@ impl Page {
     }
 
     pub fn with_table(line: &Line, token: Option<Token>, table: Option<LoadedTable>) -> Self {
-        let live = Link::start(Box::new(line.clone()), None).expect("memory opens");
+        let live = Link::start_with_history(Box::new(line.clone()), None).expect("memory opens");
         let folder = tempfile::tempdir().expect("there is room for a temporary folder");
         let options = Options {
             port: 0,

@@ -39,6 +39,12 @@ impl Board {
         self.to_host.extend(frame);
     }
 
+    /// Sends a frame that is lost on its way.
+    pub fn lose_frame(&mut self) {
+        let mut buffer = [0; MAX_FRAME];
+        self.encoder.encode(&Message::Hello(hello(1)), &mut buffer).expect("it fits");
+    }
+
     /// Restarts the board: frames are numbered from 0, and no request is stored.
     pub fn restart(&mut self, boot: u32) {
         (self.encoder, self.server) = (Encoder::new(), board_core::CommandServer::new());
@@ -48,15 +54,15 @@ impl Board {
 
     fn receive(&mut self, byte: u8) {
         let Some(Ok(request)) = self.requests.push(byte) else { return };
-        self.received.push(request);
+        self.received.push(request.clone());
         let tick = (self.began.elapsed().as_millis() / 10) as u32;
         let (done, refuses) = (&mut self.done, self.refuses);
         let reply = self.server.answer(&request, tick, |command| {
-            if refuses && command != Command::Ping {
+            if refuses && *command != Command::Ping {
                 return Err(telemetry::Refusal::Disarmed);
             }
-            done.push(command);
-            Ok(())
+            done.push(command.clone());
+            Ok(board_core::Execution::Done)
         });
         let Some(reply) = reply else { return };
         if self.answers_lost > 0 {

@@ -4,6 +4,7 @@
 mod access;
 mod flashed;
 mod http;
+mod late_recordings;
 mod line;
 mod mismatches;
 mod noise;

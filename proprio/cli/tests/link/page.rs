@@ -206,6 +206,19 @@ fn what_is_recorded_from_the_page_is_all_that_came_even_if_no_page_keeps_up() {
 }
 
 #[test]
+fn the_samples_at_the_end_of_a_recording_are_those_in_its_file() {
+    let line = Line::new();
+    let page = Page::of(&line, None);
+    line.board().restart(1);
+    page.post("/record", r#"{"on":true}"#);
+    send_ticks(&line, 0..2000);
+    // All have arrived, and may wait in the recorder's queue.
+    page.wait_for_status(|_| page.get("/history").about()["rows"] == 2000);
+    let done: serde_json::Value = serde_json::from_slice(&page.post("/record", r#"{"on":false}"#).body).expect("JSON");
+    assert_eq!(done["samples"], 2000);
+}
+
+#[test]
 fn a_recording_is_completed_when_the_monitor_ends() {
     let line = Line::new();
     let page = Page::of(&line, None);

@@ -1,11 +1,19 @@
 //! Requests: acknowledged, repeated, refused, given up.
 
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use proprio_link::{EventKind, Link, LinkError, RequestError};
 use telemetry::{Command, Message, Refusal};
 
-use super::line::{Line, hello, sample, wait_for};
+use super::line::{Line, PATIENCE, hello, sample, wait_for};
+
+fn wait_until(is_so: impl Fn() -> bool) {
+    let end = Instant::now() + PATIENCE;
+    while !is_so() {
+        assert!(Instant::now() < end, "it never came");
+        std::thread::sleep(Duration::from_millis(1));
+    }
+}
 
 fn start(line: &Line) -> (Link, proprio_link::Subscription) {
     Link::start(Box::new(line.clone()), None).expect("memory opens")
@@ -56,6 +64,22 @@ fn a_board_that_does_not_answer_is_given_up() {
     assert!(matches!(given_up, Err(LinkError::Request(RequestError::NoAnswer))), "{given_up:?}");
 }
 
+#[test]
+fn a_request_that_was_given_up_does_not_reach_a_board_that_answers_later() {
+    let line = Line::new();
+    line.board().answers_lost = usize::MAX;
+    let (link, _events) = start(&line);
+    let given_up = link.request(Command::Arm);
+    assert!(matches!(given_up, Err(LinkError::Request(RequestError::NoAnswer))), "{given_up:?}");
+    line.board().answers_lost = 0;
+    wait_until(|| link.state().is_connected);
+    link.request(Command::Tare).expect("it is done");
+    assert_eq!(
+        line.board().done.iter().filter(|command| **command != Command::Ping).collect::<Vec<_>>(),
+        [&Command::Tare]
+    );
+}
+
 /// To arm must not outlive the run of the board that it was meant for.
 #[test]
 fn a_request_does_not_outlive_a_restart() {
@@ -91,6 +115,7 @@ fn a_board_that_has_seen_higher_ids_is_greeted_after_its_pause() {
     }
     drop(first);
     let (second, _events) = start(&line);
+    wait_until(|| second.state().is_connected);
     second.request(Command::Disarm).expect("it is done");
     assert_eq!(line.board().done.last(), Some(&Command::Disarm));
 }

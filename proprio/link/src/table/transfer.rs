@@ -1,5 +1,6 @@
 //! Transfer of a table to a board and back.
 
+use std::collections::VecDeque;
 use std::io;
 use std::time::{Duration, Instant};
 
@@ -12,7 +13,7 @@ use telemetry::{
 use super::stored::{StoredTable, expand};
 use crate::error::LinkError;
 use crate::event::EventKind;
-use crate::handle::Link;
+use crate::handle::{Link, PendingRequest};
 use crate::requests::RequestError;
 use crate::shared::Subscription;
 
@@ -21,6 +22,9 @@ const MESSAGE: Duration = Duration::from_secs(2);
 
 /// Longest wait for the `Hello` of a board that restarts with another table.
 const RESTART: Duration = Duration::from_secs(5);
+
+/// Pieces that wait in the link's queue.
+const PENDING: usize = 4;
 
 /// Number of times that an interrupted transfer is resumed.
 const RESUMPTIONS: u32 = 5;
@@ -68,6 +72,7 @@ pub struct PulledTable {
 /// # Errors
 /// [`TransferError`]: the board goes on with the table that it had.
 pub fn push(link: &Link, table: &StoredTable, progress: &mut dyn Progress) -> Result<Hello, TransferError> {
+    link.wait_until_connected()?;
     let events = link.subscribe();
     let announced = table.announcement();
     let announcement = TableAnnouncement {
@@ -81,9 +86,9 @@ pub fn push(link: &Link, table: &StoredTable, progress: &mut dyn Progress) -> Re
         link.request(Command::TableBegin(announcement))?;
         let state = next_state(&events)?;
         match send(link, &body, state.received_bytes as usize, progress) {
-            Err(LinkError::Request(RequestError::Refused(Refusal::TableOrder) | RequestError::Interrupted))
-                if resumptions < RESUMPTIONS =>
-            {
+            Err(LinkError::Request(
+                RequestError::Refused(Refusal::TableOrder | Refusal::Late) | RequestError::Interrupted,
+            )) if resumptions < RESUMPTIONS => {
                 resumptions += 1;
             }
             result => break result?,
@@ -97,14 +102,19 @@ pub fn push(link: &Link, table: &StoredTable, progress: &mut dyn Progress) -> Re
 
 /// Sends the body from an offset on.
 fn send(link: &Link, body: &[u8], from: usize, progress: &mut dyn Progress) -> Result<(), LinkError> {
+    // The link sends pieces ahead of their replies; a few that wait here keep it busy.
+    let mut pending = VecDeque::new();
     let mut offset = from;
-    while let Some(rest) = body.get(offset..).filter(|rest| !rest.is_empty()) {
-        let bytes = rest.iter().take(TABLE_CHUNK_BYTES).copied().collect();
-        link.request(Command::TableWrite(TableChunk { offset: offset as u32, bytes }))?;
-        offset += rest.len().min(TABLE_CHUNK_BYTES);
+    for piece in body.get(from..).unwrap_or_default().chunks(TABLE_CHUNK_BYTES) {
+        let chunk = TableChunk { offset: offset as u32, bytes: piece.iter().copied().collect() };
+        pending.push_back(link.begin_request(Command::TableWrite(chunk)));
+        offset += piece.len();
+        if pending.len() > PENDING {
+            pending.pop_front().map_or(Ok(()), PendingRequest::wait)?;
+        }
         progress.advance("table", (offset as u64, body.len() as u64));
     }
-    Ok(())
+    pending.into_iter().try_for_each(PendingRequest::wait)
 }
 
 /// Reads the table of a board.
@@ -144,6 +154,7 @@ pub fn pull(link: &Link, progress: &mut dyn Progress) -> Result<PulledTable, Tra
 /// # Errors
 /// [`TransferError`]; a board of an earlier version sends no state.
 pub fn state(link: &Link) -> Result<TableState, TransferError> {
+    link.wait_until_connected()?;
     let events = link.subscribe();
     link.request(Command::Ping)?;
     next_state(&events)
@@ -154,6 +165,7 @@ pub fn state(link: &Link) -> Result<TableState, TransferError> {
 /// # Errors
 /// [`TransferError`].
 pub fn erase(link: &Link) -> Result<Hello, TransferError> {
+    link.wait_until_connected()?;
     let events = link.subscribe();
     link.request(Command::TableErase)?;
     next_hello(&events)

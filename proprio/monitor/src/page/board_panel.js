@@ -23,10 +23,11 @@ const signed = (value) => (value < 0 ? '' : '+') + minus(value.toFixed(1));
 
 const drift = (of) => (of ? `${signed(of.board_ppm)} ± ${of.error_ppm.toFixed(1)} ppm fast, over ${of.seconds.toFixed(0)} s` : 'drift known after 40 s');
 
-function recording({ file, samples, marks, dropped_events, failed }) {
+function recording({ file, is_comparable, samples, marks, dropped_events, failed }) {
   if (failed) return `${file} FAILED: ${failed}`;
   const dropped = dropped_events ? `, ${dropped_events} events not written` : '';
-  return `${file}, ${samples} samples, ${marks} marks${dropped}`;
+  const tare = is_comparable ? '' : ', cannot be compared with a replay before the next tare';
+  return `${file}, ${samples} samples, ${marks} marks${dropped}${tare}`;
 }
 
 export class BoardPanel {

@@ -17,7 +17,7 @@ export class Control {
     this.isDriving = false;
     this.part('#unlock').addEventListener('submit', (event) => {
       event.preventDefault();
-      this.setToken(this.part('#token').value.trim());
+      this.unlock(this.part('#token').value.trim());
     });
     this.part('#arm-pressures').addEventListener('click', () => this.arm());
     this.button.addEventListener('click', () => this.vent());
@@ -32,7 +32,20 @@ export class Control {
       sessionStorage.setItem('token', given);
       history.replaceState(null, '', location.pathname);
     }
-    this.token = sessionStorage.getItem('token');
+    this.token = null;
+    const stored = sessionStorage.getItem('token');
+    if (stored) this.unlock(stored);
+  }
+
+  /** Takes a token if the server does; a wrong one is shown now, not at the first request that needs it. */
+  async unlock(token) {
+    try {
+      await post('/unlock', null, token);
+      this.setToken(token);
+    } catch (error) {
+      if (error.status) this.setToken(null);
+      this.showError(error.message);
+    }
   }
 
   setToken(token) {

@@ -15,14 +15,29 @@ use telemetry::{Encoder, MAX_FRAME, Message, SEGMENTS};
 use crate::recording::{Item, Reader};
 use crate::source::SessionFile;
 use crate::{
-    Error, FileFormat, Header, OutputFile, Progress, RequiredColumns, SessionError, SessionProblem, SessionReader,
+    Error, Existing, FileFormat, Header, OutputFile, Progress, RequiredColumns, SessionError, SessionProblem,
+    SessionReader, WrittenFile, is_stdout,
 };
 
-/// Converts `input` to `output`, in the format of its name, and returns what was left out.
+/// A complete conversion.
+#[derive(Debug)]
+pub struct Converted {
+    /// The output.
+    pub written: WrittenFile,
+    /// The values that it cannot hold.
+    pub left_out: Vec<String>,
+}
+
+/// Converts `input` to `output`, in the format of its name; standard output gets CSV.
 ///
 /// # Errors
-/// [`Error::Session`] of the input, [`Error::OutputKind`] and [`Error::SameKind`], [`Error::Output`].
-pub fn convert(input: &Path, output: &Path, progress: &mut dyn Progress) -> Result<Vec<String>, Error> {
+/// [`Error::Session`] of the input, [`Error::OutputKind`] and [`Error::SameKind`], [`Error::Exists`] and [`Error::Output`].
+pub fn convert(
+    input: &Path,
+    output: &Path,
+    existing: Existing,
+    progress: &mut dyn Progress,
+) -> Result<Converted, Error> {
     let kind = output_kind(output)?;
     let header = Header::of(input)?;
     if header.kind == kind {
@@ -32,7 +47,7 @@ pub fn convert(input: &Path, output: &Path, progress: &mut dyn Progress) -> Resu
         let problem = SessionProblem::TooManySegments(header.segments);
         return Err(SessionError { path: input.to_owned(), line: None, column: None, problem }.into());
     }
-    let file = OutputFile::create(output, &[input])?;
+    let file = OutputFile::create(output, &[input], existing)?;
     let reader = SessionReader::open(input, &RequiredColumns { bend: vec![None; header.segments], truth: false })?;
     let (file, mut left_out) = match (header.kind, kind) {
         (_, FileFormat::Csv) => to_csv::write(reader, file, progress)?,
@@ -44,11 +59,13 @@ pub fn convert(input: &Path, output: &Path, progress: &mut dyn Progress) -> Resu
     if !header.unknown.is_empty() {
         left_out.push(format!("the columns {} are left out", header.unknown.join(", ")));
     }
-    file.finish()?;
-    Ok(left_out)
+    Ok(Converted { written: file.finish()?, left_out })
 }
 
 fn output_kind(output: &Path) -> Result<FileFormat, Error> {
+    if is_stdout(output) {
+        return Ok(FileFormat::Csv);
+    }
     match output.extension().unwrap_or_default().to_ascii_lowercase().to_str() {
         Some("csv") => Ok(FileFormat::Csv),
         Some("mcap") => Ok(FileFormat::Recording),
@@ -65,7 +82,7 @@ fn extract(input: &Path, mut file: OutputFile, has_truth: bool) -> Result<(Outpu
     let (mut encoder, mut holes) = (Encoder::new(), 0);
     for item in Reader::with_summary(source.into_bytes()?, summary) {
         let result = match item.map_err(|error| fail(SessionProblem::Recording(error)))? {
-            Item::Bytes(_, bytes) => file.write_all(&bytes),
+            Item::Bytes(_, bytes) | Item::History(_, bytes) => file.write_all(&bytes),
             Item::Sample(_, sample) => {
                 let mut buffer = [0; MAX_FRAME];
                 let frame = encoder.encode(&Message::Sample(sample), &mut buffer).expect("every sample fits a frame");

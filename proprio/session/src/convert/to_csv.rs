@@ -25,9 +25,10 @@ pub fn write(
     let (has_truth, has_true_headings) = (reader.has_truth(), reader.has_true_headings());
     let layout = Layout { bend_sensors, has_truth, has_true_headings };
     layout.write_header(&mut file).map_err(|error| file.error(error))?;
-    let (mut starts, mut estimates) = (0_u64, 0_u64);
+    let (mut starts, mut estimates, mut before) = (0_u64, 0_u64, 0_u64);
     while let Some(row) = reader.next_row()? {
         starts += u64::from(row.starts);
+        before += u64::from(!row.is_recorded());
         estimates += u64::from(row.board.is_some_and(|board| board.estimate.is_some()));
         layout.write_row(&mut file, &row, starts.saturating_sub(1)).map_err(|error| file.error(error))?;
         progress.advance(WORK, reader.progress());
@@ -37,6 +38,11 @@ pub fn write(
         vec![format!("the board's events, uncertainties and health{arrival} and the bytes themselves are left out")];
     if estimates > 0 {
         left_out.push(format!("the board's {estimates} estimates are left out; `proprio replay` makes them again"));
+    }
+    if before > 0 {
+        left_out.push(format!(
+            "the first {before} rows are from before the begin of the recording: the tare that its estimates need"
+        ));
     }
     left_out.extend(reader.holes().iter().map(HoleTimes::to_string));
     Ok((file, left_out))

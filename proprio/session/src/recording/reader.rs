@@ -11,7 +11,7 @@ use super::messages;
 use super::read_error::ReadError;
 use super::scanner::{Part, Scanner};
 use super::summary::Summary;
-use super::topics::{MARKS, RAW, SAMPLES, TRUTH};
+use super::topics::{HISTORY, MARKS, RAW, SAMPLES, TRUTH};
 use crate::{HostNs, Truth};
 
 /// A part of a recording that a session uses.
@@ -19,6 +19,8 @@ use crate::{HostNs, Truth};
 pub enum Item {
     /// Received bytes, and the time of their arrival.
     Bytes(HostNs, Vec<u8>),
+    /// Bytes received before the begin of the recording, and the time of their arrival.
+    History(HostNs, Vec<u8>),
     /// A decoded sample and the time of its arrival, in a recording without the received bytes.
     Sample(HostNs, Sample),
     /// The truth of the sample with this tick, which is before it.
@@ -125,6 +127,7 @@ impl<R: Read> Iterator for Reader<R> {
 fn item(topic: &str, at: HostNs, sequence: u32, data: &[u8]) -> Result<Option<Item>, ReadError> {
     let item = match topic {
         RAW => Some(Item::Bytes(at, data.to_vec())),
+        HISTORY => Some(Item::History(at, data.to_vec())),
         SAMPLES => messages::read_sample(data).map(|sample| Item::Sample(at, sample)),
         TRUTH => messages::read_truth(data).map(|ends| Item::Truth(sequence, ends)),
         MARKS => messages::read_mark(data).map(|text| Item::Mark(at, text)),

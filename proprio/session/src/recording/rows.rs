@@ -73,12 +73,10 @@ impl<I: Iterator<Item = Result<Item, ReadError>>> RecordedRows<I> {
                 return Ok(None);
             }
             match self.items.next().transpose()? {
-                Some(Item::Bytes(at, bytes)) => {
-                    for byte in bytes {
-                        self.push(at, byte)?;
-                    }
-                }
+                Some(Item::Bytes(at, bytes)) => self.push(at, &bytes, true)?,
+                Some(Item::History(at, bytes)) => self.push(at, &bytes, false)?,
                 Some(Item::Sample(at, sample)) => {
+                    self.assembler.set_recorded(true);
                     let row = self.assembler.message(at, &Message::Sample(sample), self.gaps)?;
                     self.complete.extend(row);
                 }
@@ -105,16 +103,20 @@ impl<I: Iterator<Item = Result<Item, ReadError>>> RecordedRows<I> {
         }
     }
 
-    fn push(&mut self, at: HostNs, byte: u8) -> Result<(), ReadError> {
-        match self.decoder.push(byte) {
-            Some(Ok(message)) => {
-                let row = self.assembler.message(at, &message, self.decoder.counts().lost.saturating_add(self.gaps))?;
-                self.complete.extend(row);
-                Ok(())
+    /// Decodes received bytes: those of the history are the begin of one stream with those of the recording.
+    fn push(&mut self, at: HostNs, bytes: &[u8], is_recorded: bool) -> Result<(), ReadError> {
+        self.assembler.set_recorded(is_recorded);
+        for byte in bytes {
+            match self.decoder.push(*byte) {
+                Some(Ok(message)) => {
+                    let gaps = self.decoder.counts().lost.saturating_add(self.gaps);
+                    self.complete.extend(self.assembler.message(at, &message, gaps)?);
+                }
+                Some(Err(DecodeError::Version(version))) => return Err(ReadError::OtherProtocol(version)),
+                // A damaged frame counts as lost.
+                Some(Err(_)) | None => {}
             }
-            Some(Err(DecodeError::Version(version))) => Err(ReadError::OtherProtocol(version)),
-            // A damaged frame counts as lost.
-            Some(Err(_)) | None => Ok(()),
         }
+        Ok(())
     }
 }

@@ -2,6 +2,8 @@
 
 /// Topic of the received bytes.
 pub const RAW: &str = "/proprio/raw";
+/// Topic of the bytes received before the begin of the recording, from the last start of the board's estimator on.
+pub const HISTORY: &str = "/proprio/history";
 /// Topic of `proprio_msgs/msg/Sample`.
 pub const SAMPLES: &str = "/proprio/samples";
 /// Topic of `sensor_msgs/msg/JointState`.

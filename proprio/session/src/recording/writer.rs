@@ -11,11 +11,16 @@ use telemetry::{Estimate, Hello, Message, SCHEMA, SEGMENTS, Sample, SetPressures
 
 use super::messages;
 use super::schema::{self, Schema};
-use super::topics::{CONTACT, DIAGNOSTICS, JOINT_STATES, MARKS, RAW, SAMPLES, SET_POINTS, SHAPE, TRUTH, UNCERTAINTY};
+use super::topics::{
+    CONTACT, DIAGNOSTICS, HISTORY, JOINT_STATES, MARKS, RAW, SAMPLES, SET_POINTS, SHAPE, TRUTH, UNCERTAINTY,
+};
 use crate::{ClockSync, HostNs, Truth};
 
 /// Longest time before data is written, ns. A file that is cut loses no more than that.
 const FLUSH_NS: u64 = 900_000_000;
+
+/// Length of a chunk of the history, bytes.
+const HISTORY_CHUNK: usize = 1 << 20;
 
 /// Writer of a recording. Every second it appends the received data as one complete chunk; written chunks never change.
 pub struct Recorder<W: Write> {
@@ -27,6 +32,8 @@ pub struct Recorder<W: Write> {
     sample: Option<(u32, HostNs)>,
     flushed: HostNs,
     raw_messages: u32,
+    /// Bytes of the history since the last flush.
+    history_bytes: usize,
     samples: u64,
     /// Number of the host's requests for pressures.
     requested: u32,
@@ -41,6 +48,8 @@ struct Channels {
     shape: u16,
     diagnostics: u16,
     uncertainty: u16,
+    /// Only where the recording does not begin with the stream.
+    history: Option<u16>,
     /// Only where something touches the arm.
     contact: Option<u16>,
     /// Only where the pressures are driven.
@@ -79,6 +88,7 @@ impl<W: Write> Recorder<W> {
             shape: channel(&mut mcap, SHAPE, &schema::POSE_ARRAY)?,
             diagnostics: channel(&mut mcap, DIAGNOSTICS, &schema::DIAGNOSTIC_ARRAY)?,
             uncertainty: channel(&mut mcap, UNCERTAINTY, &schema::UNCERTAINTY)?,
+            history: None,
             contact: None,
             set_points: None,
             truth: None,
@@ -93,6 +103,7 @@ impl<W: Write> Recorder<W> {
             sample: None,
             flushed: at,
             raw_messages: 0,
+            history_bytes: 0,
             samples: 0,
             requested: 0,
             marks: 0,
@@ -127,6 +138,27 @@ impl<W: Write> Recorder<W> {
         self.flush_if_due(at)?;
         self.raw_messages = self.raw_messages.wrapping_add(1);
         self.write(self.channels.raw, self.raw_messages, at, at, bytes)
+    }
+
+    /// Writes bytes that were received before the begin of the recording.
+    ///
+    /// # Errors
+    /// Errors of the sink.
+    pub fn history(&mut self, at: HostNs, bytes: &[u8]) -> io::Result<()> {
+        let channel = if let Some(channel) = self.channels.history {
+            channel
+        } else {
+            let id = self.mcap.add_channel(0, HISTORY, "application/octet-stream", &BTreeMap::new());
+            *self.channels.history.insert(id.map_err(io_error)?)
+        };
+        self.raw_messages = self.raw_messages.wrapping_add(1);
+        self.write(channel, self.raw_messages, at, at, bytes)?;
+        self.history_bytes += bytes.len();
+        if self.history_bytes >= HISTORY_CHUNK {
+            self.history_bytes = 0;
+            self.mcap.flush().map_err(io_error)?;
+        }
+        Ok(())
     }
 
     /// Writes a message that was decoded from them.
