@@ -4,8 +4,7 @@ use std::fmt;
 use std::path::Path;
 
 use estimator_core::{Estimator, FusedOps, Q};
-use proprio_session::recording::HoleTimes;
-use proprio_session::{FileFormat, LoadedTable, Progress, Row, SessionReader, is_version_0_1};
+use proprio_session::{FileDefects, FileFormat, LoadedTable, Progress, Row, SessionReader, is_version_0_1};
 use telemetry::{Hello, TICK_HZ};
 
 use crate::agreement::RecordedBy;
@@ -22,10 +21,8 @@ pub struct SessionSummary {
     /// Number of rows before which the board's estimator had samples that are not in the recording: a replay has another
     /// tare than the board, or lacks some of its samples.
     pub not_comparable: u64,
-    /// True where the file's last line has a line end; otherwise its last number may be cut.
-    pub ends_with_line: bool,
-    /// The damaged parts of a recording, which are left out.
-    pub holes: Vec<HoleTimes>,
+    /// The file's defects, past which it was read.
+    pub defects: FileDefects,
     /// Facts about a board's recording; `None` for a CSV.
     pub recording: Option<RecordingFacts>,
 }
@@ -86,7 +83,7 @@ pub fn replay<S: FusedOps>(
     mut visit: impl FnMut(&Row, &Outcome<S>) -> Result<(), Error>,
 ) -> Result<SessionSummary, Error> {
     let mut rows = SessionRows::open(session, table, "replaying", progress)?;
-    let compiled = table.compile::<S>(rows.rate_hz(table))?;
+    let compiled = table.compile::<S>(rows.rate_hz(table)?)?;
     let compiled = compiled.config();
     let mut estimator: Box<HostEstimator<S>> = Box::new(Estimator::new(&compiled).expect("the file was checked"));
     while let Some(row) = rows.next_row()? {
@@ -123,8 +120,8 @@ impl<'p> SessionRows<'p> {
     }
 
     /// Rate of the rows; that of the table where there are too few.
-    pub fn rate_hz(&self, table: &LoadedTable) -> f64 {
-        self.reader.rate_hz(table.file.rate_hz)
+    pub fn rate_hz(&self, table: &LoadedTable) -> Result<f64, Error> {
+        Ok(self.reader.rate_hz(table.file.rate_hz)?)
     }
 
     /// The next row.
@@ -146,13 +143,6 @@ impl<'p> SessionRows<'p> {
         let recording =
             if reader.kind() == FileFormat::Csv { None } else { Some(RecordingFacts::new(reader.hello(), table)?) };
         let seconds = (last_us - first_us.unwrap_or(last_us)) as f64 / 1e6;
-        Ok(SessionSummary {
-            samples,
-            seconds,
-            not_comparable,
-            ends_with_line: reader.ends_with_line(),
-            holes: reader.holes().to_vec(),
-            recording,
-        })
+        Ok(SessionSummary { samples, seconds, not_comparable, defects: reader.defects(), recording })
     }
 }

@@ -102,7 +102,15 @@ fn feed(command: &mut Command, ticks: u32) -> Option<String> {
 fn open_on_the_page() {
     let table = LoadedTable::load(Path::new(TABLE)).expect("the reference table");
     let (folder, session) = (env::temp_dir(), Some("/dev/stdin".into()));
-    let options = Options { port: 0, table: Some(table), folder, token: None, session, help: ToString::to_string };
+    let options = Options {
+        port: 0,
+        table: Some(table),
+        folder,
+        token: None,
+        session,
+        help: ToString::to_string,
+        finding_text: ToString::to_string,
+    };
     let monitor = Monitor::start(None, options).expect("a free port");
     let mut stream = TcpStream::connect(monitor.address()).expect("it listens");
     let host = monitor.address();

@@ -53,7 +53,7 @@ pub enum Command {
     Ports(PortsArgs),
     /// Show the status of a board: versions, sensors, rates, losses
     Status(StatusArgs),
-    /// Record a board's data to an MCAP file
+    /// Record a board's data to an MCAP file; opening the programming port restarts the board, and the recording has its tare
     Record(RecordArgs),
     /// Drive the arm's pressures, and vent them at the end
     Drive(DriveArgs),
@@ -145,7 +145,7 @@ pub struct CheckArgs {
     /// Sessions to check
     #[arg(required = true, value_name = "SESSION")]
     pub sessions: Vec<PathBuf>,
-    /// Table of the arm
+    /// Table of the arm; by an arm description only what needs no map is checked
     #[arg(long, value_name = "TABLE.toml")]
     pub table: PathBuf,
     /// Print the findings as JSON

@@ -82,3 +82,95 @@ impl History {
         self.is_whole.then(|| self.received.iter().cloned().collect())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use telemetry::{Encoder, MAX_FRAME, Message, Sample};
+
+    use super::{Event, EventKind, History, HostNs, KEPT};
+
+    /// A board that sends samples, and a history of its stream.
+    struct Stream {
+        encoder: Encoder,
+        history: History,
+        gaps: u32,
+        tick: u32,
+    }
+
+    impl Stream {
+        fn new(most: usize) -> Self {
+            Self { encoder: Encoder::new(), history: History::with_most(most), gaps: 0, tick: 0 }
+        }
+
+        /// Sends samples, each with its bytes in front.
+        fn run(&mut self, ticks: u32, tare_epoch: u8) {
+            for _ in 0..ticks {
+                let (tick, time_us) = (self.tick, u64::from(self.tick) * 10_000);
+                let sample = Message::Sample(Sample { tick, time_us, tare_epoch, bend: [None; 12], imu: [None; 6] });
+                let mut buffer = [0; MAX_FRAME];
+                let frame = self.encoder.encode(&sample, &mut buffer).expect("it fits");
+                for kind in [EventKind::Bytes((&*frame).into()), EventKind::Message(sample)] {
+                    self.history.take(&Event { at: HostNs(time_us * 1000), gaps: self.gaps, kind });
+                }
+                self.tick += 1;
+            }
+        }
+
+        /// Bytes that are held, where they are whole.
+        fn held(&self) -> Option<usize> {
+            let whole = self.history.whole()?;
+            Some(whole.iter().map(|(_, bytes)| bytes.len()).sum())
+        }
+    }
+
+    /// Length of the frame of a sample.
+    const FRAME: usize = 98;
+
+    #[test]
+    fn a_history_begins_with_the_boot_and_anew_with_each_tare() {
+        let mut stream = Stream::new(1_000_000);
+        stream.run(1000, 0);
+        assert_eq!(stream.held(), Some(1000 * FRAME));
+        stream.run(1, 1);
+        let held = stream.held().expect("it is whole");
+        assert!((KEPT + FRAME..KEPT + 2 * FRAME).contains(&held), "{held}");
+        stream.run(500, 1);
+        assert_eq!(stream.held(), Some(held + 500 * FRAME));
+    }
+
+    #[test]
+    fn a_history_without_a_lost_sample_is_none_until_the_next_tare() {
+        let mut stream = Stream::new(1_000_000);
+        stream.run(100, 1);
+        stream.tick += 1;
+        stream.gaps += 1;
+        stream.run(100, 1);
+        assert_eq!(stream.held(), None);
+        stream.run(100, 2);
+        assert!(stream.held().is_some());
+    }
+
+    #[test]
+    fn a_history_over_its_bound_is_dropped_until_the_next_tare() {
+        let mut stream = Stream::new(500 * FRAME);
+        stream.run(500, 0);
+        assert_eq!(stream.held(), Some(500 * FRAME));
+        stream.run(1, 0);
+        assert_eq!(stream.held(), None);
+        stream.run(10_000, 0);
+        assert!(stream.history.bytes < KEPT + 2 * FRAME, "{} bytes in memory", stream.history.bytes);
+        stream.run(100, 1);
+        assert!(stream.held().is_some());
+    }
+
+    /// As on a line that was opened late.
+    #[test]
+    fn a_stream_that_does_not_begin_with_the_boot_has_no_history_before_a_tare() {
+        let mut stream = Stream::new(1_000_000);
+        stream.tick = 700;
+        stream.run(300, 1);
+        assert_eq!(stream.held(), None);
+        stream.run(1, 2);
+        assert!(stream.held().is_some());
+    }
+}

@@ -9,7 +9,7 @@ use telemetry::{Event, Health, Hello, Message, SEGMENTS, TICK_HZ, Uncertainty};
 use crate::{EventKind, Link, LinkError, Mismatch, Subscription};
 
 /// Longest silence of a board, s.
-const TIMEOUT_S: u64 = 10;
+pub const TIMEOUT_S: u64 = 10;
 /// Shortest time over which rates are measured, s.
 const RATES_S: f64 = 1.0;
 /// Longest wait for the first tare of a board that has just started: its IMUs start slowly.

@@ -63,9 +63,9 @@ pub(super) async fn session(
     let Some(path) = state.monitor.sessions.path(&part.name) else {
         return Err((StatusCode::NOT_FOUND, format!("{}: there is no such session", part.name)).into_response());
     };
-    let (from_s, to_s) = (part.from_s.unwrap_or(f64::NEG_INFINITY), part.to_s.unwrap_or(f64::INFINITY));
+    let times_s = part.from_s.unwrap_or(f64::NEG_INFINITY)..=part.to_s.unwrap_or(f64::INFINITY);
     let shared = Arc::clone(&state.monitor);
-    let rows = run_blocking(move || shared.sessions.rows(&path, from_s, to_s)).await?;
+    let rows = run_blocking(move || shared.sessions.rows(&part.name, &path, times_s)).await?;
     Ok((BYTES, rows.map_err(|error| state.failure(&error))?))
 }
 

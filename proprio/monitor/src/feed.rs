@@ -137,6 +137,8 @@ pub(super) struct PageStatus {
     pub recording: Option<RecordingProgress>,
     /// Warnings for people.
     pub notes: Vec<String>,
+    /// Findings of the session check since the board's last tare, with their remedies.
+    pub findings: Vec<String>,
 }
 
 /// Identity of the board.
@@ -234,6 +236,7 @@ impl PageStatus {
             latency: None,
             least_delay_ms: None,
             recording: None,
+            findings: Vec::new(),
             notes: link.mismatches.iter().map(ToString::to_string).collect(),
         }
     }

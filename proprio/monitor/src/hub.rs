@@ -5,6 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use estimator_core::ArmConfig;
+use proprio_analysis::check::SessionCheck;
 use proprio_link::{EventKind, Link, LinkEvent, Subscription};
 use proprio_session::HostNs;
 
@@ -17,6 +18,8 @@ use super::monitor_state::MonitorState;
 const PERIOD: Duration = Duration::from_millis(20);
 /// Time from one status to the next.
 const STATUS: Duration = Duration::from_millis(200);
+/// Time from one evaluation of the session check to the next.
+const CHECK: Duration = Duration::from_secs(1);
 /// Number of notes that are kept.
 const NOTES: usize = 6;
 
@@ -29,6 +32,9 @@ pub(super) struct Hub<'t> {
     batch_sent: Instant,
     status_sent: Instant,
     notes: Vec<String>,
+    /// Findings of the session check, and the time of the check.
+    findings: Vec<String>,
+    checked: Instant,
 }
 
 impl<'t> Hub<'t> {
@@ -36,10 +42,21 @@ impl<'t> Hub<'t> {
         shared: Arc<MonitorState>,
         events: Subscription,
         table: Option<&'t ArmConfig<'t, estimator_core::Q>>,
+        check: Option<SessionCheck>,
     ) -> Self {
-        let live = Live::new(table.map(HostReplica::new));
+        let live = Live::new(table.map(HostReplica::new), check);
         let now = Instant::now();
-        Self { shared, events, live, batch: Batch::default(), batch_sent: now, status_sent: now, notes: Vec::new() }
+        Self {
+            shared,
+            events,
+            live,
+            batch: Batch::default(),
+            batch_sent: now,
+            status_sent: now,
+            notes: Vec::new(),
+            findings: Vec::new(),
+            checked: now,
+        }
     }
 
     /// Works until `stop` is set.
@@ -54,6 +71,10 @@ impl<'t> Hub<'t> {
             if self.batch_sent.elapsed() >= PERIOD {
                 self.batch_sent = Instant::now();
                 self.send_rows();
+            }
+            if self.checked.elapsed() >= CHECK {
+                self.checked = Instant::now();
+                self.findings = self.live.findings().iter().map(self.shared.sessions.finding_text).collect();
             }
             if self.status_sent.elapsed() >= STATUS {
                 self.status_sent = Instant::now();
@@ -105,6 +126,7 @@ impl<'t> Hub<'t> {
         status.latency = self.shared.latency().percentiles();
         status.least_delay_ms = self.live.min_delay_us().map(|delay_us| f64::from(delay_us) / 1e3);
         status.recording = self.shared.recording();
+        status.findings.clone_from(&self.findings);
         status.notes.extend(self.notes.iter().rev().cloned());
         self.shared.publish(&Feed::Status(Box::new(status)));
     }

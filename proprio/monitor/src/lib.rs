@@ -42,6 +42,7 @@ use std::thread::JoinHandle;
 
 use calibration_tables::CompiledTable;
 use estimator_core::Q;
+use proprio_analysis::check::Finding;
 use proprio_link::{Link, Subscription};
 use proprio_session::LoadedTable;
 use telemetry::{Command, SEGMENTS, TICK_HZ};
@@ -72,6 +73,8 @@ pub struct Options<'p> {
     pub session: Option<PathBuf>,
     /// Returns the remedy of an error, which the page shows with it.
     pub help: fn(&Error) -> String,
+    /// Returns the text of a finding of the session check, with its remedy.
+    pub finding_text: fn(&Finding) -> String,
 }
 
 /// A server that runs until it is dropped.
@@ -171,7 +174,7 @@ fn shared(link: Option<Link>, options: Options) -> MonitorState {
         ArmDescription::new(segments, table.map(|table| &table.file).filter(|_| table_segments == Some(segments)));
     (arm.is_live, arm.allows_control) = (link.is_some(), options.token.is_some());
     arm.opens_sessions = table.is_some();
-    let sessions = Sessions::new(options.folder, table, options.session);
+    let sessions = Sessions::new(options.folder, table, options.session, options.finding_text);
     arm.session = sessions.given();
     MonitorState::new(link, arm, options.token, sessions, options.help)
 }
@@ -180,6 +183,7 @@ fn hub(shared: &Arc<MonitorState>, events: Subscription, compiled: Option<&Compi
     let table = compiled.map(CompiledTable::config);
     let table = table.as_ref().filter(|table| table.segments.len() == SEGMENTS);
     if let Some(link) = &shared.link {
-        Hub::new(Arc::clone(shared), events, table).run(link, stop);
+        let check = table.and_then(|_| shared.sessions.check());
+        Hub::new(Arc::clone(shared), events, table, check).run(link, stop);
     }
 }

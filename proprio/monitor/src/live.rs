@@ -2,6 +2,7 @@
 
 use std::collections::VecDeque;
 
+use proprio_analysis::check::{Finding, SessionCheck};
 use proprio_link::status::MessageRates;
 use proprio_link::{EventKind, LinkEvent};
 use proprio_session::{ClockSync, HostNs, Row, RowAssembler};
@@ -36,6 +37,7 @@ struct Totals {
 /// A live board.
 pub(super) struct Live<'t> {
     replica: Option<HostReplica<'t>>,
+    check: Option<SessionCheck>,
     assembler: RowAssembler,
     clock: ClockSync,
     /// The board's time 0 on the host's clock, ns.
@@ -48,9 +50,10 @@ pub(super) struct Live<'t> {
 }
 
 impl<'t> Live<'t> {
-    pub fn new(replica: Option<HostReplica<'t>>) -> Self {
+    pub fn new(replica: Option<HostReplica<'t>>, check: Option<SessionCheck>) -> Self {
         Self {
             replica,
+            check,
             assembler: RowAssembler::default(),
             clock: ClockSync::default(),
             zero_ns: None,
@@ -107,6 +110,12 @@ impl<'t> Live<'t> {
                 replica.step(&row.sample, &mut page_row);
             }
         }
+        if let Some(check) = &mut self.check {
+            if row.starts {
+                check.restart();
+            }
+            check.update(row);
+        }
         // The page shows the board's own estimate.
         let estimate = row.board.and_then(|board| board.estimate);
         page_row.set_estimate(&estimate.map_or([None; SEGMENTS], |estimate| estimate.segments));
@@ -143,6 +152,11 @@ impl<'t> Live<'t> {
         if let Some(sensor) = health.bend.iter_mut().chain(&mut health.imu).nth(i) {
             sensor.state = state;
         }
+    }
+
+    /// The findings of the session check since the last start of the board's estimator.
+    pub fn findings(&self) -> Vec<Finding> {
+        self.check.as_ref().map(SessionCheck::findings).unwrap_or_default()
     }
 
     /// All sensors, bend sensors first, then IMUs.
@@ -216,7 +230,7 @@ mod tests {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../calibration-tables/planar-6.toml");
         let compiled = ArmFile::load(&path).and_then(|file| file.compile::<Q>(TICK_HZ)).expect("the reference table");
         let config = compiled.config();
-        let mut stream = Stream { live: Live::new(Some(HostReplica::new(&config))), gaps: 0, tare: 0 };
+        let mut stream = Stream { live: Live::new(Some(HostReplica::new(&config)), None), gaps: 0, tare: 0 };
         let all = 3 * SEGMENTS;
         assert_eq!(stream.ticks(0..TARE_TICKS), all);
 
@@ -239,7 +253,7 @@ mod tests {
 
     #[test]
     fn a_repeated_sample_makes_no_row() {
-        let mut stream = Stream { live: Live::new(None), gaps: 0, tare: 0 };
+        let mut stream = Stream { live: Live::new(None, None), gaps: 0, tare: 0 };
         stream.ticks(0..5);
         let sample =
             Sample { tick: 3, time_us: 30_000, tare_epoch: 0, bend: [None; 2 * SEGMENTS], imu: [None; SEGMENTS] };

@@ -19,7 +19,7 @@ impl Plain {
     /// The state before the first event.
     #[must_use]
     pub fn new() -> Self {
-        Self { live: Live::new(None), estimate: None }
+        Self { live: Live::new(None, None), estimate: None }
     }
 
     /// Takes an event of the link.

@@ -22,7 +22,7 @@ use super::app_state::AppState;
 use super::{actions, body, socket};
 
 /// The files of the page, embedded in this program.
-const FILES: [(&str, &str, &str); 13] = [
+const FILES: [(&str, &str, &str); 14] = [
     ("/", "text/html; charset=utf-8", include_str!("page/index.html")),
     ("/style.css", "text/css; charset=utf-8", include_str!("page/style.css")),
     ("/main.js", SCRIPT, include_str!("page/main.js")),
@@ -33,6 +33,7 @@ const FILES: [(&str, &str, &str); 13] = [
     ("/view.js", SCRIPT, include_str!("page/view.js")),
     ("/export.js", SCRIPT, include_str!("page/export.js")),
     ("/board_panel.js", SCRIPT, include_str!("page/board_panel.js")),
+    ("/findings.js", SCRIPT, include_str!("page/findings.js")),
     ("/sensors.js", SCRIPT, include_str!("page/sensors.js")),
     ("/sessions.js", SCRIPT, include_str!("page/sessions.js")),
     ("/control.js", SCRIPT, include_str!("page/control.js")),

@@ -2,12 +2,14 @@
 
 use std::collections::BTreeMap;
 use std::fs;
+use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
 use calibration_tables::ArmFile;
 use estimator_core::Q;
-use proprio_session::{LoadedTable, Mark, SessionReader};
+use proprio_analysis::check::{Finding, SessionCheck};
+use proprio_session::{LoadedTable, Mark, SessionError, SessionReader};
 use serde::Serialize;
 use tempfile::TempPath;
 
@@ -25,6 +27,8 @@ pub(super) struct Sessions {
     table: Option<(PathBuf, ArmFile)>,
     /// The session that the command was given.
     given: Option<PathBuf>,
+    /// Returns the text of a finding, with its remedy.
+    pub finding_text: fn(&Finding) -> String,
     /// Files that browsers have sent, by name.
     sent: Mutex<BTreeMap<String, TempPath>>,
 }
@@ -46,6 +50,8 @@ struct About {
     every: u64,
     /// Marks in it.
     marks: Vec<PageMark>,
+    /// Defects of the file and findings of the session check, in the whole session.
+    findings: Vec<String>,
 }
 
 /// A mark, in the units of the page.
@@ -62,9 +68,14 @@ impl From<&Mark> for PageMark {
 }
 
 impl Sessions {
-    pub fn new(folder: PathBuf, table: Option<&LoadedTable>, given: Option<PathBuf>) -> Self {
+    pub fn new(
+        folder: PathBuf,
+        table: Option<&LoadedTable>,
+        given: Option<PathBuf>,
+        finding_text: fn(&Finding) -> String,
+    ) -> Self {
         let table = table.map(|table| (table.path.to_owned(), table.file.clone()));
-        Self { folder, table, given, sent: Mutex::default() }
+        Self { folder, table, given, finding_text, sent: Mutex::default() }
     }
 
     /// Name of the session that the command was given.
@@ -75,6 +86,11 @@ impl Sessions {
     /// The text of the table's file.
     pub fn table_toml(&self) -> Result<Option<Vec<u8>>, Error> {
         Ok(self.table().map(|table| table.toml()).transpose()?)
+    }
+
+    /// A session check with the table; `None` without a table.
+    pub fn check(&self) -> Option<SessionCheck> {
+        self.table().and_then(|table| SessionCheck::new(&table).ok())
     }
 
     fn table(&self) -> Option<LoadedTable<'_>> {
@@ -112,15 +128,24 @@ impl Sessions {
         Some(self.folder.join(name)).filter(|path| is_plain && is_session(name) && path.is_file())
     }
 
-    /// Replays a session and returns its rows between two times, decimated to as many as a page holds.
-    pub fn rows(&self, path: &Path, from_s: f64, to_s: f64) -> Result<Vec<u8>, Error> {
+    /// Replays a session and returns its rows between two times, decimated to as many as a page holds. Errors have its name in
+    /// place of its path, which is that of a copy where a browser has sent it.
+    pub fn rows(&self, name: &str, path: &Path, times_s: RangeInclusive<f64>) -> Result<Vec<u8>, Error> {
+        self.rows_of(path, &times_s).map_err(|error| match error {
+            Error::File(proprio_session::Error::Session(error)) => SessionError { path: name.into(), ..error }.into(),
+            other => other,
+        })
+    }
+
+    fn rows_of(&self, path: &Path, times_s: &RangeInclusive<f64>) -> Result<Vec<u8>, Error> {
         let Some(table) = self.table() else { return Ok(Vec::new()) };
         let file = &table.file;
         let segments = file.segments.len();
         let mut reader = SessionReader::open(path, &table.required_columns()?)?;
-        let compiled = table.compile::<Q>(reader.rate_hz(file.rate_hz))?;
+        let compiled = table.compile::<Q>(reader.rate_hz(file.rate_hz)?)?;
         let compiled = compiled.config();
         let mut replica = HostReplica::new(&compiled);
+        let mut check = SessionCheck::new(&table)?;
         let mut history = History::new(page_row::names(segments).len());
         let (mut samples, mut every) = (0, 1);
         while let Some(read) = reader.next_row()? {
@@ -134,12 +159,13 @@ impl Sessions {
             if !read.is_recorded() {
                 continue;
             }
+            check.update(&read);
             if let Some(estimate) = read.board.and_then(|board| board.estimate) {
                 row.set_estimate(&estimate.segments);
             }
             row.set_sample(&read.sample);
             row.set_truth(&read.truth);
-            if !(from_s..=to_s).contains(&row.time_s) {
+            if !times_s.contains(&row.time_s) {
                 continue;
             }
             if samples % every == 0 {
@@ -153,9 +179,11 @@ impl Sessions {
             }
             samples += 1;
         }
-        let marks = reader.marks().iter().map(PageMark::from).filter(|mark| (from_s..=to_s).contains(&mark.time_s));
+        let marks = reader.marks().iter().map(PageMark::from).filter(|mark| times_s.contains(&mark.time_s));
         let marks = marks.collect();
-        Ok(history.to_bytes(&About { arm: ArmDescription::new(segments, Some(file)), samples, every, marks }))
+        let findings = reader.defects().warnings().chain(check.findings().iter().map(self.finding_text)).collect();
+        let arm = ArmDescription::new(segments, Some(file));
+        Ok(history.to_bytes(&About { arm, samples, every, marks, findings }))
     }
 }
 

@@ -7,7 +7,7 @@ use calibration_tables::MAX_SEGMENTS;
 use crate::columns::CameraColumns;
 use crate::csv_file::CsvFile;
 use crate::source::SessionFile;
-use crate::{Pose, SessionError, SessionProblem, cell};
+use crate::{FileDefects, Pose, SessionError, SessionProblem, cell};
 
 /// One image of the camera. Poses are in the camera's frame; `None` where a marker was not seen.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -44,10 +44,10 @@ impl CameraReader {
         self.columns.base.is_some()
     }
 
-    /// True where the last line has a line end; otherwise its last number may be cut.
+    /// The file's defects.
     #[must_use]
-    pub fn ends_with_line(&self) -> bool {
-        self.file.ends_with_line()
+    pub fn defects(&self) -> FileDefects {
+        FileDefects { last_line_is_open: !self.file.ends_with_line(), holes: Vec::new() }
     }
 
     /// Position in the file and its size, bytes.

@@ -5,6 +5,9 @@ use std::collections::HashMap;
 use estimator_core::SENSORS_PER_SEGMENT;
 use telemetry::REGULATORS;
 
+use crate::column_names::{SENSOR_NAMES, TARE, TIME, is_base, is_known, segment_of};
+use crate::file_content::FileContent;
+use crate::missing_column::MissingColumn;
 use crate::{RequiredColumns, SessionProblem};
 
 /// A column and the factor from its unit to m or rad.
@@ -72,24 +75,18 @@ pub(crate) struct PressureColumns {
     pub regulators: [Column; REGULATORS],
 }
 
-/// Names of the sensors of a segment.
-pub const SENSOR_NAMES: [char; SENSORS_PER_SEGMENT] = ['a', 'b'];
-
-/// Columns of a pose, in both units.
-const POSE_PARTS: [&str; 6] = ["x_mm", "x_m", "y_mm", "y_m", "heading_deg", "heading_rad"];
-
-/// The column of the tare's number.
-pub const TARE: &str = "tare";
-
 struct Places<'h> {
-    places: HashMap<&'h str, usize>,
+    names: &'h [String],
+    indices: HashMap<&'h str, usize>,
+    /// Content of the file that is read.
+    expected: FileContent,
 }
 
 impl Columns {
     /// Finds the columns that are needed. Unknown ones are ignored; those of a segment beyond the last are refused.
     pub fn find(names: &[String], needs: &RequiredColumns) -> Result<Self, SessionProblem> {
-        let header = Places::of(names, needs.bend.len())?;
-        let time = header.required("time_s")?;
+        let header = Places::of(names, needs.bend.len(), FileContent::Session)?;
+        let time = header.required(TIME)?;
         let has_headings = needs.truth || (1..=needs.bend.len()).any(|i| header.truth_heading(i).is_ok());
         let segment = |(i, sensors): (usize, &Option<usize>)| {
             Ok(SegmentColumns {
@@ -106,9 +103,9 @@ impl Columns {
 impl CameraColumns {
     /// Finds the columns of an arm of `segments` segments, all of which are needed, and of the base where it has any.
     pub fn find(names: &[String], segments: usize) -> Result<Self, SessionProblem> {
-        let header = Places::of(names, segments)?;
+        let header = Places::of(names, segments, FileContent::Camera)?;
         Ok(Self {
-            time: header.required("time_s")?,
+            time: header.required(TIME)?,
             ends: (1..=segments).map(|i| header.truth(i)).collect::<Result<_, _>>()?,
             base: names.iter().any(|name| is_base(name)).then(|| header.pose("base")).transpose()?,
         })
@@ -118,8 +115,9 @@ impl CameraColumns {
 impl PressureColumns {
     /// Finds the columns of all regulators.
     pub fn find(names: &[String]) -> Result<Self, SessionProblem> {
-        let header = Places::of(names, 0)?;
-        let time = header.required("time_s")?;
+        // Columns of sensors are those of a session, which lacks the pressures.
+        let header = Places::of(names, usize::MAX, FileContent::Profile)?;
+        let time = header.required(TIME)?;
         let regulator = |i: usize| header.in_unit(&format!("pressure{}", i + 1), [("kpa", 1e3), ("pa", 1.0)]);
         let [a, b, c, d, e, f] = [0, 1, 2, 3, 4, 5].map(regulator);
         Ok(Self { time, regulators: [a?, b?, c?, d?, e?, f?] })
@@ -128,27 +126,30 @@ impl PressureColumns {
 
 impl<'h> Places<'h> {
     /// Refuses columns that are there twice and those of a segment beyond the last.
-    fn of(names: &'h [String], segments: usize) -> Result<Self, SessionProblem> {
-        let mut places = HashMap::new();
+    fn of(names: &'h [String], segments: usize, expected: FileContent) -> Result<Self, SessionProblem> {
+        let mut indices = HashMap::new();
         for (index, name) in names.iter().enumerate() {
             let segment = segment_of(name);
-            let is_known = segment.is_some() || is_base(name) || is_pressure(name);
-            if places.insert(name.as_str(), index).is_some() && is_known {
+            if indices.insert(name.as_str(), index).is_some() && is_known(name) {
                 return Err(SessionProblem::DuplicateColumn(name.clone()));
             }
             if let Some(segment) = segment.filter(|segment| *segment > segments) {
                 return Err(SessionProblem::OtherArm { column: name.clone(), segment, segments });
             }
         }
-        Ok(Self { places })
+        Ok(Self { names, indices, expected })
     }
 
     fn optional(&self, name: &str) -> Option<usize> {
-        self.places.get(name).copied()
+        self.indices.get(name).copied()
     }
 
     fn required(&self, name: &str) -> Result<usize, SessionProblem> {
-        self.optional(name).ok_or_else(|| SessionProblem::MissingColumn(name.to_owned()))
+        self.optional(name).ok_or_else(|| self.missing(name))
+    }
+
+    fn missing(&self, name: &str) -> SessionProblem {
+        SessionProblem::MissingColumn(Box::new(MissingColumn::new(name, self.names, self.expected)))
     }
 
     /// The column `name` in the first of the units that is there.
@@ -157,7 +158,7 @@ impl<'h> Places<'h> {
             self.optional(&format!("{name}_{unit}")).map(|index| Column { index, factor: *factor })
         };
         let [(first, _), _] = units;
-        units.iter().find_map(found).ok_or_else(|| SessionProblem::MissingColumn(format!("{name}_{first}")))
+        units.iter().find_map(found).ok_or_else(|| self.missing(&format!("{name}_{first}")))
     }
 
     fn length(&self, name: &str) -> Result<Column, SessionProblem> {
@@ -215,36 +216,4 @@ impl<'h> Places<'h> {
         let name = |part: &str| format!("{of}_{part}");
         Ok([self.length(&name("x"))?, self.length(&name("y"))?, self.angle(&name("heading"))?])
     }
-}
-
-/// The segment of a column; 0 for columns of the whole arm, `None` for an unknown column.
-pub(crate) fn segment_of(name: &str) -> Option<usize> {
-    if name == "time_s" || name == TARE {
-        return Some(0);
-    }
-    let (stem, rest) = name.split_once('_')?;
-    let (digits, known): (&str, &[&str]) = if let Some(digits) = stem.strip_prefix("bend") {
-        (digits.strip_suffix(SENSOR_NAMES)?, &["adc"])
-    } else if let Some(digits) = stem.strip_prefix("imu") {
-        (digits, &["deg", "rad", "qw", "qx", "qy", "qz"])
-    } else {
-        (stem.strip_prefix("truth")?, &POSE_PARTS)
-    };
-    digits.parse().ok().filter(|_| known.contains(&rest))
-}
-
-/// True for a column of the truth.
-pub(crate) fn is_truth(name: &str) -> bool {
-    name.starts_with("truth") && segment_of(name).is_some()
-}
-
-/// True for a column of the base's marker.
-fn is_base(name: &str) -> bool {
-    name.strip_prefix("base_").is_some_and(|part| POSE_PARTS.contains(&part))
-}
-
-/// True for a column of a regulator's pressure.
-fn is_pressure(name: &str) -> bool {
-    let part = name.strip_prefix("pressure").and_then(|part| part.split_once('_'));
-    part.is_some_and(|(digits, unit)| digits.parse::<usize>().is_ok() && ["kpa", "pa"].contains(&unit))
 }

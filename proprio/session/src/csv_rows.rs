@@ -3,7 +3,8 @@
 use calibration_tables::MAX_SEGMENTS;
 use estimator_core::{ImuReading, Sample};
 
-use crate::columns::{Column, Columns, ImuColumn, is_truth};
+use crate::column_names::is_truth;
+use crate::columns::{Column, Columns, ImuColumn};
 use crate::csv_file::{CsvFile, first_empty};
 use crate::{RequiredColumns, Row, SessionError, SessionProblem, cell};
 

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use telemetry::SEGMENTS;
 
-use crate::columns::segment_of;
+use crate::column_names::segment_of;
 use crate::csv_file::CsvFile;
 use crate::source::{FileFormat, SessionFile};
 use crate::{SessionError, SessionProblem};

@@ -4,8 +4,9 @@
 //! | file or folder | purpose |
 //! |---|---|
 //! | `row.rs`, `required_columns.rs`, `table.rs` | a row; the columns that a table needs of it; a table with its path |
-//! | `reader.rs` | [`SessionReader`]: the rows of a session of any kind |
-//! | `csv_file.rs`, `csv_rows.rs`, `columns.rs`, `cell.rs`, `header.rs`, `line_limit.rs`, `source.rs` | CSV files |
+//! | `reader.rs`, `defects.rs` | [`SessionReader`]: the rows of a session of any kind; defects of its file |
+//! | `csv_file.rs`, `csv_rows.rs`, `column_names.rs`, `columns.rs`, `cell.rs`, `header.rs`, `line_limit.rs`, `source.rs` | CSV files |
+//! | `file_content.rs`, `missing_column.rs`, `time_unit.rs` | likely reasons of errors: a file in place of another, another name, another unit |
 //! | `camera.rs`, `pressures.rs` | a camera's poses; pressures over time |
 //! | `row_assembler.rs` | [`RowAssembler`]: rows from the messages of a board, recorded or live |
 //! | `recording/` | MCAP: written, read, recovered |
@@ -18,15 +19,19 @@ mod camera;
 mod cell;
 mod clock;
 mod clock_sync;
+mod column_names;
 mod columns;
 pub mod convert;
 mod csv_file;
 mod csv_rows;
+mod defects;
 mod duration;
 mod ellipse;
 mod error;
+mod file_content;
 mod header;
 mod line_limit;
+mod missing_column;
 mod output;
 mod pressures;
 mod progress;
@@ -38,17 +43,21 @@ mod row_assembler;
 mod session_error;
 mod source;
 mod table;
+mod time_unit;
 mod version;
 
 pub use boot_tracker::{BootTracker, Continuity};
 pub use camera::{CameraFrame, CameraReader};
 pub use clock::{HostClock, HostNs};
 pub use clock_sync::{ClockDrift, ClockSync};
-pub use columns::{SENSOR_NAMES, TARE};
+pub use column_names::{SENSOR_NAMES, TARE};
+pub use defects::FileDefects;
 pub use duration::{DurationError, check_seconds};
 pub use ellipse::{CHI2_2_95, Ellipse};
 pub use error::Error;
+pub use file_content::FileContent;
 pub use header::Header;
+pub use missing_column::{MissingColumn, MissingReason};
 pub use output::{Existing, OutputFile, WrittenFile, discard_unfinished, is_stdout};
 pub use pressures::{PressurePoint, read_pressures};
 pub use progress::{NoProgress, Progress};
@@ -59,7 +68,5 @@ pub use row_assembler::RowAssembler;
 pub use session_error::{SessionError, SessionProblem};
 pub use source::FileFormat;
 pub use table::LoadedTable;
+pub use time_unit::{time_factor, time_unit_of};
 pub use version::is_version_0_1;
-
-/// Warning about a file whose last line has no line end.
-pub const LAST_LINE: &str = "the last line has no end; its last number may be cut";

@@ -7,14 +7,18 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use telemetry::{Hello, SEGMENTS};
 
+use crate::column_names::TIME;
 use crate::csv_file::CsvFile;
 use crate::csv_rows::CsvRows;
-use crate::recording::{HoleTimes, Item, RawReader, ReadError, Reader, RecordedRows};
+use crate::recording::{Item, RawReader, ReadError, Reader, RecordedRows};
 use crate::source::{FileFormat, SessionFile};
-use crate::{Mark, RequiredColumns, Row, SessionError, SessionProblem};
+use crate::time_unit::time_factor;
+use crate::{FileDefects, Mark, RequiredColumns, Row, SessionError, SessionProblem};
 
 /// Rows at the start by whose time stamps the sample rate is measured.
 const RATE_ROWS: usize = 1001;
+/// Fewest rows by whose rate the unit of their times is judged.
+const UNIT_ROWS: usize = 10;
 
 /// Reader of a session in any [`FileFormat`].
 pub struct SessionReader {
@@ -23,6 +27,8 @@ pub struct SessionReader {
     rows: Rows,
     ahead: VecDeque<Row>,
     rate_hz: Option<f64>,
+    /// Number of the rows by which it was measured.
+    rate_rows: usize,
     is_regular_file: bool,
     bend_sensors: Vec<[bool; 2]>,
     kind: FileFormat,
@@ -75,6 +81,7 @@ impl SessionReader {
             rows,
             ahead: VecDeque::new(),
             rate_hz: None,
+            rate_rows: 0,
             is_regular_file,
             bend_sensors,
             kind,
@@ -93,6 +100,7 @@ impl SessionReader {
         }
         let steps = self.ahead.iter().zip(self.ahead.iter().skip(1)).map(|(from, to)| Step::new(from, to));
         self.rate_hz = rate_hz(steps.collect());
+        self.rate_rows = self.ahead.len();
         if matches!(self.rows, Rows::Recorded(..)) {
             // A recording has no columns: the sensors are those with any reading.
             for (i, present) in self.bend_sensors.iter_mut().enumerate() {
@@ -146,13 +154,22 @@ impl SessionReader {
 
     /// Sample rate, Hz: from the mean step of the first rows without gaps, as time stamps have jitter and are rounded. Where an
     /// arm's `usual_hz`, or up to ten times more or less, is within 1 % of it, that is used; with a single row `usual_hz`.
-    #[must_use]
-    pub fn rate_hz(&self, usual_hz: f64) -> f64 {
-        let Some(rate_hz) = self.rate_hz else { return usual_hz };
+    ///
+    /// # Errors
+    /// [`SessionProblem::TimeUnit`] of a CSV whose times are not in seconds, by `usual_hz`.
+    pub fn rate_hz(&self, usual_hz: f64) -> Result<f64, SessionError> {
+        let Some(rate_hz) = self.rate_hz else { return Ok(usual_hz) };
+        if self.kind == FileFormat::Csv
+            && self.rate_rows >= UNIT_ROWS
+            && let Some(factor) = time_factor(usual_hz, rate_hz)
+        {
+            let problem = SessionProblem::TimeUnit { rate_hz, usual_hz, factor };
+            return Err(SessionError { column: Some(TIME.to_owned()), ..self.error(problem) });
+        }
         let ratio = rate_hz / usual_hz;
         let nominal_hz =
             if ratio >= 1.0 { usual_hz * ratio.round().min(10.0) } else { usual_hz / ratio.recip().round().min(10.0) };
-        if (rate_hz / nominal_hz - 1.0).abs() < 0.01 { nominal_hz } else { rate_hz }
+        Ok(if (rate_hz / nominal_hz - 1.0).abs() < 0.01 { nominal_hz } else { rate_hz })
     }
 
     /// True where the session can be read twice, which a pipe cannot.
@@ -166,12 +183,12 @@ impl SessionReader {
         self.bend_sensors.iter().copied()
     }
 
-    /// True where the last line has a line end; otherwise its last number may be cut.
+    /// The file's defects in the rows that were read so far.
     #[must_use]
-    pub fn ends_with_line(&self) -> bool {
+    pub fn defects(&self) -> FileDefects {
         match &self.rows {
-            Rows::Csv(csv) => csv.ends_with_line(),
-            Rows::Recorded(..) => true,
+            Rows::Csv(csv) => FileDefects { last_line_is_open: !csv.ends_with_line(), holes: Vec::new() },
+            Rows::Recorded(rows, _) => FileDefects { last_line_is_open: false, holes: rows.holes().to_vec() },
         }
     }
 
@@ -200,15 +217,6 @@ impl SessionReader {
         match &self.rows {
             Rows::Csv(_) => &[],
             Rows::Recorded(rows, _) => rows.marks(),
-        }
-    }
-
-    /// The holes of a damaged recording that were read so far, by the times of the rows.
-    #[must_use]
-    pub fn holes(&self) -> &[HoleTimes] {
-        match &self.rows {
-            Rows::Csv(_) => &[],
-            Rows::Recorded(rows, _) => rows.holes(),
         }
     }
 

@@ -7,7 +7,9 @@ use board_core::FULL_SCALE_PA;
 use telemetry::SEGMENTS;
 
 use crate::line_limit::LONGEST_LINE;
+use crate::missing_column::MissingColumn;
 use crate::recording::ReadError;
+use crate::time_unit::time_unit_of;
 
 /// A problem of a session, with its place in the file.
 #[derive(Debug)]
@@ -44,8 +46,8 @@ pub enum SessionProblem {
     #[error("is not UTF-8 text")]
     NotText,
     /// A column is missing.
-    #[error("column {0} is missing")]
-    MissingColumn(String),
+    #[error("{0}")]
+    MissingColumn(Box<MissingColumn>),
     /// A column is there twice.
     #[error("column {0} is there twice")]
     DuplicateColumn(String),
@@ -100,6 +102,19 @@ pub enum SessionProblem {
     /// A time that does not fit.
     #[error("time {0} s, expected 0 s to 100 years")]
     Time(String),
+    /// The times are not in seconds.
+    #[error(
+        "the rows are at {rate_hz:.4} Hz and the arm's are at {usual_hz} Hz: the times are {factor:.4} times too large{}",
+        unit(*.factor)
+    )]
+    TimeUnit {
+        /// Rate of the session's rows by their times, Hz.
+        rate_hz: f64,
+        /// Rate in the table or the arm description, Hz.
+        usual_hz: f64,
+        /// Factor by which the times are too large.
+        factor: f64,
+    },
     /// A camera's time that does not fit.
     #[error("time {0} s, expected one within 100 years of 0")]
     Clock(String),
@@ -144,6 +159,10 @@ pub enum SessionProblem {
     /// A pose of which only some parts are there.
     #[error("the truth has an empty part, expected all of its cells or none")]
     PartialTruth,
+}
+
+fn unit(factor: f64) -> String {
+    time_unit_of(factor).map_or_else(String::new, |(_, name)| format!(", as {name} are"))
 }
 
 impl fmt::Display for SessionError {

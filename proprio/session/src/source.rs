@@ -6,11 +6,11 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use crate::recording::{Summary, is_recording};
+use crate::recording::{ReadError, Summary, is_damaged_begin, is_recording};
 use crate::{SessionError, SessionProblem};
 
 /// Bytes at the start by which the format is detected.
-const BEGIN: u64 = 8;
+const BEGIN: u64 = 32;
 
 /// Format of a session's file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -57,6 +57,10 @@ impl SessionFile {
         }
         let mut begin = Vec::new();
         file.by_ref().take(BEGIN).read_to_end(&mut begin).map_err(|error| fail(SessionProblem::Read(error)))?;
+        if is_damaged_begin(&begin) {
+            let problem = ReadError::Damaged("its first bytes are not those of an MCAP file".to_owned());
+            return Err(fail(SessionProblem::Recording(problem)));
+        }
         Ok(Self {
             path: path.to_owned(),
             kind: FileFormat::of(path, &begin),

@@ -32,6 +32,7 @@ mod figures {
             token: None,
             session: None,
             help: ToString::to_string,
+            finding_text: ToString::to_string,
         };
         let live = Link::start(Box::new(Due), None).expect("it is there");
         let monitor = Monitor::start(Some(live), options).expect("a free port");

@@ -9,6 +9,8 @@ mod faults;
 mod flash;
 mod last_words;
 #[cfg(unix)]
+mod late_recording;
+#[cfg(unix)]
 mod link;
 #[cfg(unix)]
 mod noise;

@@ -137,7 +137,7 @@ fn rows(session: &Path, tables: &Tables) -> Result<(f64, Vec<Row>), Problem> {
     while let Some(row) = reader.next_row()? {
         rows.push(row);
     }
-    Ok((reader.rate_hz(RATE_HZ), rows))
+    Ok((reader.rate_hz(RATE_HZ)?, rows))
 }
 
 const RIGS: &str = "\

@@ -4,7 +4,7 @@
 use calibration_tables::{ArmFile, MAX_SEGMENTS};
 use estimator_core::VOLTS_PER_COUNT;
 
-use super::finding::{Finding, Kind, Rows, Source};
+use super::finding::{Finding, Kind, Rows, Source, is_exchanged};
 use super::frame::Frame;
 
 /// Width outside the range that an arm in use reaches, as a share of the range.
@@ -30,7 +30,7 @@ struct Sensor {
 }
 
 /// The rule.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct BendRange([[Sensor; 2]; MAX_SEGMENTS]);
 
 impl BendRange {
@@ -65,6 +65,9 @@ impl BendRange {
     }
 
     pub fn finish(&self, findings: &mut Vec<Finding>) {
+        if findings.iter().any(|finding| finding.sensor == Source::AllBend) {
+            return;
+        }
         let sensors = || self.0.iter().flatten().filter(|sensor| sensor.limits.is_some() && sensor.read > 0);
         let largest = sensors().map(|sensor| sensor.largest).max().unwrap_or(0);
         if let Some(first) = sensors().next().filter(|_| sensors().count() > 1 && largest <= TEN_BITS) {
@@ -78,6 +81,13 @@ impl BendRange {
         for (i, sensors) in self.0.iter().enumerate() {
             for (place, sensor) in sensors.iter().enumerate() {
                 let source = Source::Bend { segment: i + 1, place };
+                if is_exchanged(findings, source) {
+                    continue;
+                }
+                if sensor.rail.count >= ROWS {
+                    // A sensor at an end of the ADC repeats its value there.
+                    findings.retain(|finding| finding.sensor != source);
+                }
                 let mut push = |rows: Rows, kind: Kind, least: f64| {
                     let figure = 100.0 * rows.count as f64 / sensor.read as f64;
                     if rows.count >= ROWS && figure > least {

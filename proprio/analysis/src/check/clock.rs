@@ -1,5 +1,7 @@
 //! Time stamps: their unit, equal ones, and gaps.
 
+use proprio_session::time_factor;
+
 use super::finding::{Finding, Kind, Rows, Source};
 use super::frame::Frame;
 
@@ -8,13 +10,6 @@ const FIRST: usize = 1000;
 /// A gap is longer than so many usual steps, and than so many seconds.
 const GAP_STEPS: f64 = 5.0;
 const GAP_SECONDS: f64 = 0.5;
-/// Factors of the table's rate over the session's outside which the unit of the times is wrong. Sessions of 1000 Hz are known,
-/// and of 1 Hz, with tables for 10 Hz.
-const SLOWER: f64 = 20.0;
-const FASTER: f64 = 1.0 / 110.0;
-/// Minutes instead of seconds, and the tolerance of this factor.
-const MINUTES: f64 = 1.0 / 60.0;
-const TOLERANCE: f64 = 0.02;
 /// Share of rows with the time of the row before, from which on they are a finding.
 const EQUAL_SHARE: f64 = 0.001;
 
@@ -27,7 +22,7 @@ struct Step {
 }
 
 /// The rule.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct Clock {
     rate_hz: f64,
     all: Rows,
@@ -102,8 +97,7 @@ impl Clock {
             self.find_usual();
         }
         let mut push = |rows, kind, figure| findings.push(Finding { sensor: Source::Time, rows, kind, figure });
-        let factor = self.usual_s.map_or(1.0, |usual_s| self.rate_hz * usual_s);
-        if !(FASTER..=SLOWER).contains(&factor) || (factor / MINUTES - 1.0).abs() < TOLERANCE {
+        if let Some(factor) = self.usual_s.and_then(|usual_s| time_factor(self.rate_hz, usual_s.recip())) {
             push(self.all, Kind::TimeUnit, factor);
             return false;
         }

@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use proprio_session::{SENSOR_NAMES, time_unit_of};
 use serde::Serialize;
 
 use super::frame::Frame;
@@ -24,6 +25,13 @@ pub enum Source {
         segment: usize,
         /// The second segment.
         other: usize,
+    },
+    /// A bend sensor of each of two segments: their places as in [`Self::Bend`].
+    TwoPlugs {
+        /// The segments.
+        segments: [usize; 2],
+        /// The places.
+        places: [usize; 2],
     },
     /// All bend sensors.
     AllBend,
@@ -49,7 +57,10 @@ impl fmt::Display for Source {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Time => f.write_str("time_s"),
-            Self::Bend { segment, place } => write!(f, "bend{segment}{}", ["a", "b"][*place]),
+            Self::Bend { segment, place } => write!(f, "bend{segment}{}", SENSOR_NAMES[*place]),
+            Self::TwoPlugs { segments: [segment, other], places: [place, of] } => {
+                write!(f, "bend{segment}{} and bend{other}{}", SENSOR_NAMES[*place], SENSOR_NAMES[*of])
+            }
             Self::TwoBends { segment, other } => write!(f, "bend{segment} and bend{other}"),
             Self::AllBend => f.write_str("all bend sensors"),
             Self::Imu { segment } => write!(f, "imu{segment}"),
@@ -129,6 +140,7 @@ impl Finding {
         match self.sensor {
             Source::Bend { segment, .. } => segment == number,
             Source::TwoBends { segment, other } => segment == number || other == number,
+            Source::TwoPlugs { segments, .. } => segments.contains(&number),
             Source::AllBend => true,
             _ => false,
         }
@@ -145,9 +157,45 @@ impl Finding {
     }
 }
 
+/// Factors of the counts by another ADC, and the reason.
+const COUNTS: [(f64, &str); 6] = [
+    (1.0 / 16.0, "8 bits in place of 12"),
+    (1.0 / 4.0, "10 bits in place of 12"),
+    (1.0 / 2.0, "11 bits in place of 12"),
+    (3.3 / 5.0, "a reference of 5 V in place of 3.3 V"),
+    (5.0 / 3.3, "a reference of 3.3 V in place of 5 V"),
+    (4.0, "14 bits in place of 12"),
+];
+/// Tolerance of such a factor, which is found by sensors that drift.
+const TOLERANCE: f64 = 0.08;
+
+/// The reason of a factor of the counts, if it is known.
+fn counts_reason(factor: f64) -> Option<&'static str> {
+    COUNTS.iter().find(|(known, _)| (factor / known - 1.0).abs() < TOLERANCE).map(|(_, reason)| *reason)
+}
+
 /// True where a finding is about the bend sensors of a segment, from 1.
 pub(super) fn is_bend_blamed(findings: &[Finding], number: usize) -> bool {
     findings.iter().any(|finding| finding.is_about_bend(number))
+}
+
+/// True where the bend angles of the segments up to this one, from 1, are wrong in the whole session.
+pub(super) fn is_chain_wrong(findings: &[Finding], number: usize) -> bool {
+    let is_whole = |finding: &&Finding| {
+        matches!(finding.kind, Kind::Exchanged | Kind::Counts | Kind::TenBits | Kind::Inverted | Kind::Unrelated)
+    };
+    findings.iter().filter(is_whole).any(|finding| (1..=number).any(|segment| finding.is_about_bend(segment)))
+}
+
+/// True for a bend sensor whose plug is exchanged.
+pub(super) fn is_exchanged(findings: &[Finding], sensor: Source) -> bool {
+    findings.iter().any(|finding| match (finding.sensor, sensor) {
+        (Source::TwoBends { segment, other }, Source::Bend { segment: of, .. }) => segment == of || other == of,
+        (Source::TwoPlugs { segments, places }, Source::Bend { segment, place }) => {
+            (0..2).any(|k| (segments[k], places[k]) == (segment, place))
+        }
+        _ => false,
+    })
 }
 
 /// True where a finding is about the IMU of a segment, from 1.
@@ -163,6 +211,8 @@ pub enum Kind {
     OutsideMap,
     /// Bend readings that are all below 1024 counts, as those of a 10-bit ADC are; largest reading, counts.
     TenBits,
+    /// The counts of all bend sensors are those of the table times a factor, the figure.
+    Counts,
     /// Bend readings at either end of the ADC: open or shorted; share, %.
     Rail,
     /// The reading never changes while other sensors move; range of the motion, deg.
@@ -180,6 +230,12 @@ pub enum Kind {
     Scale,
     /// No heading is above a whole turn in radians, and the steps do not fit; largest heading.
     Radians,
+    /// The headings by quaternions as x, y, z, w follow the bend sensors, those as w, x, y, z do not; correlation, %.
+    QuaternionOrder,
+    /// The IMU's x axis is not level, so that it has no good heading; elevation of the axis, deg.
+    OnItsSide,
+    /// The table's `tare.seconds` is 0, by which headings are absolute, and the IMUs' are not; largest angle from the bend sensors, deg.
+    NotAbsolute,
     /// The IMU's steps are those of another segment; share of their variance that the exchange explains, %.
     Exchanged,
     /// The steps of the sensor are not those of the other sensors; correlation, %.
@@ -207,6 +263,10 @@ impl fmt::Display for Finding {
         match kind {
             Kind::OutsideMap => write!(f, "{figure:.1} % of the readings are outside the voltages of the table's map"),
             Kind::TenBits => write!(f, "no reading is above {figure:.0} counts of 4095, as from a 10-bit ADC"),
+            Kind::Counts => {
+                write!(f, "the counts are {figure:.3} times those of the table")?;
+                counts_reason(*figure).map_or(Ok(()), |reason| write!(f, ", as with {reason}"))
+            }
             Kind::Rail => write!(f, "{figure:.1} % of the readings are at an end of the ADC: open or shorted"),
             Kind::Constant => write!(f, "the reading never changes while the other sensors move by {figure:.0}°"),
             Kind::Frozen => write!(f, "the last value is repeated while the other sensors move by {figure:.0}°"),
@@ -220,12 +280,28 @@ impl fmt::Display for Finding {
             Kind::Radians => write!(f, "no heading is above {figure:.3}°, as from radians in a column of degrees"),
             Kind::Exchanged => write!(f, "each follows the segment of the other ({figure:.0} % explained)"),
             Kind::Unrelated => write!(f, "the steps are not those of the other sensors (correlation {figure:.0} %)"),
+            Kind::QuaternionOrder => {
+                write!(
+                    f,
+                    "read as x, y, z, w the quaternions follow the bend sensors ({figure:.0} %), as w, x, y, z not"
+                )
+            }
+            Kind::OnItsSide => {
+                write!(f, "the IMU is on its side: its x axis is {figure:.0}° from level, expected about 0°")
+            }
+            Kind::NotAbsolute => write!(
+                f,
+                "the table has tare.seconds = 0, by which headings are absolute; these are up to {figure:.0}° from the bend sensors"
+            ),
             Kind::NewZero => {
                 write!(f, "the heading continues {figure:.0}° off, which the bend sensors do not show: another zero")
             }
             Kind::TareBent => write!(f, "{figure:.1}° from the reference pose during the tare"),
             Kind::TareMoves => write!(f, "moves by {figure:.1}° during the tare"),
-            Kind::TimeUnit => write!(f, "the table's rate is {figure:.4} times the rate of these times"),
+            Kind::TimeUnit => {
+                write!(f, "by the table's rate these times are {figure:.4} times too large")?;
+                time_unit_of(*figure).map_or(Ok(()), |(_, unit)| write!(f, ", as {unit} are"))
+            }
             Kind::EqualTimes => write!(f, "{figure:.0} rows have the time of the row before"),
             Kind::Gaps => write!(f, "rows are missing, {figure:.2} s at most"),
             Kind::LeavesTwin => write!(f, "departs by {figure:.0}° from its twin and the IMU"),

@@ -1,7 +1,7 @@
 //! Readings of a row as angles, which the rules share. An unknown angle is NaN, with which no comparison is true.
 
 use calibration_tables::MAX_SEGMENTS;
-use estimator_core::Phase;
+use estimator_core::{BendSensorConfig, ImuReading, Phase};
 use proprio_session::{Error, LoadedTable, Row};
 
 /// Readings of an ADC of 12 bits.
@@ -18,6 +18,7 @@ pub(super) struct Frame {
     pub row: u64,
     pub time_s: f64,
     pub counts: [[Option<u16>; 2]; MAX_SEGMENTS],
+    pub imus: [Option<ImuReading>; MAX_SEGMENTS],
     pub headings: [Option<Phase>; MAX_SEGMENTS],
     /// Bend angle by each sensor.
     pub bend: [[f64; 2]; MAX_SEGMENTS],
@@ -40,6 +41,7 @@ type Angles = Box<[f32]>;
 
 /// Converter of rows to frames.
 pub(super) struct Decoder {
+    is_table: bool,
     maps: Vec<[Option<Angles>; 2]>,
     last: [f64; MAX_SEGMENTS],
     /// Heading by the bend sensors in the row before.
@@ -49,21 +51,24 @@ pub(super) struct Decoder {
 
 impl Decoder {
     pub fn new(table: &LoadedTable) -> Result<Self, Error> {
-        let compiled = table.compile::<f64>(table.file.rate_hz)?;
-        let config = compiled.config();
-        let angles = |counts: usize, map: &estimator_core::BendMap<f64>| {
-            map.angle(counts as u16).map_or(f32::NAN, |angle| angle.to_degrees() as f32)
+        // An arm description has no maps.
+        let is_table = table.file.bend_sensors().is_ok();
+        let compiled = is_table.then(|| table.compile::<f64>(table.file.rate_hz)).transpose()?;
+        let maps = match &compiled {
+            Some(compiled) => compiled
+                .config()
+                .segments
+                .iter()
+                .map(|segment| segment.bend.each_ref().map(|sensor| sensor.as_ref().map(angles)))
+                .collect(),
+            None => vec![[None, None]; table.file.segments.len()],
         };
-        let maps = config.segments.iter().map(|segment| {
-            segment.bend.each_ref().map(|sensor| {
-                sensor.as_ref().map(|sensor| (0..COUNTS).map(|counts| angles(counts, &sensor.map)).collect())
-            })
-        });
         let unknown = [f64::NAN; MAX_SEGMENTS];
         let frame = Frame {
             row: 0,
             time_s: 0.0,
             counts: [[None; 2]; MAX_SEGMENTS],
+            imus: [None; MAX_SEGMENTS],
             headings: [None; MAX_SEGMENTS],
             bend: [[f64::NAN; 2]; MAX_SEGMENTS],
             theta: unknown,
@@ -73,15 +78,26 @@ impl Decoder {
             broken: [false; MAX_SEGMENTS],
             starts: false,
         };
-        Ok(Self { maps: maps.collect(), last: [0.0; MAX_SEGMENTS], last_bend: unknown, frame })
+        Ok(Self { is_table, maps, last: [0.0; MAX_SEGMENTS], last_bend: unknown, frame })
+    }
+
+    /// Bend angle of every reading of a sensor; `None` without a map.
+    pub fn angles(&self, segment: usize, place: usize) -> Option<&[f32]> {
+        self.maps[segment][place].as_deref()
+    }
+
+    /// True with a table, false with an arm description.
+    pub fn has_maps(&self) -> bool {
+        self.is_table
     }
 
     /// Converts the next row.
     pub fn update(&mut self, row: &Row) {
-        let Self { maps, last, last_bend, frame } = self;
+        let Self { maps, last, last_bend, frame, .. } = self;
         frame.row += 1;
         frame.time_s = row.sample.time_us as f64 / 1e6;
         frame.starts = row.starts;
+        frame.imus = row.sample.imu;
         let mut sum = 0.0;
         for (i, map) in maps.iter().enumerate() {
             frame.counts[i] = row.sample.bend[i];
@@ -110,6 +126,12 @@ impl Decoder {
             frame.heading[i] = if reading.is_nan() { reading } else { last[i] };
         }
     }
+}
+
+/// Bend angle of every reading of a sensor.
+fn angles(sensor: &BendSensorConfig<f64>) -> Angles {
+    let angle = |counts: usize| sensor.map.angle(counts as u16).map_or(f32::NAN, |angle| angle.to_degrees() as f32);
+    (0..COUNTS).map(angle).collect()
 }
 
 /// An angle within ±180°.

@@ -80,15 +80,24 @@ impl Repeats {
 }
 
 /// The rule.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct Frozen {
+    /// False with an arm description: the motion of a bend sensor is not known.
+    has_maps: bool,
+    /// Range of each IMU's heading.
+    headings: [Span; MAX_SEGMENTS],
     sensors: [[Repeats; PLACES]; MAX_SEGMENTS],
     segments: usize,
 }
 
 impl Frozen {
-    pub fn new(segments: usize) -> Self {
-        Self { sensors: [[Repeats::NONE; PLACES]; MAX_SEGMENTS], segments }
+    pub fn new(segments: usize, has_maps: bool) -> Self {
+        Self {
+            has_maps,
+            headings: [Span::EMPTY; MAX_SEGMENTS],
+            sensors: [[Repeats::NONE; PLACES]; MAX_SEGMENTS],
+            segments,
+        }
     }
 
     pub fn update(&mut self, frame: &Frame) {
@@ -102,24 +111,45 @@ impl Frozen {
             a.update(frame, of_a, [by_b, theta]);
             b.update(frame, of_b, [by_a, theta]);
             imu.update(frame, frame.headings[i].map(estimator_core::Phase::bits), sums);
+            self.headings[i].add(frame.heading[i]);
         }
     }
 
     pub fn finish(&mut self, findings: &mut Vec<Finding>) {
+        if !self.has_maps {
+            self.finish_without_maps(findings);
+            return;
+        }
         for (i, sensors) in self.sensors.iter_mut().enumerate() {
             for (place, repeats) in sensors.iter_mut().enumerate() {
                 repeats.end();
                 if repeats.frozen.count == 0 {
                     continue;
                 }
-                let segment = i + 1;
-                let sensor = if place < 2 { Source::Bend { segment, place } } else { Source::Imu { segment } };
-                let is_at_rail = findings.iter().any(|finding| finding.sensor == sensor && finding.kind == Kind::Rail);
-                if !is_at_rail {
-                    let kind = if repeats.changes == 0 { Kind::Constant } else { Kind::Frozen };
-                    findings.push(Finding { sensor, rows: repeats.frozen, kind, figure: repeats.motion });
+                let sensor = source(i + 1, place);
+                let kind = if repeats.changes == 0 { Kind::Constant } else { Kind::Frozen };
+                findings.push(Finding { sensor, rows: repeats.frozen, kind, figure: repeats.motion });
+            }
+        }
+    }
+
+    /// Finds the sensors whose value never changes while an IMU turns.
+    fn finish_without_maps(&self, findings: &mut Vec<Finding>) {
+        let motion = self.headings.iter().filter_map(Span::width).fold(0.0, f64::max);
+        if motion < MOTION {
+            return;
+        }
+        for (segment, sensors) in (1..).zip(&self.sensors) {
+            for (place, repeats) in sensors.iter().enumerate() {
+                if repeats.changes == 0 && repeats.run.count >= REPEATS {
+                    let sensor = source(segment, place);
+                    findings.push(Finding { sensor, rows: repeats.run, kind: Kind::Constant, figure: motion });
                 }
             }
         }
     }
+}
+
+fn source(segment: usize, place: usize) -> Source {
+    if place < 2 { Source::Bend { segment, place } } else { Source::Imu { segment } }
 }

@@ -11,10 +11,12 @@
 //! | `clock.rs` | unit of the times, equal times, gaps |
 //! | `tare.rs` | a tare that is bent or moves |
 //! | `bend_range.rs` | bend readings outside the voltages of the map |
+//! | `plugs.rs` | exchanged plugs of bend sensors, counts of another ADC |
 //! | `frozen.rs` | values that are repeated while other sensors move |
 //! | `same_imus.rs` | two IMUs with the same readings |
 //! | `new_zero.rs` | IMUs that continue from another zero, or read 0 |
-//! | `steps.rs` | steps of the IMUs against those of the bend sensors |
+//! | `steps.rs`, `wiring.rs` | steps of the IMUs against those of the bend sensors |
+//! | `quaternions.rs` | quaternions in another order, IMUs on their side |
 //! | `twins.rs` | a bend sensor that leaves its twin and the IMU |
 
 mod bend_range;
@@ -23,14 +25,17 @@ mod finding;
 mod frame;
 mod frozen;
 mod new_zero;
+mod plugs;
+mod quaternions;
 mod same_imus;
 mod steps;
 mod tare;
 mod twins;
+mod wiring;
 
 use std::path::Path;
 
-use proprio_session::{LoadedTable, Progress, Row};
+use proprio_session::{FileDefects, LoadedTable, Progress, RequiredColumns, Row, SessionReader};
 
 pub use finding::{Finding, Kind, Rows, Source};
 
@@ -39,16 +44,24 @@ use self::clock::Clock;
 use self::frame::Decoder;
 use self::frozen::Frozen;
 use self::new_zero::NewZero;
+use self::plugs::Plugs;
 use self::same_imus::SameImus;
 use self::steps::Steps;
 use self::tare::Tare;
 use self::twins::Twins;
 use crate::error::Error;
-use crate::replay::{SessionRows, SessionSummary};
 
 /// A check of one session, row by row.
 pub struct SessionCheck {
     decoder: Decoder,
+    /// The rules before the first row.
+    start: Rules,
+    rules: Rules,
+}
+
+/// The rules, each with what it has seen so far.
+#[derive(Debug, Clone)]
+struct Rules {
     clock: Clock,
     tare: Tare,
     bend_range: BendRange,
@@ -60,52 +73,66 @@ pub struct SessionCheck {
 }
 
 impl SessionCheck {
-    /// A check before the first row.
+    /// A check before the first row, with a table; with an arm description, by the rules that need no map: times, tare, IMUs that
+    /// never change, and IMUs with the same readings.
     ///
     /// # Errors
-    /// [`Error::File`] on an arm description.
+    /// [`Error::File`].
     pub fn new(table: &LoadedTable) -> Result<Self, Error> {
         let decoder = Decoder::new(table)?;
         let segments = table.file.segments.len();
-        Ok(Self {
-            decoder,
+        let rules = Rules {
             clock: Clock::new(table.file.rate_hz),
             tare: Tare::new(&table.file),
             bend_range: BendRange::new(&table.file),
-            frozen: Frozen::new(segments),
+            frozen: Frozen::new(segments, decoder.has_maps()),
             same_imus: SameImus::new(segments),
             new_zero: NewZero::new(),
-            steps: Steps::new(segments),
+            steps: Steps::new(segments, Plugs::new(&table.file, &decoder)),
             twins: Twins::new(&table.file),
-        })
+        };
+        Ok(Self { decoder, start: rules.clone(), rules })
+    }
+
+    /// Starts again before the next row, which becomes row 1.
+    pub fn restart(&mut self) {
+        self.decoder.frame.row = 0;
+        self.rules = self.start.clone();
     }
 
     /// Checks the next row.
     pub fn update(&mut self, row: &Row) {
         self.decoder.update(row);
-        let frame = &self.decoder.frame;
-        self.clock.update(frame);
-        self.tare.update(frame);
-        self.bend_range.update(frame);
-        self.frozen.update(frame);
-        self.same_imus.update(frame);
-        self.new_zero.update(frame);
-        self.steps.update(frame);
-        self.twins.update(frame);
+        let (frame, rules) = (&self.decoder.frame, &mut self.rules);
+        rules.clock.update(frame);
+        rules.tare.update(frame);
+        rules.bend_range.update(frame);
+        rules.frozen.update(frame);
+        rules.same_imus.update(frame);
+        rules.new_zero.update(frame);
+        rules.steps.update(frame);
+        rules.twins.update(frame);
     }
 
-    /// The findings, after the last row.
+    /// The findings in the rows so far.
     #[must_use]
-    pub fn finish(mut self) -> Vec<Finding> {
+    pub fn findings(&self) -> Vec<Finding> {
+        self.rules.clone().finish()
+    }
+}
+
+impl Rules {
+    fn finish(mut self) -> Vec<Finding> {
         let mut findings = Vec::new();
         // The other rules take times for seconds.
         if !self.clock.finish(&mut findings) {
             return findings;
         }
         // A rule leaves out the sensors that an earlier one has found.
-        self.bend_range.finish(&mut findings);
         self.frozen.finish(&mut findings);
         self.same_imus.finish(&mut findings);
+        self.steps.plugs.finish(&mut findings);
+        self.bend_range.finish(&mut findings);
         self.steps.finish(&mut findings);
         self.new_zero.finish(&mut findings);
         self.tare.finish(&mut findings);
@@ -114,19 +141,37 @@ impl SessionCheck {
     }
 }
 
-/// Checks a session.
+/// A session that was checked.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CheckedSession {
+    /// Number of rows.
+    pub samples: u64,
+    /// The file's defects, past which it was read.
+    pub defects: FileDefects,
+    /// The findings.
+    pub findings: Vec<Finding>,
+}
+
+/// Checks a session with a table, or with an arm description as [`SessionCheck::new`] says.
 ///
 /// # Errors
 /// Errors of the session and the table.
-pub fn check(
-    session: &Path,
-    table: &LoadedTable,
-    progress: &mut dyn Progress,
-) -> Result<(SessionSummary, Vec<Finding>), Error> {
+pub fn check(session: &Path, table: &LoadedTable, progress: &mut dyn Progress) -> Result<CheckedSession, Error> {
     let mut check = SessionCheck::new(table)?;
-    let mut rows = SessionRows::open(session, table, "checking", progress)?;
-    while let Some(row) = rows.next_row()? {
-        check.update(&row);
+    let needs = if check.decoder.has_maps() {
+        table.required_columns()?
+    } else {
+        RequiredColumns { truth: false, ..RequiredColumns::of_calibration(&table.file) }
+    };
+    let mut reader = SessionReader::open(session, &needs)?;
+    let work = format!("checking {}", session.display());
+    let mut samples = 0;
+    while let Some(row) = reader.next_row()? {
+        if row.is_recorded() {
+            check.update(&row);
+            samples += 1;
+        }
+        progress.advance(&work, reader.progress());
     }
-    Ok((rows.summary(table)?, check.finish()))
+    Ok(CheckedSession { samples, defects: reader.defects(), findings: check.findings() })
 }

@@ -2,7 +2,7 @@
 
 use calibration_tables::MAX_SEGMENTS;
 
-use super::finding::{Finding, Kind, Rows, Source, is_imu_blamed};
+use super::finding::{Finding, Kind, Rows, Source, is_chain_wrong, is_imu_blamed};
 use super::frame::{Frame, wrapped};
 
 /// Least jump of the heading against the bend sensors, deg: after missing readings, and from one reading to the next.
@@ -30,7 +30,7 @@ struct Jumps {
 }
 
 /// The rule.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct NewZero([Jumps; MAX_SEGMENTS]);
 
 impl NewZero {
@@ -60,8 +60,8 @@ impl NewZero {
     pub fn finish(&self, findings: &mut Vec<Finding>) {
         for (i, jumps) in self.0.iter().enumerate() {
             let sensor = Source::Imu { segment: i + 1 };
-            // The jumps of an IMU that turns otherwise than the arm are no other zeros.
-            if is_imu_blamed(findings, i + 1) {
+            // The jumps of an IMU that turns otherwise than the arm are no other zeros, nor are those against wrong bend angles.
+            if is_imu_blamed(findings, i + 1) || is_chain_wrong(findings, i + 1) {
                 continue;
             }
             if jumps.new_zero.count > 0 {

@@ -29,7 +29,7 @@ impl Pair {
 }
 
 /// The rule.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct SameImus {
     segments: usize,
     last: [Option<Phase>; MAX_SEGMENTS],

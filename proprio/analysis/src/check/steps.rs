@@ -6,9 +6,13 @@
 //! equal steps, 1 for unrelated ones, 2 for opposite ones.
 
 use calibration_tables::MAX_SEGMENTS;
+use estimator_core::ImuReading;
 
 use super::finding::{Finding, Kind, Rows, Source, is_bend_blamed, is_imu_blamed};
 use super::frame::{Frame, difference};
+use super::plugs::Plugs;
+use super::quaternions::Quaternions;
+use super::wiring::{Fault, Wiring};
 
 /// Shortest and longest interval of a step, s. Sessions at less than 1 Hz have their own interval.
 const INTERVAL_S: f64 = 0.999;
@@ -60,18 +64,23 @@ struct At {
     heading: [f64; MAX_SEGMENTS],
     theta: [f64; MAX_SEGMENTS],
     bend: [[f64; 2]; MAX_SEGMENTS],
+    counts: [[f64; 2]; MAX_SEGMENTS],
+    imus: [Option<ImuReading>; MAX_SEGMENTS],
+    bend_heading: [f64; MAX_SEGMENTS],
 }
 
 /// The rule.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct Steps {
     segments: usize,
+    pub plugs: Plugs,
+    quaternions: Quaternions,
     /// IMUs that were not read, or have jumped, since the last step.
     broken: [bool; MAX_SEGMENTS],
     at: Option<At>,
     rows: Rows,
-    /// Largest heading as it was read, deg.
-    largest: f64,
+    /// Largest heading of each IMU as it was read, deg.
+    largest: [f64; MAX_SEGMENTS],
     /// Steps of IMUs by steps of IMUs, of IMUs by bend angles, of bend angles.
     imu_imu: Moments,
     imu_bend: Moments,
@@ -80,46 +89,17 @@ pub(super) struct Steps {
     places: [[f64; 5]; MAX_SEGMENTS],
 }
 
-/// Wiring of the IMUs and of the segments' bend sensors.
-#[derive(Debug, Clone, Copy)]
-struct Wiring {
-    imu: [usize; MAX_SEGMENTS],
-    gain: [f64; MAX_SEGMENTS],
-    bend: [usize; MAX_SEGMENTS],
-    bend_sign: [f64; MAX_SEGMENTS],
-}
-
-/// A supposed fault.
-#[derive(Debug, Clone, Copy)]
-enum Fault {
-    Gain(Option<usize>, f64),
-    Imus(usize, usize),
-    Bends(usize, usize),
-    BendSign(usize),
-}
-
-impl Wiring {
-    fn with(mut self, fault: Fault) -> Self {
-        match fault {
-            Fault::Gain(None, gain) => self.gain.iter_mut().for_each(|own| *own *= gain),
-            Fault::Gain(Some(i), gain) => self.gain[i] *= gain,
-            Fault::Imus(i, j) => self.imu.swap(i, j),
-            Fault::Bends(i, j) => self.bend.swap(i, j),
-            Fault::BendSign(i) => self.bend_sign[i] = -self.bend_sign[i],
-        }
-        self
-    }
-}
-
 impl Steps {
-    pub fn new(segments: usize) -> Self {
+    pub fn new(segments: usize, plugs: Plugs) -> Self {
         let moments = Moments { sum: ZERO, count: ZERO };
         Self {
             segments,
+            plugs,
+            quaternions: Quaternions::new(),
             broken: [false; MAX_SEGMENTS],
             at: None,
             rows: Rows::default(),
-            largest: 0.0,
+            largest: [0.0; MAX_SEGMENTS],
             imu_imu: moments.clone(),
             imu_bend: moments.clone(),
             bend_bend: moments,
@@ -129,8 +109,11 @@ impl Steps {
 
     pub fn update(&mut self, frame: &Frame) {
         self.rows.add(frame);
-        self.largest = frame.reading.iter().copied().fold(self.largest, f64::max);
-        let at = At { time_s: frame.time_s, heading: frame.heading, theta: frame.theta, bend: frame.bend };
+        self.plugs.update(frame);
+        self.largest.iter_mut().zip(frame.reading).for_each(|(largest, reading)| *largest = largest.max(reading));
+        let counts = frame.counts.map(|pair| pair.map(|counts| counts.map_or(f64::NAN, f64::from)));
+        let Frame { time_s, heading, theta, bend, imus, bend_heading, .. } = *frame;
+        let at = At { time_s, heading, theta, bend, counts, imus, bend_heading };
         let Some(from) = self.at.as_ref().filter(|_| !frame.starts) else {
             self.at = Some(at);
             return;
@@ -151,6 +134,11 @@ impl Steps {
         let heading: [f64; MAX_SEGMENTS] =
             std::array::from_fn(|i| if self.broken[i] { f64::NAN } else { to.heading[i] - from.heading[i] });
         let theta: [f64; MAX_SEGMENTS] = std::array::from_fn(|i| to.theta[i] - from.theta[i]);
+        let by_imu = std::array::from_fn(|i| difference(&heading, i));
+        let counts = std::array::from_fn(|i| [0, 1].map(|place| to.counts[i][place] - from.counts[i][place]));
+        self.plugs.add(&counts, &by_imu);
+        let bend_heading = std::array::from_fn(|i| to.bend_heading[i] - from.bend_heading[i]);
+        self.quaternions.add(&from.imus, &to.imus, &bend_heading);
         for i in 0..self.segments {
             for j in 0..self.segments {
                 self.imu_bend.add(i, j, heading[i] * theta[j]);
@@ -159,7 +147,7 @@ impl Steps {
                     self.bend_bend.add(i, j, theta[i] * theta[j]);
                 }
             }
-            let by_imu = difference(&heading, i);
+            let by_imu = by_imu[i];
             let [a, b] = [0, 1].map(|place| to.bend[i][place] - from.bend[i][place]);
             let products = [a * a, b * b, a * by_imu, b * by_imu, by_imu * by_imu];
             for (sum, product) in self.places[i].iter_mut().zip(products) {
@@ -168,8 +156,9 @@ impl Steps {
         }
     }
 
-    pub fn finish(self, findings: &mut Vec<Finding>) {
-        Judge::new(&self, findings).run(&self, findings);
+    pub fn finish(&self, findings: &mut Vec<Finding>) {
+        self.quaternions.finish(self.rows, findings);
+        Judge::new(self, findings).run(self, findings);
     }
 }
 
@@ -225,6 +214,22 @@ impl Judge {
         self.segments.iter().map(|i| self.misfit(wiring, *i)).sum()
     }
 
+    /// True where this segment and the next one together fit the IMUs before and behind them, without the IMU between them.
+    fn fits_without(&self, i: usize) -> bool {
+        let next = i + 1;
+        if !self.segments.contains(&next) {
+            return false;
+        }
+        let product = |imu: usize| self.imu_bend[imu][i] + self.imu_bend[imu][next];
+        let (mut square, mut both) = (self.imu_imu[next][next], product(next));
+        if let Some(before) = i.checked_sub(1) {
+            square += self.imu_imu[before][before] - 2.0 * self.imu_imu[next][before];
+            both -= product(before);
+        }
+        let bend = self.bend_bend[i][i] + self.bend_bend[next][next] + 2.0 * self.bend_bend[next][i];
+        (square - 2.0 * both + bend) / (square + bend + MOTION * MOTION) < EXPLAINED
+    }
+
     /// The gain of all IMUs by which they fit best.
     fn common_gain(&self, wiring: &Wiring) -> f64 {
         let [square, product] = self.sum_by_imus(wiring, &self.segments);
@@ -255,10 +260,32 @@ impl Judge {
     }
 
     fn run(&self, steps: &Steps, findings: &mut Vec<Finding>) {
+        self.radians(steps, findings);
+        if findings.iter().any(|found| found.kind == Kind::Radians) {
+            return;
+        }
         self.lone_sensors(steps, findings);
         let judged: Vec<usize> = self.segments.iter().copied().filter(|i| !is_bend_blamed(findings, i + 1)).collect();
         let wiring = self.explain(steps, &judged, findings);
         self.report_unexplained(steps, &wiring, &self.bad(&judged, &wiring), findings);
+    }
+
+    /// Finds IMUs in radians: no heading is above a whole turn in them, and the segments on either side of the IMU disagree.
+    fn radians(&self, steps: &Steps, findings: &mut Vec<Finding>) {
+        let in_order = Wiring::in_order();
+        let disagrees = |i: usize| self.segments.contains(&i) && self.misfit(&in_order, i) > MISFIT;
+        let is_small = |i: usize| (f64::MIN_POSITIVE..=WHOLE_TURN_RAD).contains(&steps.largest[i]);
+        let imus: Vec<usize> =
+            (0..steps.segments).filter(|i| is_small(*i) && (disagrees(*i) || disagrees(i + 1))).collect();
+        let figure = |imus: &[usize]| imus.iter().map(|i| steps.largest[*i]).fold(0.0, f64::max);
+        let (rows, kind) = (steps.rows, Kind::Radians);
+        if imus.len() > 1 && (0..steps.segments).all(is_small) {
+            findings.push(Finding { sensor: Source::AllImus, rows, kind, figure: figure(&imus) });
+        } else {
+            let found =
+                |i: &usize| Finding { sensor: Source::Imu { segment: i + 1 }, rows, kind, figure: figure(&[*i]) };
+            findings.extend(imus.iter().map(found));
+        }
     }
 
     /// The segments of these whose sensors disagree.
@@ -268,9 +295,7 @@ impl Judge {
 
     /// Supposes the fault that explains most, as long as one explains a segment; returns the wiring with all of them.
     fn explain(&self, steps: &Steps, judged: &[usize], findings: &mut Vec<Finding>) -> Wiring {
-        let in_order = std::array::from_fn(|i| i);
-        let mut wiring =
-            Wiring { imu: in_order, gain: [1.0; MAX_SEGMENTS], bend: in_order, bend_sign: [1.0; MAX_SEGMENTS] };
+        let mut wiring = Wiring::in_order();
         loop {
             let now = self.bad(judged, &wiring);
             if now.is_empty() {
@@ -290,7 +315,7 @@ impl Judge {
                 return wiring;
             }
             let explained = 100.0 * (1.0 - self.misfits(&then) / self.misfits(&wiring));
-            Self::report(steps, fault, explained, findings);
+            self.report(steps, fault, explained, findings);
             wiring = then;
         }
     }
@@ -301,12 +326,8 @@ impl Judge {
             let [square, product] = self.sum_by_imus(wiring, bad);
             let bend: f64 = bad.iter().map(|i| self.bend_bend[*i][*i]).sum();
             let correlation = 100.0 * product / (square * bend).sqrt().max(f64::MIN_POSITIVE);
-            let (kind, figure) = if steps.largest <= WHOLE_TURN_RAD {
-                (Kind::Radians, steps.largest)
-            } else {
-                (Kind::Unrelated, correlation)
-            };
-            findings.push(Finding { sensor: Source::AllImus, rows: steps.rows, kind, figure });
+            let (rows, kind) = (steps.rows, Kind::Unrelated);
+            findings.push(Finding { sensor: Source::AllImus, rows, kind, figure: correlation });
             return;
         }
         for i in bad {
@@ -314,12 +335,12 @@ impl Judge {
             let is_before_unrelated =
                 findings.iter().any(|found| found.sensor == source && found.kind == Kind::Unrelated);
             if !is_before_unrelated {
-                Self::blame(steps, *i, bad.contains(&(i + 1)) || *i + 1 == steps.segments, findings);
+                self.blame(steps, *i, bad.contains(&(i + 1)) || *i + 1 == steps.segments, findings);
             }
         }
     }
 
-    fn report(steps: &Steps, fault: Fault, explained: f64, findings: &mut Vec<Finding>) {
+    fn report(&self, steps: &Steps, fault: Fault, explained: f64, findings: &mut Vec<Finding>) {
         let (sensor, kind, figure) = match fault {
             Fault::Gain(imu, gain) => {
                 let sensor = imu.map_or(Source::AllImus, |i| Source::Imu { segment: i + 1 });
@@ -327,7 +348,7 @@ impl Judge {
             }
             Fault::Imus(i, j) => (Source::TwoImus { segment: i + 1, other: j + 1 }, Kind::Exchanged, explained),
             Fault::Bends(i, j) => (Source::TwoBends { segment: i + 1, other: j + 1 }, Kind::Exchanged, explained),
-            Fault::BendSign(i) => return Self::blame(steps, i, false, findings),
+            Fault::BendSign(i) => return self.blame(steps, i, false, findings),
         };
         findings.push(Finding { sensor, rows: steps.rows, kind, figure });
     }
@@ -348,10 +369,10 @@ impl Judge {
 
     /// Finds the sensor of a segment in which no supposed fault of the wiring explains the misfit. An IMU is in the next segment,
     /// too.
-    fn blame(steps: &Steps, i: usize, next_is_bad: bool, findings: &mut Vec<Finding>) {
+    fn blame(&self, steps: &Steps, i: usize, next_is_bad: bool, findings: &mut Vec<Finding>) {
         let correlations = correlations(&steps.places[i]);
         let rows = steps.rows;
-        if next_is_bad && correlations.iter().all(|correlation| correlation.abs() < FOLLOWS) {
+        if (next_is_bad || self.fits_without(i)) && correlations.iter().all(|correlation| correlation.abs() < FOLLOWS) {
             let figure = 100.0 * correlations[0];
             findings.push(Finding { sensor: Source::Imu { segment: i + 1 }, rows, kind: Kind::Unrelated, figure });
             return;

@@ -31,7 +31,7 @@ struct Segment {
 }
 
 /// The rule.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct Twins {
     tare_s: f64,
     tare_ends_s: f64,

@@ -137,7 +137,7 @@ impl<'t> ReportBuilder<'t> {
             drift,
             tip_errors,
             shapes,
-            findings: check.finish(),
+            findings: check.findings(),
         });
         Ok(summary)
     }

@@ -56,7 +56,7 @@ pub fn replay<S: FusedOps>(
         return Err(Error::NotSmoothed(table.path.to_owned()));
     }
     let mut rows = SessionRows::open(session, table, "first pass over", progress)?;
-    let compiled = table.compile::<S>(rows.rate_hz(table))?;
+    let compiled = table.compile::<S>(rows.rate_hz(table)?)?;
     let config = compiled.config();
     let mut forward = ForwardPass::new(&config);
     while let Some(row) = rows.next_row()? {

@@ -1,5 +1,7 @@
 //! An alignment of a camera's clock and a session's, and its quality.
 
+use proprio_session::FileDefects;
+
 use super::fine::Clocks;
 use super::frames::Frames;
 use super::motion::{ComparedSensors, Readings};
@@ -9,6 +11,8 @@ pub struct Alignment {
     pub(super) frames: Frames,
     pub(super) readings: Readings,
     pub(super) clocks: Clocks,
+    /// Defects of the session's and of the camera's file.
+    pub defects: [FileDefects; 2],
     /// Quality of the alignment.
     pub report: AlignmentReport,
 }
@@ -34,6 +38,4 @@ pub struct AlignmentReport {
     pub correlation: f64,
     /// Number of moments, ten per second, at which both were compared.
     pub matched: usize,
-    /// True where the last lines of session and camera file have a line end; otherwise their last numbers may be cut.
-    pub end_with_line: [bool; 2],
 }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use proprio_session::{CameraReader, Pose, Progress, SessionError, SessionProblem};
+use proprio_session::{CameraReader, FileDefects, Pose, Progress, SessionError, SessionProblem};
 
 use super::angle::unwrap_near;
 use super::base;
@@ -17,7 +17,7 @@ const LONGEST_GAP_S: f64 = 0.2;
 pub(super) struct Frames {
     /// Time of the first frame by the camera's clock.
     pub first_s: f64,
-    pub ends_with_line: bool,
+    pub defects: FileDefects,
     /// Times since the first frame.
     times_s: Vec<f64>,
     /// The marker at each segment's end, frame by frame.
@@ -28,12 +28,8 @@ impl Frames {
     pub fn read(camera: &Path, segments: usize, progress: &mut dyn Progress) -> Result<Self, Error> {
         let mut reader = CameraReader::open(camera, segments)?;
         let work = format!("reading {}", camera.display());
-        let mut frames = Self {
-            first_s: 0.0,
-            ends_with_line: reader.ends_with_line(),
-            times_s: Vec::new(),
-            ends: vec![Vec::new(); segments],
-        };
+        let mut frames =
+            Self { first_s: 0.0, defects: reader.defects(), times_s: Vec::new(), ends: vec![Vec::new(); segments] };
         let mut base = Vec::new();
         while let Some(frame) = reader.next_frame()? {
             if frames.times_s.is_empty() {

@@ -70,9 +70,9 @@ pub fn align(
         residual_ms: fit.residual_s * 1e3,
         correlation: fit.correlation,
         matched: fit.matched,
-        end_with_line: [readings.ends_with_line, frames.ends_with_line],
     };
-    Ok(Alignment { frames, readings, clocks: fit.clocks, report })
+    let defects = [readings.defects.clone(), frames.defects.clone()];
+    Ok(Alignment { frames, readings, clocks: fit.clocks, defects, report })
 }
 
 fn check_length(seconds: f64) -> Result<(), AlignmentError> {

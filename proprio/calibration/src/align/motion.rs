@@ -5,7 +5,9 @@ use std::path::Path;
 
 use calibration_tables::ArmFile;
 use estimator_core::{ImuReading, SENSORS_PER_SEGMENT};
-use proprio_session::{FileFormat, Progress, RequiredColumns, Row, SessionError, SessionProblem, SessionReader};
+use proprio_session::{
+    FileDefects, FileFormat, Progress, RequiredColumns, Row, SessionError, SessionProblem, SessionReader,
+};
 
 use super::angle::unwrap_near;
 use super::error::AlignmentError;
@@ -56,7 +58,7 @@ impl ComparedSensors {
 /// Readings of a session's sensors, without the missing ones.
 pub(super) struct Readings {
     pub times_us: Vec<u64>,
-    pub ends_with_line: bool,
+    pub defects: FileDefects,
     /// Starts of the board's runs, s, at which an IMU's heading has a new zero.
     starts_s: Vec<f64>,
     imu: Vec<Vec<Reading>>,
@@ -80,7 +82,7 @@ impl Readings {
         let n = arm.segments.len();
         let mut readings = Self {
             times_us: Vec::new(),
-            ends_with_line: reader.ends_with_line(),
+            defects: reader.defects(),
             starts_s: Vec::new(),
             imu: vec![Vec::new(); n],
             bend: vec![Default::default(); n],

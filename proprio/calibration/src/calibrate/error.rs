@@ -1,7 +1,5 @@
 //! Errors and warnings of a calibration.
 
-use proprio_session::LAST_LINE;
-
 /// An error that prevents a good table.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum CalibrationError {
@@ -155,9 +153,6 @@ pub enum Warning {
         /// The sensor.
         name: String,
     },
-    /// The file's last line has no end.
-    #[error("{LAST_LINE}")]
-    LastLine,
     /// Readings that no noise explains.
     #[error("{count} readings of {name} are over six RMSE off its map; spikes spoil it, empty their cells")]
     Outliers {

@@ -37,7 +37,7 @@ mod sweep;
 use std::path::PathBuf;
 
 use calibration_tables::ArmFile;
-use proprio_session::{LoadedTable, Progress};
+use proprio_session::{FileDefects, LoadedTable, Progress};
 
 pub(crate) use curvature::{MISFIT_PERCENT, constant_curvature_error};
 pub use error::{CalibrationError, Warning};
@@ -59,6 +59,8 @@ pub struct Calibration {
     pub segments: Vec<SegmentReport>,
     /// Errors on the last fifth of each session, by a table of the rest; `None` where the rest makes no table.
     pub held_out: Option<HeldOut>,
+    /// Defects of each session's file.
+    pub defects: Vec<FileDefects>,
     /// Warnings about the table.
     pub warnings: Vec<Warning>,
 }
@@ -82,5 +84,5 @@ pub fn calibrate(
     let held_out = held_out::evaluate(&sweep, sessions, arm, options, progress)?;
     warnings.extend(held_out.as_ref().and_then(HeldOut::warning));
     let sensors = derived.sensors.into_iter().map(|sensor| sensor.report).collect();
-    Ok(Calibration { table: derived.table, sensors, segments, held_out, warnings })
+    Ok(Calibration { table: derived.table, sensors, segments, held_out, defects: sweep.defects, warnings })
 }

@@ -4,7 +4,9 @@ use std::path::{Path, PathBuf};
 
 use calibration_tables::{ArmFile, MAX_SEGMENTS};
 use estimator_core::{HeadingTracker, ImuReading, Phase, SENSORS_PER_SEGMENT, SegmentConfig, Turns};
-use proprio_session::{Progress, RequiredColumns, Row, SENSOR_NAMES, SessionError, SessionProblem, SessionReader};
+use proprio_session::{
+    FileDefects, Progress, RequiredColumns, Row, SENSOR_NAMES, SessionError, SessionProblem, SessionReader,
+};
 
 use super::curvature::{constant_curvature_error, end_error, geometry};
 use super::error::{CalibrationError, Warning};
@@ -38,7 +40,8 @@ pub(super) struct Sweep {
     pub rate_hz: f64,
     /// Time of each row, µs, from its own session's zero.
     pub time_us: Vec<u64>,
-    pub ends_with_line: bool,
+    /// Defects of each session's file.
+    pub defects: Vec<FileDefects>,
     /// Run of the estimator of each row: at a start, headings have a new zero and plays are reset.
     pub runs: Vec<u32>,
     /// The session that each row is of.
@@ -85,7 +88,7 @@ impl Sweep {
         let mut sweep = Self {
             rate_hz: arm.rate_hz,
             time_us: Vec::new(),
-            ends_with_line: true,
+            defects: Vec::new(),
             runs: Vec::new(),
             sessions: Vec::new(),
             theta: vec![Vec::new(); n],
@@ -117,7 +120,7 @@ impl Sweep {
             return Err(SessionError { path, line: None, column: None, problem: SessionProblem::NotAFile }.into());
         }
         let refuse = |source| Error::Calibration { path: session.to_owned(), source };
-        let rate_hz = reader.rate_hz(arm.rate_hz);
+        let rate_hz = reader.rate_hz(arm.rate_hz)?;
         if number == 0 {
             self.rate_hz = rate_hz;
             self.sensors = sensor_columns(&reader).map_err(refuse)?;
@@ -128,7 +131,6 @@ impl Sweep {
         } else if (rate_hz / self.rate_hz - 1.0).abs() > SAME_RATE {
             return Err(refuse(CalibrationError::OtherRate { found_hz: rate_hz, expected_hz: self.rate_hz }));
         }
-        self.ends_with_line &= reader.ends_with_line();
         let unread = [HeadingTracker::new(0, Turns::ZERO); MAX_SEGMENTS];
         let mut unwrap = Unwrap { imu: unread, truth: unread };
         let work = format!("reading {}", session.display());
@@ -136,6 +138,7 @@ impl Sweep {
             self.push(&row, number, &mut unwrap);
             progress.advance(&work, reader.progress());
         }
+        self.defects.push(reader.defects());
         Ok(())
     }
 
@@ -164,6 +167,7 @@ impl Sweep {
         let sensor = |sensor: &SensorColumn| SensorColumn { counts: kept(&sensor.counts, &is_kept), ..sensor.clone() };
         Self {
             time_us: kept(&self.time_us, &is_kept),
+            defects: Vec::new(),
             runs: kept(&self.runs, &is_kept),
             sessions: kept(&self.sessions, &is_kept),
             theta: columns(&self.theta),
@@ -215,7 +219,6 @@ impl Sweep {
         let coupled = self.coupled();
         let pairs: Vec<_> = coupled.iter().map(|pair| (pair.first, pair.second)).collect();
         warnings.extend((!pairs.is_empty()).then_some(Warning::CoupledSegments(pairs)));
-        warnings.extend((!self.ends_with_line).then_some(Warning::LastLine));
         Ok(warnings)
     }
 
@@ -281,7 +284,7 @@ impl Sweep {
         Self {
             rate_hz,
             time_us: (0..rows).map(|row| (row as f64 * 1e6 / rate_hz) as u64).collect(),
-            ends_with_line: true,
+            defects: Vec::new(),
             runs,
             sessions: vec![0; rows],
             heading: vec![theta.clone()],

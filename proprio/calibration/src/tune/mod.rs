@@ -27,7 +27,7 @@ use std::time::{Duration, Instant};
 use calibration_tables::{ArmFile, DriftToml, DriftTuningToml, StopReason, TuningToml};
 use proprio_analysis::consistency::FilterConsistency;
 use proprio_analysis::replay::replay;
-use proprio_session::{LoadedTable, Progress};
+use proprio_session::{FileDefects, LoadedTable, Progress};
 
 pub use dual::Dual;
 pub use error::TuningError;
@@ -79,10 +79,9 @@ impl<'t> Tuner<'t> {
         Ok(Self { table, objective, before })
     }
 
-    /// The sessions whose last line has no end.
-    pub fn cut_sessions(&self) -> impl Iterator<Item = &Path> {
-        let cut = self.objective.sessions().iter().filter(|session| !session.ends_with_line);
-        cut.map(|session| session.path.as_path())
+    /// Each session with the defects of its file.
+    pub fn defects(&self) -> impl Iterator<Item = (&Path, &FileDefects)> {
+        self.objective.sessions().iter().map(|session| (session.path.as_path(), &session.defects))
     }
 
     /// Searches or descends until the RMSE converges, or until `is_interrupted` after a run or an iteration.

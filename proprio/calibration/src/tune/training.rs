@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use calibration_tables::{ArmFile, MAX_SEGMENTS};
 use estimator_core::{Estimator, Sample};
 use proprio_analysis::HostEstimator;
-use proprio_session::{LoadedTable, Progress, RequiredColumns, SessionReader};
+use proprio_session::{FileDefects, LoadedTable, Progress, RequiredColumns, SessionReader};
 
 use super::error::TuningError;
 use super::errors::{Errors, SessionErrors, ends};
@@ -50,7 +50,7 @@ pub(super) struct Training {
     pub path: PathBuf,
     part: Part,
     pub rate_hz: f64,
-    pub ends_with_line: bool,
+    pub defects: FileDefects,
     /// Root mean square distance of the true tip from the chain of the true bend angles, % of the arm's length.
     misfit_percent: f64,
     segments: usize,
@@ -66,7 +66,7 @@ impl Training {
     /// Reads a session and [measures](Self::measure) it.
     pub fn read(session: &Path, part: Part, table: &LoadedTable, progress: &mut dyn Progress) -> Result<Self, Error> {
         let mut reader = SessionReader::open(session, &RequiredColumns { truth: true, ..table.required_columns()? })?;
-        let rate_hz = reader.rate_hz(table.file.rate_hz);
+        let rate_hz = reader.rate_hz(table.file.rate_hz)?;
         let compiled = table.compile::<f64>(rate_hz)?;
         let segments = compiled.config().segments;
 
@@ -86,7 +86,7 @@ impl Training {
             path: session.to_owned(),
             part,
             rate_hz,
-            ends_with_line: reader.ends_with_line(),
+            defects: reader.defects(),
             misfit_percent: (misfit / f64::max(tips, 1.0)).sqrt() * 1e5 / table.file.length_mm(),
             segments: segments.len(),
             samples,

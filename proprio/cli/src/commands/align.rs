@@ -1,8 +1,11 @@
 //! `proprio align`.
 
-use proprio_calibration::align::{AlignmentReport, ComparedSensors, Written, align};
-use proprio_session::{LAST_LINE, LoadedTable, OutputFile};
+use std::slice;
 
+use proprio_calibration::align::{AlignmentReport, ComparedSensors, Written, align};
+use proprio_session::{LoadedTable, OutputFile};
+
+use super::warnings::{checked, warn_of_defects};
 use crate::args::AlignArgs;
 use crate::error::Error;
 use crate::progress_bar::Bar;
@@ -11,11 +14,10 @@ use crate::terminal;
 pub fn run(args: &AlignArgs) -> Result<(), Error> {
     let arm = LoadedTable::load(&args.arm)?;
     let mut file = OutputFile::create(&args.output, &[&args.session, &args.camera, &args.arm], args.force.existing())?;
-    let alignment = align(&args.session, &args.camera, &arm, &mut Bar::new())?;
-    for (path, ends_with_line) in [&args.session, &args.camera].into_iter().zip(alignment.report.end_with_line) {
-        if !ends_with_line {
-            terminal::warn(&format_args!("{}: {LAST_LINE}", path.display()));
-        }
+    let alignment = align(&args.session, &args.camera, &arm, &mut Bar::new());
+    let alignment = checked(alignment, slice::from_ref(&args.session), |_| arm, |_| true)?;
+    for (path, defects) in [&args.session, &args.camera].into_iter().zip(&alignment.defects) {
+        warn_of_defects(path, defects);
     }
     let written = alignment.write(&args.session, &mut file)?;
     // Last, so that a command that fails leaves no file.

@@ -3,9 +3,11 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use proprio_calibration::calibrate::{CalibrationOptions, HysteresisMode, MapMode, calibrate};
+use proprio_analysis::check::{Finding, Kind};
+use proprio_calibration::calibrate::{Calibration, CalibrationOptions, HysteresisMode, MapMode, calibrate};
 use proprio_session::{LoadedTable, OutputFile};
 
+use super::warnings::{checked, warn_of_defects};
 use crate::args::{CalibrateArgs, HysteresisName, MapName};
 use crate::error::Error;
 use crate::progress_bar::Bar;
@@ -17,7 +19,15 @@ pub fn run(args: &CalibrateArgs) -> Result<(), Error> {
     let inputs: Vec<&Path> = args.sessions.iter().chain([&args.arm]).map(PathBuf::as_path).collect();
     let mut file = OutputFile::create(&args.output, &inputs, args.force.existing())?;
     let options = CalibrationOptions { maps: args.map.into(), hysteresis: args.hysteresis.into() };
-    let calibration = calibrate(&args.sessions, &arm, options, &mut Bar::new())?;
+    let calibration = calibrate(&args.sessions, &arm, options, &mut Bar::new());
+    let table = |made: Option<&Calibration>| match made {
+        Some(Calibration { table, .. }) => LoadedTable { file: table.clone(), path: &args.output },
+        None => arm,
+    };
+    let calibration = checked(calibration, &args.sessions, table, |finding| !is_later_tare(finding))?;
+    for (path, defects) in args.sessions.iter().zip(&calibration.defects) {
+        warn_of_defects(path, defects);
+    }
     let names: Vec<String> = args.sessions.iter().map(|session| session.display().to_string()).collect();
     for warning in &calibration.warnings {
         terminal::warn(&format_args!("{}: {warning}", names.join(", ")));
@@ -30,6 +40,11 @@ pub fn run(args: &CalibrateArgs) -> Result<(), Error> {
     }
     terminal::eprint_line(&file.finish()?);
     Ok(())
+}
+
+/// True for the tare after a restart of the board: the zeros of a sweep are those of its truth.
+fn is_later_tare(finding: &Finding) -> bool {
+    matches!(finding.kind, Kind::TareBent | Kind::TareMoves) && finding.rows.first > 1
 }
 
 impl From<MapName> for MapMode {

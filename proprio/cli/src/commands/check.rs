@@ -2,10 +2,11 @@
 
 use std::process::ExitCode;
 
-use proprio_analysis::check::{Finding, check};
-use proprio_session::{LAST_LINE, LoadedTable};
+use proprio_analysis::check::{CheckedSession, Finding, check};
+use proprio_session::LoadedTable;
 use serde::Serialize;
 
+use super::warnings::warn_of_defects;
 use crate::args::CheckArgs;
 use crate::error::Error;
 use crate::help::Help;
@@ -40,12 +41,10 @@ pub fn run(args: &CheckArgs) -> Result<ExitCode, Error> {
     let mut checked = Vec::new();
     let progress = &mut Bar::new();
     for path in &args.sessions {
-        let (summary, findings) = check(path, &table, progress)?;
-        if !summary.ends_with_line {
-            terminal::warn(&format_args!("{}: {LAST_LINE}", path.display()));
-        }
+        let CheckedSession { samples, defects, findings } = check(path, &table, progress)?;
+        warn_of_defects(path, &defects);
         let findings = findings.into_iter().map(Reported::from).collect();
-        checked.push(Checked { path: path.display().to_string(), samples: summary.samples, findings });
+        checked.push(Checked { path: path.display().to_string(), samples, findings });
     }
     let is_clean = checked.iter().all(|session| session.findings.is_empty());
     let text = if args.json {

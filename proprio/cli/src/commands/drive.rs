@@ -5,7 +5,6 @@ use std::time::{Duration, Instant};
 
 use board_core::FULL_SCALE_PA;
 use proprio_link::drive::{DriveError, Driver, PERIOD, Profile, Ramp};
-use proprio_link::status::Status;
 use proprio_link::{EventKind, FileRecorder, Subscription};
 use proprio_session::check_seconds;
 use telemetry::{Message, REGULATORS};
@@ -34,7 +33,7 @@ pub fn run(args: &DriveArgs) -> Result<(), Error> {
     }
     let (table, link, events) = link::open(&args.link)?;
     let shutdown = ShutdownGuard::new();
-    let status = Status::of(&link, &link.subscribe(), table.is_some())?;
+    let status = link::status(&link, &link.subscribe(), table.is_some())?;
     // The recording begins only with an armed board, which stays vented until the first set-points.
     let mut driver = Driver::arm(&link, &status)?;
     let recorder = args.output.as_deref().map(|path| link::recorder(path, &link, table.as_ref()));

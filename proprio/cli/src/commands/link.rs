@@ -4,6 +4,7 @@ use std::path::Path;
 
 use calibration_tables::{ArmFile, PLANAR_6_TABLE};
 use estimator_core::Q;
+use proprio_link::status::{Status, TIMEOUT_S};
 use proprio_link::table::{StoredTable, TableImageError};
 use proprio_link::{FileRecorder, Flash, Link, LinkError, PortSource, Source, Subscription, VirtualDue};
 use proprio_session::{HostClock, LoadedTable};
@@ -11,6 +12,7 @@ use telemetry::TICK_HZ;
 
 use crate::args::LinkArgs;
 use crate::error::Error;
+use crate::terminal;
 
 /// The given table, a link to the given board, and a subscription to its events.
 pub fn open(args: &LinkArgs) -> Result<(Option<LoadedTable<'_>>, Link, Subscription), Error> {
@@ -36,6 +38,13 @@ fn open_by(args: &LinkArgs, start: Start) -> Result<(Option<LoadedTable<'_>>, Li
     };
     let (link, events) = start(source, checksum)?;
     Ok((table, link, events))
+}
+
+/// The status of the board, with a notice of the wait for it: a port without a board is silent.
+pub fn status(link: &Link, events: &Subscription, table_given: bool) -> Result<Status, Error> {
+    let port = link.state().port.unwrap_or_default();
+    terminal::eprint_line(&format_args!("{port}: waiting for a board's messages, {TIMEOUT_S} s at most"));
+    Ok(Status::of(link, events, table_given)?)
 }
 
 /// The flash of an emulated board with the table that was given, or that of the reference arm.

@@ -18,6 +18,7 @@ mod simulate;
 mod status;
 mod table;
 mod tune;
+mod warnings;
 
 use std::process::ExitCode;
 

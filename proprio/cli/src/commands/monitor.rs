@@ -7,6 +7,7 @@ use proprio_monitor::{Monitor, Options, Plain, Token};
 use proprio_session::{HostClock, LoadedTable, SessionReader};
 
 use super::link;
+use super::warnings::with_remedy;
 use crate::error::Error;
 use crate::help::Help;
 use crate::interrupt::ShutdownGuard;
@@ -76,6 +77,7 @@ fn start(
         token: token.clone(),
         session: args.session.clone(),
         help: Help::help,
+        finding_text: with_remedy,
     };
     let monitor = Monitor::start(live, options)?;
     terminal::print(&address(monitor.address().port()))?;

@@ -2,8 +2,8 @@
 
 use std::time::{Duration, Instant};
 
-use proprio_link::{EventKind, FileRecorder, Link, LinkError, Subscription};
-use proprio_session::check_seconds;
+use proprio_link::{EventKind, FileRecorder, Link, LinkError, LinkEvent, Subscription};
+use proprio_session::{RowAssembler, check_seconds};
 use telemetry::Counts;
 
 use super::link;
@@ -11,6 +11,7 @@ use crate::args::RecordArgs;
 use crate::error::Error;
 use crate::interrupt::ShutdownGuard;
 use crate::status_line::{StatusLine, time};
+use crate::terminal;
 
 /// Period of the status line.
 const STATUS_PERIOD: Duration = Duration::from_millis(500);
@@ -34,6 +35,9 @@ struct Session {
     start: Instant,
     shown: Instant,
     samples_shown: u64,
+    assembler: RowAssembler,
+    /// Samples that a replay cannot compare: the line was opened after the board's tare, or samples were lost.
+    not_comparable: u64,
     /// Reason of the end of a line that is gone for good.
     ended: Option<String>,
 }
@@ -41,7 +45,16 @@ struct Session {
 impl Session {
     fn new(recorder: FileRecorder) -> Self {
         let now = Instant::now();
-        Self { recorder, screen: StatusLine::new(), start: now, shown: now, samples_shown: 0, ended: None }
+        Self {
+            recorder,
+            screen: StatusLine::new(),
+            start: now,
+            shown: now,
+            samples_shown: 0,
+            assembler: RowAssembler::default(),
+            not_comparable: 0,
+            ended: None,
+        }
     }
 
     /// Takes one event, or waits up to 50 ms for one.
@@ -49,6 +62,7 @@ impl Session {
         match events.next(Duration::from_millis(50)) {
             Some(event) => {
                 self.recorder.event(&event)?;
+                self.follow(&event);
                 match event.kind {
                     EventKind::Ended(reason) => self.ended = Some(reason),
                     kind => self.screen.warn_of(&kind),
@@ -63,6 +77,22 @@ impl Session {
             self.screen.show(self.line(link.state().counts, events, rate_hz));
         }
         Ok(())
+    }
+
+    /// Follows the starts of the board's estimator.
+    fn follow(&mut self, event: &LinkEvent) {
+        match &event.kind {
+            EventKind::Opened(_) => self.assembler.line_opened(),
+            EventKind::Message(message) => {
+                // A `Hello` with another schema is a mismatch, of which the link has an event.
+                let _ = self.assembler.message(event.at, message, event.gaps);
+                let Some(board) = self.assembler.take_last().and_then(|row| row.board) else { return };
+                // Samples before a boot are what was left on the line.
+                self.not_comparable =
+                    if board.tick == 0 { 0 } else { self.not_comparable + u64::from(!board.complete) };
+            }
+            _ => {}
+        }
     }
 
     /// Summary of the recording so far.
@@ -91,6 +121,14 @@ impl Session {
         let path = self.recorder.path().to_owned();
         self.recorder.finish()?;
         self.screen.end(&format_args!("{}: {line}", path.display()));
+        if self.not_comparable > 0 {
+            let count = self.not_comparable;
+            terminal::warn(&format_args!(
+                "{}: {count} samples are before a tare of the board that is recorded, or behind a lost sample: a replay cannot \
+                 compare them; opening the line did not restart the board, or the line was disturbed",
+                path.display()
+            ));
+        }
         self.ended.map_or(Ok(()), |reason| Err(LinkError::Ended(reason).into()))
     }
 }

@@ -40,6 +40,11 @@ fn warn_of_loss(args: &RecoverArgs, recovery: &Recovery) {
         let times = hole.times(recovery.start_ns);
         terminal::warn(&format_args!("{input}: {times} ({} bytes from byte {})", hole.bytes, hole.offset));
     }
+    if let Some(bytes) = recovery.lost_end {
+        let after_s = recovery.times_ns.map_or(0.0, |(_, last)| (last - recovery.start_ns) as f64 / 1e9);
+        let part = if bytes > 0 { format!(", with {bytes} bytes of a part that was cut") } else { String::new() };
+        terminal::warn(&format_args!("{input}: the end is missing: all after {after_s:.2} s is lost{part}"));
+    }
     if recovery.lost_attachments > 0 {
         let count = recovery.lost_attachments;
         terminal::warn(&format_args!("{input}: {count} damaged attachments or metadata are left out"));
@@ -52,7 +57,7 @@ fn warn_of_loss(args: &RecoverArgs, recovery: &Recovery) {
 
 /// The state of the source, and the share of it that is kept.
 fn source_text(recovery: &Recovery) -> String {
-    if recovery.has_loss() {
+    if recovery.is_damaged() {
         let cut = if recovery.was_cut { ", which was cut as well" } else { "" };
         let share = match recovery.recorded {
             Some(recorded) if recorded > 0 => {
@@ -61,8 +66,10 @@ fn source_text(recovery: &Recovery) -> String {
             _ => format!("{:.2} % of its bytes", 100.0 * recovery.kept()),
         };
         format!("recovered from a file that is damaged{cut}: {share} are kept")
-    } else if recovery.was_cut {
+    } else if recovery.lost_end.is_some() {
         "recovered from a file that was cut".to_owned()
+    } else if recovery.was_cut {
+        "recovered from a file whose index was cut: no message is lost".to_owned()
     } else if recovery.index_was_damaged {
         "recovered from a file with a damaged index: no message is lost".to_owned()
     } else {

@@ -4,18 +4,17 @@ use std::path::{Path, PathBuf};
 
 use estimator_core::{FusedOps, Q, saturations};
 use proprio_analysis::agreement::Comparison;
-use proprio_analysis::check::{Finding, SessionCheck};
+use proprio_analysis::check::SessionCheck;
 use proprio_analysis::estimates::EstimateWriter;
 use proprio_analysis::metrics::ErrorMetrics;
 use proprio_analysis::replay::{NotComparable, SessionSummary, replay};
 use proprio_analysis::session_metrics::{AllMetrics, ByMethod, SessionMetrics};
 use proprio_analysis::{Outcome, smooth};
-use proprio_session::recording::HoleTimes;
-use proprio_session::{LAST_LINE, LoadedTable, OutputFile, Row};
+use proprio_session::{LoadedTable, OutputFile, Row};
 
+use super::warnings::{warn_of_defects, warn_of_findings};
 use crate::args::ReplayArgs;
 use crate::error::Error;
-use crate::help::Help;
 use crate::progress_bar::Bar;
 use crate::terminal;
 use crate::text_tables;
@@ -49,16 +48,6 @@ pub fn run(args: &ReplayArgs) -> Result<(), Error> {
     Ok(())
 }
 
-/// Warns of the damaged parts of a recording.
-fn warn_of_holes(path: &Path, holes: &[HoleTimes]) {
-    for hole in holes {
-        terminal::warn(&format_args!(
-            "{}: {hole}; what the board has estimated behind it is compared from the next tare on",
-            path.display()
-        ));
-    }
-}
-
 /// Reports the agreement of the board's estimates with the replay.
 fn report_agreement(path: &Path, recorded: &Comparison, firmware: Option<&str>) {
     let line = format!("{}: {recorded}", path.display());
@@ -68,11 +57,6 @@ fn report_agreement(path: &Path, recorded: &Comparison, firmware: Option<&str>) 
         // Another release may differ in the last bits.
         terminal::warn(&format_args!("{line}; the board ran firmware {}", firmware.unwrap_or("of an unknown version")));
     }
-}
-
-/// Reports a finding of the session check with its remedy.
-fn warn_of(path: &Path, finding: &Finding) {
-    terminal::warn(&format_args!("{}: {finding}; {}", path.display(), finding.help()));
 }
 
 /// Compares the board's output of a row.
@@ -106,15 +90,12 @@ fn replay_all<S: FusedOps>(
             replay(path, table, progress, visit)
         };
         let summary = summary?;
+        warn_of_defects(path, &summary.defects);
+        warn_of_findings(path, &check.findings());
         if summary.not_comparable > 0 {
             terminal::warn(&format_args!("{}: {}", path.display(), NotComparable(&summary)));
         }
-        let SessionSummary { samples, seconds, ends_with_line, holes, recording, .. } = summary;
-        if !ends_with_line {
-            terminal::warn(&format_args!("{}: {LAST_LINE}", path.display()));
-        }
-        warn_of_holes(path, &holes);
-        check.finish().iter().for_each(|finding| warn_of(path, finding));
+        let SessionSummary { samples, seconds, recording, .. } = summary;
         let recorded = recording.filter(|_| compare.is_some()).map(|recording| {
             comparison.table_matches = recording.table_matches;
             let comparison = comparison.of(recording.recorded_by);

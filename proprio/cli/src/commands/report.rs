@@ -6,8 +6,9 @@ use std::path::{Path, PathBuf};
 use estimator_core::saturations;
 use proprio_analysis::replay::NotComparable;
 use proprio_analysis::report::ReportBuilder;
-use proprio_session::{LAST_LINE, LoadedTable, OutputFile};
+use proprio_session::{LoadedTable, OutputFile};
 
+use super::warnings::warn_of_defects;
 use crate::args::ReportArgs;
 use crate::error::Error;
 use crate::progress_bar::Bar;
@@ -34,12 +35,7 @@ pub fn run(args: &ReportArgs) -> Result<(), Error> {
         if summary.not_comparable > 0 {
             terminal::warn(&format_args!("{}: {}", path.display(), NotComparable(&summary)));
         }
-        for hole in &summary.holes {
-            terminal::warn(&format_args!("{}: {hole}", path.display()));
-        }
-        if !summary.ends_with_line {
-            terminal::warn(&format_args!("{}: {LAST_LINE}", path.display()));
-        }
+        warn_of_defects(path, &summary.defects);
     }
     drop(progress);
     match saturations() {

@@ -12,7 +12,7 @@ use crate::{args, text_tables};
 
 pub fn run(args: &args::StatusArgs) -> Result<(), Error> {
     let (table, link, events) = link::open(&args.link)?;
-    let status = Status::of(&link, &events, table.is_some())?;
+    let status = link::status(&link, &events, table.is_some())?;
     terminal::print(&if args.json { terminal::json(&status) } else { screen(&status) })
 }
 

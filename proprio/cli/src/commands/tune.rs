@@ -5,8 +5,9 @@ use std::path::{Path, PathBuf};
 
 use calibration_tables::{StopReason, TuningToml};
 use proprio_calibration::tune::{Tuner, Tuning};
-use proprio_session::{LAST_LINE, LoadedTable, OutputFile};
+use proprio_session::{LoadedTable, OutputFile};
 
+use super::warnings::{checked, warn_of_defects};
 use crate::args::TuneArgs;
 use crate::error::Error;
 use crate::interrupt::ShutdownGuard;
@@ -19,10 +20,9 @@ pub fn run(args: &TuneArgs) -> Result<(), Error> {
     let inputs: Vec<&Path> = args.sessions.iter().map(PathBuf::as_path).chain([table.path]).collect();
     let mut file = OutputFile::create(&args.output, &inputs, args.force.existing())?;
     let mut progress = Bar::new();
-    let tuner = Tuner::new(&args.sessions, &table, &mut progress)?;
-    for path in tuner.cut_sessions() {
-        terminal::warn(&format_args!("{}: {LAST_LINE}", path.display()));
-    }
+    let tuner = Tuner::new(&args.sessions, &table, &mut progress);
+    let tuner = checked(tuner, &args.sessions, |_| table.clone(), |_| true)?;
+    tuner.defects().for_each(|(path, defects)| warn_of_defects(path, defects));
     let shutdown = ShutdownGuard::new();
     let Tuning { table, record, iteration_time } = tuner.tune(&mut progress, || shutdown.is_requested())?;
     drop((shutdown, progress));

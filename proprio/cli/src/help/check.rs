@@ -10,6 +10,9 @@ impl Help for Finding {
             (Kind::OutsideMap, _) => {
                 "check the sensor, its divider and the ADC's reference (3.3 V), and that the table is that of this arm and these plugs"
             }
+            (Kind::Counts, _) => {
+                "check the ADC's reference and its bits, and that the table is that of this arm; or multiply the counts by the factor's reciprocal"
+            }
             (Kind::TenBits, _) => "record with 12 bits (analogReadResolution(12)), or multiply the counts by 4",
             (Kind::Rail, _) => "check the sensor's wires and its divider; leave the cells of a dead sensor empty",
             (Kind::Constant | Kind::Frozen, _) => {
@@ -26,13 +29,20 @@ impl Help for Finding {
             (Kind::Scale | Kind::Radians, _) => {
                 "check the unit: degrees in _deg, radians in _rad, quaternions as w, x, y, z"
             }
-            (Kind::Exchanged, Source::TwoBends { .. }) => "exchange the two plugs, or the two columns",
+            (Kind::Exchanged, Source::TwoBends { .. } | Source::TwoPlugs { .. }) => {
+                "exchange the two plugs, or the two columns"
+            }
             (Kind::Exchanged, _) => "exchange the two multiplexer channels, or the two columns",
             (Kind::Unrelated, Source::Bend { .. }) => {
                 "check the sensor's mount and wires, and that the table is that of this arm"
             }
             (Kind::Unrelated, _) => {
                 "check the IMU's mount (z up) and the columns: headings clockwise in degrees, quaternions as w, x, y, z"
+            }
+            (Kind::QuaternionOrder, _) => "write quaternions as w, x, y, z: the columns are exchanged",
+            (Kind::OnItsSide, _) => "mount the IMU level, with z up",
+            (Kind::NotAbsolute, _) => {
+                "write the seconds at rest in the reference pose into tare.seconds of the table, or headings from the base's direction into the session"
             }
             (Kind::NewZero, _) => {
                 "check the IMU's supply and plug; give the rows from there on another number in column tare, where the arm is straight and at rest"

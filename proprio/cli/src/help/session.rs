@@ -1,12 +1,18 @@
 //! Remedies of errors of sessions.
 
-use proprio_session::SessionProblem;
 use proprio_session::recording::ReadError;
+use proprio_session::{FileContent, MissingColumn, MissingReason, SessionProblem, time_unit_of};
 
 use super::Help;
 
-/// Time after which a clock of 32 bits wraps that counts microseconds, s.
-const MICROS_WRAP_S: f64 = 4_294.967_296;
+/// Times after which a clock of 32 bits wraps, s, and its unit.
+const WRAPS: [(f64, &str); 2] = [(4_294.967_296, "microseconds"), (4_294_967.296, "milliseconds")];
+/// Longest step from the last row before a wrap to the first one behind it, s.
+const LONGEST_STEP_S: f64 = 60.0;
+/// Largest step backwards of rows that are in another order, s.
+const OUT_OF_ORDER_S: f64 = 2.0;
+/// Latest time of the first row of a board that has restarted, s.
+const AFTER_RESTART_S: f64 = 60.0;
 
 impl Help for SessionProblem {
     fn help(&self) -> String {
@@ -16,9 +22,9 @@ impl Help for SessionProblem {
             Self::NoHeader | Self::NoSamples | Self::NothingWhole => "record the session again, or take another",
             Self::LongLine => "end each row with a line end; is it a CSV? copy the file again, or take another",
             Self::NotText => "save it as CSV in UTF-8",
-            Self::MissingColumn(_) => {
-                "take the arm or table of this session, or add the column; names are as in docs/reference/files.md, between commas"
-            }
+            Self::MissingColumn(missing) => return missing.help(),
+            Self::TimeUnit { rate_hz, factor, .. } => return time_unit(*rate_hz, *factor),
+            Self::Backwards { from_s, to_s } => return backwards(*from_s, *to_s),
             Self::DuplicateColumn(_) => "remove or rename one of them",
             Self::OtherArm { .. } | Self::RecordedSegments(_) => {
                 "take the arm description or table of the arm that was recorded"
@@ -42,7 +48,9 @@ impl Help for SessionProblem {
             Self::Recording(ReadError::OtherForm(_) | ReadError::OtherProtocol(_)) => {
                 "read it with the proprio of that version"
             }
-            Self::Recording(ReadError::NoMcap) => "name a recording (.mcap); other sessions are used as they are",
+            Self::Recording(ReadError::NoMcap) => {
+                "only recordings (.mcap) are recovered; correct a CSV at the line that an error names"
+            }
             Self::Recording(ReadError::Foreign(_)) => {
                 "take a recording of `proprio record`, or make a CSV of this one's samples (docs/reference/files.md)"
             }
@@ -52,15 +60,73 @@ impl Help for SessionProblem {
             Self::TooManySegments(_) => "keep it as CSV",
             Self::NoTruth => "give a session with the camera's truth (docs/reference/files.md)",
             Self::Heading(_) => "write headings from 0 up to a full turn: 360 in _deg, 2π in _rad",
-            Self::Backwards { from_s, to_s } if (from_s - to_s - MICROS_WRAP_S).abs() < 1.0 => {
-                "the clock's 32 bits of microseconds have wrapped: add 4294.967296 s from here on; do not sort"
-            }
-            Self::Backwards { .. } => "sort the rows by time; two sessions in one file must be split",
             Self::PartialQuaternion | Self::NotUnit(_) => {
                 "write unit quaternions w, x, y, z, and leave all four cells of a missing reading empty"
             }
             Self::PartialTruth => "leave all its cells empty where the camera did not see the segment",
         };
         help.to_owned()
+    }
+}
+
+/// Remedy of times in another unit than seconds.
+fn time_unit(rate_hz: f64, factor: f64) -> String {
+    let change = match time_unit_of(factor) {
+        Some((unit, _)) if unit < 1.0 => format!("multiply time_s by {:.0}", unit.recip()),
+        Some((unit, _)) => format!("divide time_s by {unit:.0}"),
+        None => "give time_s in seconds".to_owned(),
+    };
+    format!("{change}; or if it is in seconds, write rate_hz = {rate_hz:.4} in the table or arm description")
+}
+
+/// Remedy of time that goes backwards. Sorted rows of a clock that has wrapped would be a session in the wrong order.
+fn backwards(from_s: f64, to_s: f64) -> String {
+    let wrap = WRAPS.iter().find(|(wrap_s, _)| (0.0..LONGEST_STEP_S).contains(&(to_s + wrap_s - from_s)));
+    match wrap {
+        Some((wrap_s, unit)) => {
+            format!("the clock's 32 bits of {unit} have wrapped: add {wrap_s} s from here on; do not sort")
+        }
+        None if from_s - to_s <= OUT_OF_ORDER_S => "rows are out of order: sort them by time".to_owned(),
+        None if to_s <= AFTER_RESTART_S => {
+            "the board or the logger has restarted: split the session here, as headings have a new zero; do not sort"
+                .to_owned()
+        }
+        None => "the clock was set back, or the file has two sessions: split it here; do not sort".to_owned(),
+    }
+}
+
+impl Help for MissingColumn {
+    fn help(&self) -> String {
+        match &self.reason {
+            MissingReason::Content { found, expected } => content(*found, *expected).to_owned(),
+            MissingReason::Similar(_) => format!("rename the column to {}, with its numbers in that unit", self.name),
+            MissingReason::NoTruth => "add the camera's truth with `proprio align`".to_owned(),
+            MissingReason::Unknown => {
+                "take the arm or table of this session, or add the column; that of a dead sensor stays, with empty cells; names: docs/reference/files.md"
+                    .to_owned()
+            }
+        }
+    }
+}
+
+/// Remedy of a file with other content than is expected.
+fn content(found: FileContent, expected: FileContent) -> &'static str {
+    match (found, expected) {
+        (FileContent::Separated(_), _) => "write commas between the columns, and decimal points in the numbers",
+        (FileContent::SeparatorLine, _) => {
+            "remove the line, and write commas between the columns and decimal points in the numbers"
+        }
+        (FileContent::Html, _) => "download the file itself, as raw data",
+        (_, FileContent::Profile) => "a profile has time_s and pressure1_kpa to pressure6_kpa: docs/how-to/driving.md",
+        (_, FileContent::Camera) => {
+            "a camera's file has time_s, and x, y and heading of each marker: docs/reference/files.md"
+        }
+        (FileContent::Camera, _) => {
+            "join it with the session of the sensors: `proprio align SESSION.csv --camera` this file"
+        }
+        (FileContent::Profile, _) => "it is for `proprio drive --profile`; take the session that was recorded",
+        (FileContent::Estimates, _) => "take the session that was replayed",
+        (FileContent::Table, _) => "give it with --table or --arm, and a session before it",
+        (FileContent::Session | FileContent::Other, _) => "take a session",
     }
 }

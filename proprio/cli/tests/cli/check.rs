@@ -2,7 +2,7 @@
 
 use std::sync::OnceLock;
 
-use super::common::{Csv, Folder, json, simulate, table};
+use super::common::{Csv, Folder, arm, json, simulate, sweep, table};
 
 /// 60 s of free swings at 10 Hz.
 fn session() -> Csv {
@@ -70,12 +70,41 @@ fn counts_of_another_adc_are_found() {
     let tenth = |session: &mut Csv| {
         bend_names().for_each(|name| session.map(&name, |_, cell| format!("{}", (number(cell) / 4.0).floor())));
     };
-    assert_found(tenth, &[("all bend sensors", "ten_bits")]);
+    let mut short = session();
+    tenth(&mut short);
+    // Too short for twenty steps with motion.
+    short.rows.truncate(80);
+    assert_eq!(findings(&short), [("all bend sensors".to_owned(), "ten_bits".to_owned())]);
+}
+
+/// The figure and the text of the finding about all bend sensors after their counts were multiplied.
+fn counts_times(factor: f64) -> (f64, String) {
     let mut session = session();
-    bend_names().for_each(|name| session.map(&name, |_, cell| format!("{}", (number(cell) * 3.3 / 5.0).floor())));
-    let found = findings(&session);
-    assert_eq!(found.len(), 12, "{found:?}");
-    assert!(found.iter().all(|(_, kind)| kind == "outside_map"), "{found:?}");
+    let times = |cell: &str| format!("{}", (number(cell) * factor).floor().min(4095.0));
+    bend_names().for_each(|name| session.map(&name, |_, cell| times(cell)));
+    let folder = Folder::with("session.csv", session.to_string());
+    let checked = json(&folder.run(&["check", "session.csv", "--table", table(), "--json"]));
+    let list = checked[0]["findings"].as_array().expect("a list of findings");
+    assert_eq!((list.len(), &list[0]["kind"]), (1, &"counts".into()), "{list:?}");
+    (list[0]["figure"].as_f64().expect("a number"), list[0]["text"].as_str().expect("a text").to_owned())
+}
+
+#[test]
+fn a_factor_of_all_counts_is_named_with_its_reason() {
+    let cases = [
+        (3.3 / 5.0, "a reference of 5 V in place of 3.3 V"),
+        (5.0 / 3.3, "a reference of 3.3 V in place of 5 V"),
+        (1.0 / 4.0, "10 bits in place of 12"),
+        (1.0 / 16.0, "8 bits in place of 12"),
+    ];
+    for (factor, reason) in cases {
+        let (found, text) = counts_times(factor);
+        assert!((found / factor - 1.0).abs() < 0.05, "{factor}: {text}");
+        assert!(text.contains(reason), "{factor}: {text}");
+    }
+    // No known reason.
+    let (found, text) = counts_times(0.8);
+    assert!((found / 0.8 - 1.0).abs() < 0.05 && !text.contains("as with"), "{text}");
 }
 
 #[test]
@@ -122,6 +151,26 @@ fn exchanged_plugs_are_found() {
         session.swap("bend2b_adc", "bend5b_adc");
     };
     assert_found(bends, &[("bend2 and bend5", "exchanged")]);
+    assert_found(|session| session.swap("bend1b_adc", "bend4a_adc"), &[("bend1b and bend4a", "exchanged")]);
+}
+
+/// An arm whose bend sensors differ so much that the readings of exchanged ones are outside each other's maps.
+#[test]
+fn exchanged_plugs_of_unlike_bend_sensors_are_found() {
+    let folder = Folder::new();
+    let simulate = |args: &str| drop(folder.done(&args.split(' ').collect::<Vec<_>>()));
+    simulate("simulate --scenario sweep --seconds 600 --seed 9 --arm-seed 107 -o sweep.csv");
+    simulate("simulate --scenario 1 --seconds 120 --seed 10 --arm-seed 107 -o session.csv");
+    folder.done(&["calibrate", "sweep.csv", "--arm", arm(), "-o", "table.toml"]);
+    let mut session = folder.csv("session.csv");
+    for place in ["a", "b"] {
+        session.swap(&format!("bend2{place}_adc"), &format!("bend5{place}_adc"));
+    }
+    folder.write("session.csv", session.to_string());
+    let checked = json(&folder.run(&["check", "session.csv", "--table", "table.toml", "--json"]));
+    let list = checked[0]["findings"].as_array().expect("a list of findings");
+    assert_eq!(list.len(), 1, "{list:?}");
+    assert_eq!((&list[0]["sensor"], &list[0]["kind"]), (&"bend2 and bend5".into(), &"exchanged".into()));
 }
 
 #[test]
@@ -136,6 +185,8 @@ fn headings_in_another_direction_or_unit_are_found() {
         });
     };
     assert_found(radians, &[("all IMUs", "radians")]);
+    let one = |session: &mut Csv| session.map("imu5_deg", |_, cell| format!("{:.4}", number(cell).to_radians()));
+    assert_found(one, &[("imu5", "radians")]);
 }
 
 #[test]
@@ -146,7 +197,49 @@ fn quaternions_in_another_order_are_found() {
             session.rename(&format!("imu{i}_{from}"), &format!("imu{i}_{to}"));
         }
     }
-    assert_eq!(findings(&session), [("all IMUs".to_owned(), "unrelated".to_owned())]);
+    assert_eq!(findings(&session), [("all IMUs".to_owned(), "quaternion_order".to_owned())]);
+}
+
+/// An IMU that is turned by 90° about its y axis, so that its x axis points down: q · (√½, 0, √½, 0).
+#[test]
+fn an_imu_on_its_side_is_found() {
+    let mut session = simulate("--scenario 1 --seconds 60 --seed 61 --imu quaternion");
+    let half = 0.5_f64.sqrt();
+    for row in 0..session.rows.len() {
+        let [w, x, y, z] = ["w", "x", "y", "z"].map(|part| number(session.cell(row, &format!("imu3_q{part}"))));
+        let turned = [w - y, x - z, y + w, z + x].map(|part| half * part);
+        for (part, value) in ["w", "x", "y", "z"].into_iter().zip(turned) {
+            session.set(row, &format!("imu3_q{part}"), &format!("{value:.9}"));
+        }
+    }
+    assert_eq!(findings(&session), [("imu3".to_owned(), "on_its_side".to_owned())]);
+}
+
+/// The heading of an IMU on its side whose logger computes it: noise about any value.
+#[test]
+fn a_heading_of_noise_is_blamed_on_its_imu() {
+    let noise = |row: usize| f64::from(((row * 7919) % 1000) as u32) / 1000.0;
+    let noisy = |session: &mut Csv| session.map("imu3_deg", |row, _| format!("{:.4}", 170.0 + 8.0 * noise(row)));
+    assert_found(noisy, &[("imu3", "unrelated")]);
+}
+
+#[test]
+fn headings_that_are_not_absolute_are_found_with_a_table_without_a_tare() {
+    let text = std::fs::read_to_string(table()).expect("the reference table is committed");
+    let seconds = text.lines().find(|line| line.starts_with("seconds = ")).expect("the table has a tare");
+    let folder = Folder::with("table.toml", text.replace(seconds, "seconds = 0.0"));
+    folder.write("session.csv", session().to_string());
+    let run = folder.run(&["check", "session.csv", "--table", "table.toml"]);
+    assert!(run.stdout.starts_with("session.csv: all IMUs, rows 1 to 10 "), "{}", run.stdout);
+    assert!(run.stdout.contains("tare.seconds = 0") && run.stdout.lines().count() == 1, "{}", run.stdout);
+    // Headings from the base's direction, as the camera has them.
+    let mut session = session();
+    for i in 1..=6 {
+        let truth: Vec<f64> = session.numbers(&format!("truth{i}_heading_deg"));
+        session.map(&format!("imu{i}_deg"), |row, _| format!("{:.4}", truth[row].rem_euclid(360.0)));
+    }
+    folder.write("session.csv", session.to_string());
+    folder.done(&["check", "session.csv", "--table", "table.toml"]);
 }
 
 #[test]
@@ -165,6 +258,33 @@ fn times_in_another_unit_are_found() {
         |factor: f64| move |session: &mut Csv| session.map("time_s", |_, cell| format!("{:.6}", number(cell) * factor));
     assert_found(times(1000.0), &[("time_s", "time_unit")]);
     assert_found(times(1.0 / 60.0), &[("time_s", "time_unit")]);
+}
+
+#[test]
+fn times_in_another_unit_are_refused_where_they_would_be_used() {
+    let folder = Folder::new();
+    let mut sweep = sweep();
+    sweep.rows.truncate(2000);
+    let cases = [
+        (1000.0, "1000.0000 times too large, as milliseconds are", "divide time_s by 1000"),
+        (1.0 / 60.0, "0.0167 times too large, as minutes are", "multiply time_s by 60"),
+    ];
+    for (factor, fault, remedy) in cases {
+        let mut session = sweep.clone();
+        session.map("time_s", |_, cell| format!("{:.6}", number(cell) * factor));
+        folder.write("session.csv", session.to_string());
+        let commands: [&[&str]; 4] = [
+            &["replay", "session.csv", "--table", table()],
+            &["report", "session.csv", "--table", table(), "-o", "report.html"],
+            &["calibrate", "session.csv", "--arm", arm(), "-o", "table.toml"],
+            &["tune", "session.csv", "--table", table(), "-o", "table.toml"],
+        ];
+        for command in commands {
+            let error = folder.refused(command);
+            assert!(error.starts_with("session.csv, column time_s: ") && error.contains(fault), "{command:?}: {error}");
+            assert!(folder.run(command).stderr.contains(remedy), "{command:?}");
+        }
+    }
 }
 
 #[test]

@@ -102,9 +102,9 @@ impl Folder {
     }
 }
 
-/// The one error in `stderr`, which has a help line below it and nothing else.
+/// The one error in `stderr`, which has a help line below it, and nothing but warnings above it.
 pub fn error_of(stderr: &str) -> String {
-    let lines: Vec<&str> = stderr.lines().collect();
+    let lines: Vec<&str> = stderr.lines().skip_while(|line| line.starts_with("warning: ")).collect();
     let [error @ .., help] = &lines[..] else { panic!("nothing on stderr") };
     let help = help.strip_prefix("  help: ").unwrap_or_else(|| panic!("the last line is no help: {stderr}"));
     assert!(!help.trim().is_empty(), "{stderr}");

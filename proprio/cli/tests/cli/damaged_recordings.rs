@@ -5,7 +5,7 @@ use rand_chacha::rand_core::{Rng, SeedableRng};
 use serde_json::Value;
 
 use super::board::SyntheticBoard;
-use super::common::{Folder, error_of, json, table};
+use super::common::{Folder, arm, error_of, json, sweep, table};
 use super::recording_files::{record, recorded, ticks};
 
 fn flipped(recording: &[u8], at: usize, bit: u32) -> Vec<u8> {
@@ -55,7 +55,52 @@ fn a_loss_is_told_with_its_times_and_share() {
     assert!((9.0..11.0).contains(&from) && to > from + 0.5 && to < from + 1.1, "{warning}");
     let (recorded, stderr) = recorded(&folder, "damaged.mcap");
     assert!(recorded["not_compared"].as_u64().expect("a count") > 800, "{stderr}");
-    assert!(stderr.contains("compared from the next tare on"), "{stderr}");
+    assert!(stderr.contains("samples cannot be compared with the board"), "{stderr}");
+}
+
+#[test]
+fn a_hole_is_named_wherever_the_recording_is_read() {
+    let recording = record(ticks(SyntheticBoard::new(1, 20.0)));
+    let folder = Folder::with("damaged.mcap", flipped(&recording, recording.len() / 2, 4));
+    let page = ["report", "damaged.mcap", "--table", table(), "-o", "report.html"];
+    for command in
+        [&["check", "damaged.mcap", "--table", table()][..], &["replay", "damaged.mcap", "--table", table()], &page]
+    {
+        let run = folder.run(command);
+        let named = run.stderr.lines().filter(|line| line.contains("s is damaged and left out")).count();
+        assert_eq!(named, 1, "{command:?}: {}", run.stderr);
+    }
+}
+
+#[test]
+fn a_hole_in_a_recording_with_truth_is_named_by_calibrate_and_tune() {
+    let folder = Folder::with("sweep.csv", sweep().to_string());
+    folder.done(&["convert", "sweep.csv", "sweep.mcap"]);
+    let whole = std::fs::read(folder.path("sweep.mcap")).expect("it was written");
+    folder.write("sweep.mcap", flipped(&whole, whole.len() / 2, 4));
+    let calibrate = ["calibrate", "sweep.mcap", "--arm", arm(), "-o", "table.toml"];
+    let tune = ["tune", "sweep.mcap", "--table", "table.toml", "-o", "tuned.toml"];
+    for command in [calibrate, tune] {
+        let run = folder.done(&command);
+        let named = run.stderr.lines().filter(|line| line.contains("s is damaged and left out")).count();
+        assert_eq!(named, 1, "{command:?}: {}", run.stderr);
+        assert!(run.stderr.contains("warning: sweep.mcap: "), "{command:?}: {}", run.stderr);
+    }
+}
+
+#[test]
+fn damaged_first_bytes_are_those_of_a_recording() {
+    let recording = record(ticks(SyntheticBoard::new(1, 5.0)));
+    for at in 0..8 {
+        let folder = Folder::with("damaged.mcap", flipped(&recording, at, 3));
+        let error = folder.refused(&["replay", "damaged.mcap", "--table", table()]);
+        assert!(error.contains("the recording is damaged: its first bytes"), "byte {at}: {error}");
+        let run = folder.run(&["replay", "damaged.mcap", "--table", table()]);
+        assert!(run.stderr.contains("`proprio recover`"), "byte {at}: {}", run.stderr);
+        // Its data is whole.
+        folder.done(&["recover", "damaged.mcap", "-o", "whole.mcap"]);
+        folder.done(&["replay", "whole.mcap", "--table", table()]);
+    }
 }
 
 #[test]

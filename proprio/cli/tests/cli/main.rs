@@ -10,6 +10,7 @@ mod calibrate;
 mod calibrate_faults;
 mod calibrate_gaps;
 mod check;
+mod check_elsewhere;
 mod common;
 mod convert;
 mod damaged_recordings;
@@ -30,6 +31,7 @@ mod recording_files;
 #[cfg(unix)]
 mod recording_live;
 mod recordings;
+mod remedies;
 mod report;
 mod report_numbers;
 mod restarts;

@@ -279,12 +279,18 @@ fn a_cut_recording_is_refused_with_the_way_to_save_it() {
 #[test]
 fn a_recording_that_is_cut_at_any_byte_loses_no_more_than_its_last_second() {
     let recording = record(ticks(SyntheticBoard::new(1, 20.0)));
+    let footer = recording.len() - mcap::MAGIC.len() - 20;
+    let index = u64::from_le_bytes(*recording[footer..].first_chunk().expect("it has eight bytes")) as usize;
     let mut random = ChaCha8Rng::seed_from_u64(1);
     for _ in 0..25 {
         let cut = 4096 + random.next_u32() as usize % (recording.len() - 4096);
         let folder = Folder::with("cut.mcap", &recording[..cut]);
-        let run = folder.done(&["recover", "cut.mcap", "-o", "whole.mcap"]);
-        assert!(run.stderr.contains("recovered from a file that was cut"), "{}", run.stderr);
+        let run = folder.run(&["recover", "cut.mcap", "-o", "whole.mcap"]);
+        // The index repeats what is before it.
+        let loses_data = cut < index;
+        assert_eq!(run.code, Some(loses_data.into()), "cut at {cut}: {}", run.stderr);
+        assert_eq!(run.stderr.contains("the end is missing: all after "), loses_data, "cut at {cut}: {}", run.stderr);
+        assert!(run.stderr.contains("recovered from a file "), "{}", run.stderr);
         let (recorded, stderr) = recorded(&folder, "whole.mcap");
         assert_eq!(recorded["first_difference"], Value::Null, "cut at {cut}: {stderr}");
         assert_eq!(recorded["equal"], recorded["estimates"], "cut at {cut}: {stderr}");
@@ -308,6 +314,8 @@ fn what_is_no_recording_is_not_recovered() {
     let folder = Folder::with("session.csv", "time_s\n0\n");
     let error = folder.refused(&["recover", "session.csv", "-o", "whole.mcap"]);
     assert!(error.contains("no MCAP file"), "{error}");
+    let run = folder.run(&["recover", "session.csv", "-o", "whole.mcap"]);
+    assert!(run.stderr.contains("only recordings (.mcap) are recovered"), "{}", run.stderr);
     folder.write("short.mcap", &record(ticks(SyntheticBoard::new(1, 2.0)))[..300]);
     let error = folder.refused(&["recover", "short.mcap", "-o", "whole.mcap"]);
     assert!(error.contains("nothing in it is whole"), "{error}");

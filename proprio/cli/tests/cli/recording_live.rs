@@ -10,11 +10,16 @@ use rand_chacha::rand_core::{Rng, SeedableRng};
 use serialport::{SerialPort, TTYPort};
 
 use super::board::SyntheticBoard;
-use super::common::{Folder, table};
+use super::common::{Folder, error_of, table};
 use super::recording_files::recorded;
 
 /// Starts the recorder on a pseudo-terminal and plays the board's stream, four times as fast as a board, until `done`.
 fn play(folder: &Folder, seconds: f64, done: impl FnOnce(&mut Child)) -> String {
+    play_from(folder, 0, seconds, done)
+}
+
+/// The same of a board that has run for some ticks before.
+fn play_from(folder: &Folder, tick: usize, seconds: f64, done: impl FnOnce(&mut Child)) -> String {
     let (mut board, port) = TTYPort::pair().expect("the system has pseudo-terminals");
     let name = port.name().expect("it has a name");
     drop(port);
@@ -28,7 +33,7 @@ fn play(folder: &Folder, seconds: f64, done: impl FnOnce(&mut Child)) -> String 
             while !stop.load(Ordering::Relaxed) && board.read(&mut greeting).is_err() {
                 std::thread::sleep(Duration::from_millis(5));
             }
-            for (frames, _) in SyntheticBoard::new(1, seconds) {
+            for (frames, _) in SyntheticBoard::new(1, seconds).skip(tick) {
                 if stop.load(Ordering::Relaxed) || board.write_all(&frames.concat()).is_err() {
                     return;
                 }
@@ -71,7 +76,8 @@ fn a_recording_that_is_killed_is_recovered_and_replays_bit_for_bit() {
             wait_for_bytes(&folder, bytes);
             child.kill().expect("it runs");
         });
-        folder.done(&["recover", "a.mcap", "-o", "whole.mcap"]);
+        // The end is lost.
+        assert_eq!(folder.run(&["recover", "a.mcap", "-o", "whole.mcap"]).code, Some(1));
         let (recorded, stderr) = recorded(&folder, "whole.mcap");
         assert_eq!(
             (&recorded["equal"], &recorded["table_matches"]),
@@ -82,19 +88,33 @@ fn a_recording_that_is_killed_is_recovered_and_replays_bit_for_bit() {
     }
 }
 
+/// Ends the recorder as Ctrl-C does, once it has recorded for a while.
+fn interrupt(folder: &Folder, child: &mut Child) {
+    wait_for_bytes(folder, 200_000);
+    let id = child.id().to_string();
+    let sent = std::process::Command::new("kill").args(["-INT", &id]).status().expect("kill starts");
+    assert!(sent.success());
+    assert_eq!(child.wait().expect("it ends").code(), Some(0));
+}
+
 #[test]
 fn an_interrupt_ends_a_recording_well() {
     let folder = Folder::new();
-    let messages = play(&folder, 60.0, |child| {
-        wait_for_bytes(&folder, 200_000);
-        let id = child.id().to_string();
-        let sent = std::process::Command::new("kill").args(["-INT", &id]).status().expect("kill starts");
-        assert!(sent.success());
-        assert_eq!(child.wait().expect("it ends").code(), Some(0));
-    });
+    let messages = play(&folder, 60.0, |child| interrupt(&folder, child));
     assert!(messages.starts_with("a.mcap: 0:00:") && messages.contains(" 0 frames lost, 0 damaged"), "{messages}");
+    assert!(!messages.contains("warning"), "{messages}");
     let (recorded, stderr) = recorded(&folder, "a.mcap");
     assert_eq!(recorded["equal"], recorded["estimates"], "{stderr}");
+}
+
+#[test]
+fn a_recording_of_a_board_that_was_not_restarted_says_that_it_cannot_be_compared() {
+    let folder = Folder::new();
+    let messages = play_from(&folder, 300, 60.0, |child| interrupt(&folder, child));
+    assert!(messages.contains("warning: a.mcap: ") && messages.contains("a replay cannot compare"), "{messages}");
+    let (recorded, stderr) = recorded(&folder, "a.mcap");
+    assert_eq!((&recorded["equal"], &recorded["not_compared"]), (&0.into(), &recorded["estimates"]), "{stderr}");
+    assert!(stderr.contains("none of the ") && !stderr.contains("bit for bit"), "{stderr}");
 }
 
 #[test]
@@ -116,6 +136,9 @@ fn a_silent_board_has_no_status() {
     let (_board, port) = TTYPort::pair().expect("the system has pseudo-terminals");
     let name = port.name().expect("it has a name");
     drop(port);
-    let error = folder.refused(&["status", "--port", &name]);
-    assert!(error.contains("no Hello and Health within 10 s"), "{error}");
+    let run = folder.run(&["status", "--port", &name]);
+    let (notice, error) = run.stderr.split_once('\n').expect("a notice and an error");
+    assert_eq!(notice, format!("{name}: waiting for a board's messages, 10 s at most"));
+    assert_eq!((run.code, run.stdout.as_str()), (Some(2), ""));
+    assert!(error_of(error).contains("no Hello and Health within 10 s"), "{error}");
 }

@@ -67,6 +67,7 @@ impl Page {
             token,
             session: None,
             help: ToString::to_string,
+            finding_text: ToString::to_string,
         };
         Self { monitor: Monitor::start(Some(live), options).expect("a free port"), folder }
     }

@@ -2,6 +2,7 @@
 //! live page of it.
 
 mod access;
+mod findings;
 mod flashed;
 mod http;
 mod late_recordings;

@@ -16,12 +16,12 @@ fn table() -> PathBuf {
     Path::new(ROOT).join("calibration-tables/planar-6.toml")
 }
 
-fn session(name: &str) -> PathBuf {
+pub fn session(name: &str) -> PathBuf {
     Path::new(ROOT).join("host-tests/sessions").join(name)
 }
 
 /// A monitor without a board, whose folder has a session in it.
-fn page(given: Option<PathBuf>) -> Page {
+pub fn page(given: Option<PathBuf>) -> Page {
     let folder = tempfile::tempdir().expect("there is room for a temporary folder");
     std::fs::copy(session("scenario-2.csv"), folder.path().join("a b.csv")).expect("there is room");
     let table = table();
@@ -32,6 +32,7 @@ fn page(given: Option<PathBuf>) -> Page {
         token: None,
         session: given,
         help: ToString::to_string,
+        finding_text: ToString::to_string,
     };
     Page { monitor: Monitor::start(None, options).expect("a free port"), folder }
 }
@@ -124,7 +125,7 @@ fn a_session_that_the_browser_sends_is_opened_and_a_bad_one_named() {
     assert_eq!(page.post("/sessions?name=bad.csv", "time_s,bend1a_adc\n0,x\n").status, 200);
     let answer = page.get("/session?name=bad.csv");
     assert_eq!(answer.status, 409);
-    assert!(answer.text().contains("bend1b_adc"), "{}", answer.text());
+    assert!(answer.text().starts_with("bad.csv, line 1: column bend1b_adc is missing"), "{}", answer.text());
 }
 
 #[test]

@@ -3,9 +3,10 @@
 import { Store } from './store.js';
 import { Feed, post } from './feed.js';
 import { armValues, drawArm } from './arm.js';
-import { PLOTS, Range, clock, drawPlot, extent, innerWidth, visible } from './plot.js';
+import { PLOTS, Range, clock, drawPlot, extent, fit, innerWidth, visible } from './plot.js';
 import { View, handle } from './view.js';
 import { SensorList, text } from './sensors.js';
+import { FindingList } from './findings.js';
 import { BoardPanel } from './board_panel.js';
 import { SessionPicker, load } from './sessions.js';
 import { Control } from './control.js';
@@ -33,6 +34,7 @@ const app = {
 };
 
 const sensorList = new SensorList($('strips'));
+const findingList = new FindingList($('findings'));
 const boardPanel = new BoardPanel($('facts'), $('notes'));
 const control = new Control($('control'), showError);
 const sessionPicker = new SessionPicker($('sessions'), () => app.arm?.opens_sessions, openSession);
@@ -226,18 +228,6 @@ matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => {
 });
 new ResizeObserver(() => app.changed()).observe(document.body);
 
-/** The canvas as large as it is seen, and its size in CSS pixels. */
-function fit(canvas) {
-  const { clientWidth: width, clientHeight: height } = canvas;
-  const ratio = devicePixelRatio;
-  const [w, h] = [Math.round(width * ratio), Math.round(height * ratio)];
-  if (canvas.width !== w || canvas.height !== h) Object.assign(canvas, { width: w, height: h });
-  const c = canvas.getContext('2d');
-  c.setTransform(ratio, 0, 0, ratio, 0, 0);
-  c.clearRect(0, 0, width, height);
-  return [c, width, height];
-}
-
 function armSpec() {
   const { store } = app;
   const row = store?.count ? store.rowAt(app.view.cursor ?? store.last) : 0;
@@ -301,6 +291,7 @@ function drawPeriodic() {
   $('key-ellipse').hidden = !app.uncertainty;
   $('key-contact').hidden = !app.contact;
   boardPanel.show(app.status);
+  findingList.show((app.session ?? app.status)?.findings ?? []);
 }
 
 let drawnTo = NaN, seen_us = 0, shown_us = 0, played = performance.now();

@@ -223,3 +223,15 @@ export function shares(canvas, event) {
 
 /** Width of a plot's inside. */
 export const innerWidth = (canvas) => canvas.clientWidth - LEFT - RIGHT;
+
+/** The canvas as large as it is seen, and its size in CSS pixels. */
+export function fit(canvas) {
+  const { clientWidth: width, clientHeight: height } = canvas;
+  const ratio = devicePixelRatio;
+  const [w, h] = [Math.round(width * ratio), Math.round(height * ratio)];
+  if (canvas.width !== w || canvas.height !== h) Object.assign(canvas, { width: w, height: h });
+  const c = canvas.getContext('2d');
+  c.setTransform(ratio, 0, 0, ratio, 0, 0);
+  c.clearRect(0, 0, width, height);
+  return [c, width, height];
+}

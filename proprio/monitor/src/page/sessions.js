@@ -13,7 +13,7 @@ export async function load(name, part) {
   const { about } = headOf(buffer);
   const store = new Store(about.arm.columns);
   store.load(buffer);
-  return { name, store, arm: about.arm, samples: about.samples, every: about.every, marks: about.marks };
+  return { name, store, arm: about.arm, samples: about.samples, every: about.every, marks: about.marks, findings: about.findings };
 }
 
 /** The dialog that lists the sessions that can be opened. */

@@ -44,7 +44,7 @@ pub fn write(
             "the first {before} rows are from before the begin of the recording: the tare that its estimates need"
         ));
     }
-    left_out.extend(reader.holes().iter().map(HoleTimes::to_string));
+    left_out.extend(reader.defects().holes.iter().map(HoleTimes::to_string));
     Ok((file, left_out))
 }
 

@@ -300,10 +300,14 @@ fn any_bytes_behind_the_magic_ones_are_refused_without_a_panic() {
 }
 
 #[test]
-fn a_file_that_is_cut_at_any_byte_has_no_hole() {
+fn a_file_that_is_cut_at_any_byte_has_no_hole_and_loses_its_end() {
     let recording = recording();
+    // The footer of 20 bytes before the last magic bytes begins with the place of the index.
+    let footer = recording.len() - mcap::MAGIC.len() - 20;
+    let index = u64::from_le_bytes(*recording[footer..].first_chunk().expect("it has eight bytes")) as usize;
     for end in (4096..recording.len()).step_by(7) {
         let (recovery, _) = recovered(&recording[..end]).unwrap_or_else(|error| panic!("cut at {end}: {error}"));
-        assert!(recovery.was_cut && !recovery.has_loss(), "cut at {end}: {recovery:?}");
+        assert!(recovery.was_cut && !recovery.is_damaged(), "cut at {end}: {recovery:?}");
+        assert_eq!(recovery.has_loss(), end < index, "cut at {end}, the index begins at {index}: {recovery:?}");
     }
 }

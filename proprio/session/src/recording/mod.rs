@@ -35,6 +35,7 @@ mod writer;
 pub use hole::{Hole, HoleTimes};
 pub use messages::chip_number;
 pub use read_error::ReadError;
+pub(crate) use reader::is_damaged_begin;
 pub use reader::{Item, RawReader, Reader, is_recording};
 pub use recover::{RecoverError, Recovery, recover};
 pub(crate) use summary::Summary;

@@ -6,6 +6,7 @@ use std::io::{self, Read};
 use mcap::records::{Record, op};
 use telemetry::Sample;
 
+use super::form;
 use super::hole::Hole;
 use super::messages;
 use super::read_error::ReadError;
@@ -13,6 +14,9 @@ use super::scanner::{Part, Scanner};
 use super::summary::Summary;
 use super::topics::{HISTORY, MARKS, RAW, SAMPLES, TRUTH};
 use crate::{HostNs, Truth};
+
+/// Length that no header reaches: it has two short names.
+const LONGEST_HEADER: u64 = 1 << 16;
 
 /// A part of a recording that a session uses.
 #[derive(Debug, Clone, PartialEq)]
@@ -35,6 +39,12 @@ pub enum Item {
 #[must_use]
 pub fn is_recording(begin: &[u8]) -> bool {
     begin.starts_with(mcap::MAGIC)
+}
+
+/// True where `begin` is that of an MCAP file whose magic bytes are damaged: its header follows them.
+pub(crate) fn is_damaged_begin(begin: &[u8]) -> bool {
+    let header = begin.get(mcap::MAGIC.len()..).and_then(form::head);
+    !is_recording(begin) && header.is_some_and(|(opcode, length)| opcode == op::HEADER && length < LONGEST_HEADER)
 }
 
 /// Reader of a recording. Damaged parts are [`Item::Hole`].

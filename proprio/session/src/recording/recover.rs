@@ -28,6 +28,8 @@ pub struct Recovery {
     pub bytes: u64,
     /// The source was cut.
     pub was_cut: bool,
+    /// Where it was cut before the end of its data: bytes of its last part, which is left out.
+    pub lost_end: Option<u64>,
     /// The source's index is damaged, which is made again.
     pub index_was_damaged: bool,
     /// The damaged parts, which are left out.
@@ -39,10 +41,16 @@ pub struct Recovery {
 }
 
 impl Recovery {
-    /// True where a part of the data between the begin and the end of the source is lost.
+    /// True where a part of the source is damaged and left out.
+    #[must_use]
+    pub fn is_damaged(&self) -> bool {
+        !self.holes.is_empty() || self.lost_attachments > 0 || self.lost_messages > 0
+    }
+
+    /// True where a part of the data is lost.
     #[must_use]
     pub fn has_loss(&self) -> bool {
-        !self.holes.is_empty() || self.lost_attachments > 0 || self.lost_messages > 0
+        self.is_damaged() || self.lost_end.is_some()
     }
 
     /// Share of the source's bytes that are not in a hole.
@@ -96,6 +104,7 @@ pub fn recover(mut source: impl Read + Seek, sink: impl Write) -> Result<Recover
     let mut done = copy.done;
     done.bytes = scanner.bytes();
     done.was_cut = scanner.is_cut();
+    done.lost_end = scanner.lost_end();
     done.index_was_damaged = scanner.index_is_damaged();
     done.start_ns = start_ns.or(done.times_ns.map(|(first, _)| first)).unwrap_or_default();
     Ok(done)

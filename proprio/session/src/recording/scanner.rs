@@ -72,6 +72,7 @@ pub struct Scanner<R> {
     /// Damaged attachments and metadata that are not reported yet.
     damaged_about: u32,
     is_cut: bool,
+    lost_end: Option<u64>,
     index_is_damaged: bool,
 }
 
@@ -87,6 +88,7 @@ impl<R: Read> Scanner<R> {
             hole: None,
             damaged_about: 0,
             is_cut: false,
+            lost_end: None,
             index_is_damaged: false,
         }
     }
@@ -94,6 +96,11 @@ impl<R: Read> Scanner<R> {
     /// True where the file ends without its index, after the last part.
     pub fn is_cut(&self) -> bool {
         self.is_cut
+    }
+
+    /// Bytes of the last part, which was cut, where the file ends before the end of its data, after the last part.
+    pub fn lost_end(&self) -> Option<u64> {
+        self.lost_end
     }
 
     /// True where a part is damaged that has no data.
@@ -158,8 +165,7 @@ impl<R: Read> Scanner<R> {
     /// Reads the next record or chunk.
     fn load(&mut self) -> io::Result<()> {
         if self.window.peek(0, 1)?.is_empty() {
-            self.is_cut = true;
-            self.place = Place::Finished;
+            self.cut(0);
             return Ok(());
         }
         let Some(found) = self.found(0, false)? else { return self.skip_damage() };
@@ -314,8 +320,7 @@ impl<R: Read> Scanner<R> {
                 if self.window.peek(length, 1)?.is_empty() {
                     // Nothing whole follows.
                     self.window.consume(length);
-                    self.is_cut = true;
-                    self.place = Place::Finished;
+                    self.cut(self.window.offset() - offset);
                     return Ok(());
                 }
                 if length < MOST_KEPT {
@@ -335,6 +340,13 @@ impl<R: Read> Scanner<R> {
             Content::Index => self.index_is_damaged = true,
         }
         Ok(())
+    }
+
+    /// Notes that the file ends before the end of its data, within a part of which there are `bytes`.
+    fn cut(&mut self, bytes: u64) {
+        self.is_cut = true;
+        self.lost_end = Some(bytes);
+        self.place = Place::Finished;
     }
 
     /// Reads the index, which repeats what the data section has, to the magic bytes at the file's end.
