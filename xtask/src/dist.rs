@@ -15,23 +15,27 @@ use crate::tool::{cargo, root, target};
 /// Builds the firmware with its profile, and writes its ELF file, its plain image and the checksums of both.
 pub fn run() -> Result<(), String> {
     add_target()?;
-    cargo(&["build", "--locked", "--profile", "firmware", "--package", "firmware", "--target", TARGET], &[])?;
-    let built = target().join(TARGET).join("firmware").join("firmware");
-    let elf = fs::read(&built).map_err(|error| format!("{}: {error}", built.display()))?;
-    let image = image(&elf).map_err(|error| format!("{}: {error}", built.display()))?;
     let revision = revision()?;
+    let (mut elf, mut image) = build()?;
     if !image.windows(revision.len()).any(|bytes| bytes == revision.as_bytes()) {
-        return Err(format!(
-            "{} is of another revision than {revision}; `cargo clean --package firmware --profile firmware --target {TARGET}`, \
-             and again",
-            built.display()
-        ));
+        // Cargo does not notice a commit that changes nothing of the firmware; its `Hello` carries the revision.
+        cargo(&["clean", "--package", "firmware", "--profile", "firmware", "--target", TARGET], &[])?;
+        (elf, image) = build()?;
     }
     let folder = target().join("dist");
     write(&elf, &image, &folder).map_err(|error| format!("{}: {error}", folder.display()))?;
     let (version, size) = (env!("CARGO_PKG_VERSION"), image.len());
     println!("firmware {version} ({revision}), {size} bytes of flash: {}", folder.display());
     Ok(())
+}
+
+/// The firmware's ELF file and its plain image.
+fn build() -> Result<(Vec<u8>, Vec<u8>), String> {
+    cargo(&["build", "--locked", "--profile", "firmware", "--package", "firmware", "--target", TARGET], &[])?;
+    let path = target().join(TARGET).join("firmware").join("firmware");
+    let elf = fs::read(&path).map_err(|error| format!("{}: {error}", path.display()))?;
+    let image = image(&elf).map_err(|error| format!("{}: {error}", path.display()))?;
+    Ok((elf, image))
 }
 
 fn write(elf: &[u8], image: &[u8], folder: &Path) -> io::Result<()> {

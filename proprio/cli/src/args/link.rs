@@ -88,7 +88,7 @@ pub struct FlashArgs {
     #[arg(long, value_name = "FILE")]
     pub firmware: Option<PathBuf>,
     /// Build the firmware first, from the source of proprio in this folder
-    #[arg(long, value_name = "FOLDER", conflicts_with = "firmware")]
+    #[arg(long, alias = "source", value_name = "FOLDER", conflicts_with = "firmware")]
     pub from_source: Option<PathBuf>,
     /// Print the commands without running them; needs no board
     #[arg(long)]

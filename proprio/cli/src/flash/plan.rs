@@ -51,21 +51,16 @@ pub fn plan(firmware: &Firmware, port: &str, image: &Path) -> Result<Vec<Step>, 
         }
     };
     let flasher = Flasher::find()?;
-    if flasher == Flasher::Probe {
-        steps.extend(by_probe(&path, is_plain).map(Step::Run));
-        return Ok(steps);
+    let plain = if is_plain { &path } else { image };
+    if !is_plain && flasher != Flasher::Probe {
+        steps.push(Step::WriteImage { elf: path.clone(), image: image.to_owned() });
     }
-    let plain = if is_plain {
-        path
-    } else {
-        steps.push(Step::WriteImage { elf: path, image: image.to_owned() });
-        image.to_owned()
-    };
     match flasher {
+        Flasher::Probe => steps.extend(by_probe(&path, is_plain).map(Step::Run)),
+        Flasher::Bossac => steps.push(Step::Run(by_bossac(port, plain))),
         Flasher::ArduinoBossac(program) => {
-            steps.extend([Step::Touch(port.to_owned()), Step::Run(by_arduino_bossac(&program, port, &plain))]);
+            steps.extend([Step::Touch(port.to_owned()), Step::Run(by_arduino_bossac(&program, port, plain))]);
         }
-        _ => steps.push(Step::Run(by_bossac(port, &plain))),
     }
     Ok(steps)
 }

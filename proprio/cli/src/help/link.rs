@@ -73,7 +73,9 @@ impl Help for TransferError {
 impl Help for DriveError {
     fn help(&self) -> String {
         let help = match self {
-            Self::OtherTable(_) => "put this table onto the board with `proprio flash --table`, or give the board's",
+            Self::OtherTable(_) => {
+                "store this table on the board with `proprio table push`, or give the board's (`proprio table pull`)"
+            }
             Self::Crashed(_) => {
                 "turn the air off and find the cause; running `proprio drive` again acknowledges the crash"
             }

@@ -257,6 +257,8 @@ fn from_source_the_firmware_is_built_in_its_folder_and_then_flashed() {
             format!("# proprio writes the plain image of {built} to {}", bench.path("tmp/firmware.bin"))
         ]
     );
+    // The name of the option in version 0.1.
+    assert_eq!(dry_run(&bench, &["--source", "my source"]), dry_run(&bench, &["--from-source", "my source"]));
     bench.flash(&["--from-source", "my source"]);
     assert_eq!(bench.called()[0], BUILD);
     assert_eq!(fs::read(bench.0.path("flashed")).expect("bossac ran"), image());
