@@ -33,6 +33,7 @@ impl<F: Storage + AsRef<[u8]>> TableServer<F> {
     }
 
     /// Reads the table into `table`, which is empty if there is no usable one. Returns its state.
+    #[inline(never)]
     pub fn load(&self, table: &mut BoardTable<SEGMENTS>) -> TableState {
         let is_usable = self.store.active().is_none_or(|stored| table.read(stored.image, WINDOW as u16).is_ok());
         let state = self.state();

@@ -90,7 +90,7 @@ impl<const N: usize> BoardTable<N> {
         self.segments.clear();
         let head = read_image(image, N, window, &mut |segment| {
             // `read_image` has compared the number of segments with N.
-            let _ = self.segments.push(segment);
+            let _ = self.segments.push(*segment);
         })?;
         self.head = Some(head);
         Ok(())
@@ -137,7 +137,7 @@ fn read_image(
     image: &[u8],
     room: usize,
     window: u16,
-    visit: &mut dyn FnMut(SegmentConfig<Q>),
+    visit: &mut dyn FnMut(&SegmentConfig<Q>),
 ) -> Result<Head, TableError> {
     let (head, mut rest) = postcard::take_from_bytes::<Head>(image).map_err(|_| TableError::Image)?;
     if head.segments == 0 || usize::from(head.segments) > room {
@@ -147,9 +147,14 @@ fn read_image(
         return Err(TableError::Window);
     }
     for _ in 0..head.segments {
-        let (segment, after) = postcard::take_from_bytes(rest).map_err(|_| TableError::Image)?;
-        visit(segment);
-        rest = after;
+        // By reference and without `map_err`: each copy of a segment takes a kilobyte of the board's stack.
+        match postcard::take_from_bytes(rest) {
+            Ok((segment, after)) => {
+                visit(&segment);
+                rest = after;
+            }
+            Err(_) => return Err(TableError::Image),
+        }
     }
     rest.is_empty().then_some(head).ok_or(TableError::Image)
 }

@@ -13,9 +13,8 @@ use atsam3x8e_hal::{clock, crash, eefc, gpio, reset};
 use board_core::imus::Imus;
 use board_core::tca9548a::{self, Tca9548a};
 use board_core::{BootCounter, TableServer};
-use board_table::BoardTable;
 use embedded_hal::digital::PinState;
-use telemetry::{BEND_SENSORS, Hello, REGULATORS, SEGMENTS, TableState};
+use telemetry::{BEND_SENSORS, Hello, REGULATORS};
 
 use crate::imu_bus::ImuBus;
 use crate::panic::outputs_safe;
@@ -57,10 +56,8 @@ pub struct Board {
     pub rx: Rx,
     pub backup: Backup,
     pub boots: BootCounter,
+    /// The `Hello`, but for the table.
     pub hello: Hello,
-    /// The table that was read from the flash; empty without one.
-    pub table: &'static BoardTable<SEGMENTS>,
-    pub table_state: TableState,
     pub tables: TableServer<eefc::Flash>,
 }
 
@@ -83,12 +80,8 @@ pub enum Error {
     Flash(#[from] eefc::Error),
 }
 
-/// Initialises the chip and reads the table; returns the board, vented and with its trigger running.
-pub fn set_up(
-    device: Peripherals,
-    buffers: &'static mut Buffers,
-    table: &'static mut BoardTable<SEGMENTS>,
-) -> Result<Board, Error> {
+/// Initialises the chip; returns the board, vented and with its trigger running.
+pub fn set_up(device: Peripherals, buffers: &'static mut Buffers) -> Result<Board, Error> {
     crash::on_fault(outputs_safe);
     // First, so that it resets the board if anything below hangs.
     let watchdog = Watchdog::start(device.WDT, WATCHDOG_MS)?;
@@ -114,8 +107,7 @@ pub fn set_up(
     let boots = BootCounter::start(retained::read(&backup), cause, last_panic.is_some());
     retained::write(&mut backup, &boots);
     let tables = TableServer::new(flash);
-    let table_state = tables.load(table);
-    let hello = device_info::hello(table, chip, cause, boots.number(), last_panic.as_ref());
+    let hello = device_info::hello(chip, cause, boots.number(), last_panic.as_ref());
 
     let (rx, tx) = (a.pa8.into_peripheral_a(), a.pa9.into_peripheral_a());
     let uart = uart::new(device.UART, rx, tx, BAUD, &mut buffers.transmit, &mut buffers.receive, clocks);
@@ -131,20 +123,5 @@ pub fn set_up(
     let adc = adc?;
     let start_us = Mono::now_us();
     let trigger = Trigger::start(channels.channel0, TICK_HZ, SCAN_US)?;
-    Ok(Board {
-        watchdog,
-        trigger,
-        start_us,
-        adc,
-        regulators,
-        imus,
-        tx,
-        rx,
-        backup,
-        boots,
-        hello,
-        table,
-        table_state,
-        tables,
-    })
+    Ok(Board { watchdog, trigger, start_us, adc, regulators, imus, tx, rx, backup, boots, hello, tables })
 }

@@ -5,26 +5,26 @@ use atsam3x8e_hal::reset::Cause;
 use board_table::BoardTable;
 use telemetry::{Hello, PROTOCOL_VERSION, ResetCause, SCHEMA, SEGMENTS, Text};
 
-/// The board's `Hello`.
-pub fn hello(
-    table: &BoardTable<SEGMENTS>,
-    chip: [u8; 16],
-    reset: ResetCause,
-    boot: u32,
-    last_panic: Option<&crash::Text>,
-) -> Hello {
+/// The board's `Hello`, of a board without a table.
+pub fn hello(chip: [u8; 16], reset: ResetCause, boot: u32, last_panic: Option<&crash::Text>) -> Hello {
     Hello {
         protocol: PROTOCOL_VERSION,
         schema: SCHEMA,
         firmware: text(env!("CARGO_PKG_VERSION")),
         revision: text(env!("REVISION")),
-        arm: text(table.arm()),
-        table: table.checksum(),
+        arm: Text::new(),
+        table: 0,
         chip,
         reset,
         boot,
         last_panic: last_panic.map(|last| text(last.as_str())),
     }
+}
+
+/// Enters the board's table in its `Hello`.
+pub fn enter_table(hello: &mut Hello, table: &BoardTable<SEGMENTS>) {
+    hello.arm = text(table.arm());
+    hello.table = table.checksum();
 }
 
 /// Cuts a text at N bytes.

@@ -1,5 +1,7 @@
 //! Estimation task: reads the IMUs, updates the estimator and sends the messages of the tick.
 
+use core::mem::MaybeUninit;
+
 use atsam3x8e_hal::gpio::{Output, Pin};
 use atsam3x8e_hal::tc::prelude::*;
 use board_core::imus::Imus;
@@ -51,6 +53,16 @@ struct CycleResult {
     sample: Sample,
     estimate: Estimate,
     events: heapless::Vec<Event, EVENTS>,
+}
+
+/// Makes the estimator in its static. Not inlined: its parts are on the stack meanwhile, 7 kB that are free again when the
+/// function returns.
+#[inline(never)]
+pub fn place_estimator(
+    place: &'static mut MaybeUninit<BoardEstimator>,
+    config: &'static ArmConfig<'static, Q>,
+) -> &'static mut BoardEstimator {
+    place.write(BoardEstimator::new(config))
 }
 
 impl EstimationTask {

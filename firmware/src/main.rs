@@ -55,12 +55,12 @@ mod app {
 
     use crate::board::{self, Buffers};
     use crate::command_task::{CommandTask, Control, TABLE_REQUESTS};
-    use crate::cpu_load;
     use crate::downlink::TelemetrySender;
-    use crate::estimation::EstimationTask;
+    use crate::estimation::{EstimationTask, place_estimator};
     use crate::parameters::LIMITS_PA;
     use crate::table_task::TableTask;
     use crate::tick::{Tick, Ticker};
+    use crate::{cpu_load, device_info};
 
     #[shared]
     struct Shared {
@@ -89,12 +89,14 @@ mod app {
         estimator: MaybeUninit<BoardEstimator> = MaybeUninit::uninit(),
     ])]
     fn init(cx: init::Context) -> (Shared, Local) {
-        let board = match board::set_up(cx.device, cx.local.buffers, cx.local.table) {
+        let mut board = match board::set_up(cx.device, cx.local.buffers) {
             Ok(board) => board,
             Err(error) => panic!("the board does not come up: {error}"),
         };
         let safe_mode = board.boots.safe_mode();
-        log_boot(&board.hello, &board.table_state, safe_mode);
+        let table_state = board.tables.load(cx.local.table);
+        device_info::enter_table(&mut board.hello, cx.local.table);
+        log_boot(&board.hello, &table_state, safe_mode);
         let (to_commands, command_ticks) = cx.local.for_commands.split();
         let (to_estimation, estimation_ticks) = cx.local.for_estimation.split();
         let (to_table, table_requests) = make_channel!(Request, TABLE_REQUESTS);
@@ -109,11 +111,10 @@ mod app {
             subscribers: [to_commands, to_estimation],
             missed_deadline: None,
         };
-        let has_table = board.table_state.status == TableStatus::InUse;
-        let config = cx.local.config.write(board.table.config().unwrap_or(ArmConfig::uncalibrated(&[])));
-        let estimator = cx.local.estimator.write(BoardEstimator::new(config));
-        let estimation_task =
-            EstimationTask::new(board.imus, estimator, config, board.hello, board.table_state, safe_mode);
+        let has_table = table_state.status == TableStatus::InUse;
+        let config = cx.local.config.write(cx.local.table.config().unwrap_or(ArmConfig::uncalibrated(&[])));
+        let estimator = place_estimator(cx.local.estimator, config);
+        let estimation_task = EstimationTask::new(board.imus, estimator, config, board.hello, table_state, safe_mode);
         // Each is spawned once and never ends, so that there is room for it.
         let _ = commands::spawn();
         let _ = estimation::spawn();

@@ -102,7 +102,7 @@ impl Board {
     pub fn send(&mut self, command: Command) -> u32 {
         let id = self.next_id;
         self.next_id += 1;
-        self.send_again(Request { id, command });
+        self.send_again(&Request { id, command });
         id
     }
 
@@ -110,9 +110,9 @@ impl Board {
     ///
     /// # Panics
     /// Never: every request fits a frame.
-    pub fn send_again(&mut self, request: Request) {
+    pub fn send_again(&mut self, request: &Request) {
         let mut buffer = [0; MAX_FRAME];
-        let frame = self.encoder.encode(&request, &mut buffer).expect("every request fits");
+        let frame = self.encoder.encode(request, &mut buffer).expect("every request fits");
         let now = self.machine.now();
         let line = self.machine.world_mut();
         // Ends a frame that noise may have started.

@@ -25,11 +25,13 @@
 //! | `metrics.rs`, `consistency.rs`, `error_histogram.rs` | errors against truth, and against the estimates' covariances |
 //! | `agreement.rs` | a board's estimates compared with a replay |
 //! | `session_metrics.rs`, `estimates.rs` | results for people and programs: metrics, and estimates as CSV |
-//! | `check/` | faults of a session's sensors and times |
+//! | `clock_fit/` | the camera's clock against the sensors', by their motion |
+//! | `check/` | faults of a session's sensors, times and truth |
 //! | `report/` | a page of plots |
 
 pub mod agreement;
 pub mod check;
+pub mod clock_fit;
 pub mod consistency;
 mod error;
 pub mod error_histogram;

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use crate::align::AlignmentError;
 use crate::calibrate::CalibrationError;
+use crate::truth_error::TruthError;
 use crate::tune::TuningError;
 
 /// A table that cannot be made, or truth that cannot be aligned.
@@ -15,6 +16,14 @@ pub enum Error {
     /// A replay of a session.
     #[error(transparent)]
     Replay(#[from] proprio_analysis::Error),
+    /// The truth of a session or a camera's file cannot be used.
+    #[error("{}: {source}", path.display())]
+    Truth {
+        /// The file.
+        path: PathBuf,
+        /// The problem.
+        source: TruthError,
+    },
     /// A calibration cannot be made of a session.
     #[error("{}: {source}", path.display())]
     Calibration {

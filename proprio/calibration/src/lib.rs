@@ -3,6 +3,10 @@
 pub mod align;
 pub mod calibrate;
 mod error;
+mod truth;
+mod truth_error;
 pub mod tune;
 
 pub use error::Error;
+pub use truth::JudgedTruth;
+pub use truth_error::{TruthError, TruthLengths};

@@ -141,7 +141,7 @@ impl Link {
         let (sender, answered) = channel();
         let answer = Answer { sender, asker, deadline: Instant::now() + TIME_LIMIT };
         // Without a thread the channel is closed, which is an interruption.
-        let _ = self.requests.send(LinkRequest::Command(command, answer));
+        let _ = self.requests.send(LinkRequest::Command(Box::new(command), answer));
         answered
     }
 }

@@ -85,9 +85,11 @@ impl History {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+
     use telemetry::{Encoder, MAX_FRAME, Message, Sample};
 
-    use super::{Event, EventKind, History, HostNs, KEPT};
+    use super::{EventKind, History, HostNs, KEPT, LinkEvent};
 
     /// A board that sends samples, and a history of its stream.
     struct Stream {
@@ -109,8 +111,8 @@ mod tests {
                 let sample = Message::Sample(Sample { tick, time_us, tare_epoch, bend: [None; 12], imu: [None; 6] });
                 let mut buffer = [0; MAX_FRAME];
                 let frame = self.encoder.encode(&sample, &mut buffer).expect("it fits");
-                for kind in [EventKind::Bytes((&*frame).into()), EventKind::Message(sample)] {
-                    self.history.take(&Event { at: HostNs(time_us * 1000), gaps: self.gaps, kind });
+                for kind in [EventKind::Bytes(Arc::from(frame)), EventKind::Message(sample)] {
+                    self.history.take(&LinkEvent { at: HostNs(time_us * 1000), gaps: self.gaps, kind });
                 }
                 self.tick += 1;
             }

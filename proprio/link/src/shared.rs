@@ -17,7 +17,7 @@ const CAPACITY: usize = 8192;
 #[derive(Debug)]
 pub(super) enum LinkRequest {
     /// Send a command to the board.
-    Command(Command, Answer),
+    Command(Box<Command>, Answer),
     /// End.
     Stop,
 }

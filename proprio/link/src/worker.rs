@@ -94,7 +94,7 @@ impl Worker {
     fn take_requests(&mut self) -> Result<(), LinkDropped> {
         loop {
             match self.received.try_recv() {
-                Ok(LinkRequest::Command(command, answer)) => self.requests.push(command, answer),
+                Ok(LinkRequest::Command(command, answer)) => self.requests.push(*command, answer),
                 Ok(LinkRequest::Stop) | Err(TryRecvError::Disconnected) => return Err(LinkDropped),
                 Err(TryRecvError::Empty) => return Ok(()),
             }

@@ -39,7 +39,7 @@ fn a_repeated_request_acts_once_and_is_answered_again() {
     let tares = board.samples().next_back().expect("samples come").tare_epoch;
     let request = Request { id: 77, command: Command::Tare };
     for _ in 0..3 {
-        board.send_again(request.clone());
+        board.send_again(&request);
         board.run_ms(50);
     }
     assert_eq!(board.samples().next_back().expect("samples come").tare_epoch, tares + 1);

@@ -18,7 +18,7 @@ fn rig() -> WiredRig {
 }
 
 fn empty_board() -> Board {
-    let mut board = Board::with_flash(rig(), &[0xFF; FLASH_BYTES]);
+    let mut board = Board::with_flash(rig(), &vec![0xFF; FLASH_BYTES]);
     board.run_ms(300);
     board
 }

@@ -51,6 +51,28 @@ pub enum Source {
     AllImus,
     /// The arm as a whole.
     Arm,
+    /// The truth of a segment's end.
+    Truth {
+        /// Segment.
+        segment: usize,
+    },
+    /// The truth of two segments' ends.
+    TwoTruths {
+        /// The first segment.
+        segment: usize,
+        /// The second segment.
+        other: usize,
+    },
+    /// The truth of all segments.
+    AllTruth,
+}
+
+impl Source {
+    /// True for findings about the truth.
+    #[must_use]
+    pub const fn is_truth(&self) -> bool {
+        matches!(self, Self::Truth { .. } | Self::TwoTruths { .. } | Self::AllTruth)
+    }
 }
 
 impl fmt::Display for Source {
@@ -67,6 +89,9 @@ impl fmt::Display for Source {
             Self::TwoImus { segment, other } => write!(f, "imu{segment} and imu{other}"),
             Self::AllImus => f.write_str("all IMUs"),
             Self::Arm => f.write_str("arm"),
+            Self::Truth { segment } => write!(f, "truth{segment}"),
+            Self::TwoTruths { segment, other } => write!(f, "truth{segment} and truth{other}"),
+            Self::AllTruth => f.write_str("truth"),
         }
     }
 }
@@ -254,6 +279,37 @@ pub enum Kind {
     Gaps,
     /// The bend sensor departs from its twin and from the IMU; angle, deg.
     LeavesTwin,
+    /// Places of exactly 0, as of a lost marker; share, %.
+    TruthZeros,
+    /// The last pose is repeated while the arm moves; share, %.
+    TruthRepeated,
+    /// All poses are held between updates of a lower rate; rows from one update to the next.
+    TruthStaircase,
+    /// Single rows are off their neighbours, which agree; share, %.
+    TruthJump,
+    /// The place is further from a neighbour's than the arm allows; share, %.
+    TruthMisplaced,
+    /// Two ends have each other's pose for a while; share, %.
+    TruthExchanged,
+    /// The places are not in the unit of their columns; factor.
+    TruthUnit,
+    /// The headings are radians in columns of degrees; factor.
+    TruthRadians,
+    /// The places turn otherwise than the headings, as with a mirrored axis; directions by the places over those by the headings.
+    TruthAxes,
+    /// The markers fit other lengths than the table's; factor.
+    TruthLengths,
+    /// The truth is later than the sensors (positive) or earlier; ms.
+    TruthLag,
+}
+
+impl Kind {
+    /// True where single poses of the truth are wrong, which are left out.
+    #[must_use]
+    pub const fn is_wrong_pose(self) -> bool {
+        use Kind::{TruthExchanged, TruthJump, TruthMisplaced, TruthRepeated, TruthZeros};
+        matches!(self, TruthExchanged | TruthJump | TruthMisplaced | TruthRepeated | TruthZeros)
+    }
 }
 
 impl fmt::Display for Finding {
@@ -305,6 +361,37 @@ impl fmt::Display for Finding {
             Kind::EqualTimes => write!(f, "{figure:.0} rows have the time of the row before"),
             Kind::Gaps => write!(f, "rows are missing, {figure:.2} s at most"),
             Kind::LeavesTwin => write!(f, "departs by {figure:.0}° from its twin and the IMU"),
+            Kind::TruthZeros => write!(f, "the place is exactly 0, 0 in {figure:.2} % of the rows"),
+            Kind::TruthRepeated => {
+                write!(f, "the last pose is repeated while the arm moves, in {figure:.2} % of the rows")
+            }
+            Kind::TruthStaircase => {
+                write!(f, "the truth changes every {figure:.0} rows and is held between while the arm moves")
+            }
+            Kind::TruthJump => write!(f, "single poses are off those before and after, {figure:.2} % of the rows"),
+            Kind::TruthMisplaced => {
+                write!(f, "the pose is further from its neighbour's than the arm allows, in {figure:.2} % of the rows")
+            }
+            Kind::TruthExchanged => write!(f, "each has the pose of the other in {figure:.2} % of the rows"),
+            Kind::TruthUnit => write!(f, "the places are in {}", unit(*figure)),
+            Kind::TruthRadians => {
+                write!(f, "the headings turn {figure:.1} times too little, as radians in columns of degrees")
+            }
+            Kind::TruthAxes => write!(f, "the places turn {figure:.2} times as far as the headings"),
+            Kind::TruthLengths => write!(f, "the markers fit {figure:.4} times the lengths of the arm"),
+            Kind::TruthLag => {
+                let order = if *figure > 0.0 { "later" } else { "earlier" };
+                write!(f, "the truth is {:.0} ms {order} than the IMUs", figure.abs())
+            }
         }
+    }
+}
+
+/// Unit of lengths that are `factor` times those of the column's unit.
+fn unit(factor: f64) -> &'static str {
+    match factor {
+        0.001 => "metres, in columns of mm",
+        0.1 => "centimetres, in columns of mm",
+        _ => "mm, in columns of metres",
     }
 }

@@ -17,6 +17,7 @@
 //! | `new_zero.rs` | IMUs that continue from another zero, or read 0 |
 //! | `steps.rs`, `wiring.rs` | steps of the IMUs against those of the bend sensors |
 //! | `quaternions.rs` | quaternions in another order, IMUs on their side |
+//! | `truth/` | the truth by itself, against the lengths and against the sensors' clock |
 //! | `twins.rs` | a bend sensor that leaves its twin and the IMU |
 
 mod bend_range;
@@ -30,6 +31,7 @@ mod quaternions;
 mod same_imus;
 mod steps;
 mod tare;
+pub mod truth;
 mod twins;
 mod wiring;
 
@@ -48,6 +50,7 @@ use self::plugs::Plugs;
 use self::same_imus::SameImus;
 use self::steps::Steps;
 use self::tare::Tare;
+use self::truth::{TruthCheck, TruthRow};
 use self::twins::Twins;
 use crate::error::Error;
 
@@ -70,6 +73,7 @@ struct Rules {
     new_zero: NewZero,
     steps: Steps,
     twins: Twins,
+    truth: TruthCheck,
 }
 
 impl SessionCheck {
@@ -90,6 +94,7 @@ impl SessionCheck {
             new_zero: NewZero::new(),
             steps: Steps::new(segments, Plugs::new(&table.file, &decoder)),
             twins: Twins::new(&table.file),
+            truth: TruthCheck::new(&table.file),
         };
         Ok(Self { decoder, start: rules.clone(), rules })
     }
@@ -112,6 +117,7 @@ impl SessionCheck {
         rules.new_zero.update(frame);
         rules.steps.update(frame);
         rules.twins.update(frame);
+        rules.truth.update(&TruthRow::of(row, frame.row));
     }
 
     /// The findings in the rows so far.
@@ -137,6 +143,7 @@ impl Rules {
         self.new_zero.finish(&mut findings);
         self.tare.finish(&mut findings);
         self.twins.finish(&mut findings);
+        findings.extend(self.truth.finish().0.findings);
         findings
     }
 }

@@ -2,9 +2,11 @@
 
 use proprio_session::FileDefects;
 
-use super::fine::Clocks;
+use proprio_analysis::clock_fit::{Clocks, ComparedSensors};
+
 use super::frames::Frames;
-use super::motion::{ComparedSensors, Readings};
+use super::motion::Readings;
+use crate::truth::JudgedTruth;
 
 /// A camera's recording and a session on one clock.
 pub struct Alignment {
@@ -15,6 +17,14 @@ pub struct Alignment {
     pub defects: [FileDefects; 2],
     /// Quality of the alignment.
     pub report: AlignmentReport,
+}
+
+impl Alignment {
+    /// The findings about the camera's poses.
+    #[must_use]
+    pub const fn truth(&self) -> &JudgedTruth {
+        &self.frames.truth
+    }
 }
 
 /// Offset, rate and quality of an alignment.

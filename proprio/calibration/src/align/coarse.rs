@@ -3,12 +3,11 @@
 use std::cmp::Ordering;
 use std::sync::Arc;
 
+use proprio_analysis::clock_fit::{ComparedSensors, GRID_S, Motion, Signal};
 use rustfft::num_complex::Complex;
 use rustfft::{Fft, FftPlanner};
 
 use super::error::AlignmentError;
-use super::motion::{ComparedSensors, Motion};
-use super::signal::{GRID_S, Signal};
 
 /// Shortest overlap of the recordings, s.
 pub(super) const LEAST_OVERLAP_S: f64 = 60.0;

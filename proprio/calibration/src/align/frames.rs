@@ -2,13 +2,16 @@
 
 use std::path::Path;
 
-use proprio_session::{CameraReader, FileDefects, Pose, Progress, SessionError, SessionProblem};
+use calibration_tables::{ArmFile, MAX_SEGMENTS};
+use proprio_analysis::check::truth::{LeftOut, TruthRow};
+use proprio_analysis::clock_fit::Reading;
+use proprio_session::{CameraReader, FileDefects, Pose, Progress, SessionError, SessionProblem, Truth};
 
 use super::angle::unwrap_near;
 use super::base;
 use super::error::AlignmentError;
-use super::signal::Reading;
 use crate::error::Error;
+use crate::truth::{JudgedTruth, TruthJudge};
 
 /// Longest time between two frames over which a pose is interpolated, s.
 const LONGEST_GAP_S: f64 = 0.2;
@@ -22,41 +25,50 @@ pub(super) struct Frames {
     times_s: Vec<f64>,
     /// The marker at each segment's end, frame by frame.
     ends: Vec<Vec<Option<Pose>>>,
+    /// The findings about them; wrong poses are left out.
+    pub truth: JudgedTruth,
 }
 
 impl Frames {
-    pub fn read(camera: &Path, segments: usize, progress: &mut dyn Progress) -> Result<Self, Error> {
+    pub fn read(camera: &Path, arm: &ArmFile, progress: &mut dyn Progress) -> Result<Self, Error> {
+        let segments = arm.segments.len();
         let mut reader = CameraReader::open(camera, segments)?;
         let work = format!("reading {}", camera.display());
-        let mut frames =
-            Self { first_s: 0.0, defects: reader.defects(), times_s: Vec::new(), ends: vec![Vec::new(); segments] };
+        let (mut first_s, mut times_s, mut ends) = (0.0, Vec::new(), vec![Vec::new(); segments]);
         let mut base = Vec::new();
         while let Some(frame) = reader.next_frame()? {
-            if frames.times_s.is_empty() {
-                frames.first_s = frame.time_s;
+            if times_s.is_empty() {
+                first_s = frame.time_s;
             }
-            frames.times_s.push(frame.time_s - frames.first_s);
+            times_s.push(frame.time_s - first_s);
             base.extend(frame.base);
-            for (end, seen) in frames.ends.iter_mut().zip(frame.ends) {
+            for (end, seen) in ends.iter_mut().zip(frame.ends) {
                 end.push(seen);
             }
             progress.advance(&work, reader.progress());
         }
-        if frames.times_s.is_empty() {
+        if times_s.is_empty() {
             let path = camera.to_owned();
             return Err(SessionError { path, line: None, column: None, problem: SessionProblem::NoSamples }.into());
         }
         let refuse = |source| Error::Alignment { path: camera.to_owned(), source };
-        if frames.ends.iter().flatten().all(Option::is_none) {
+        if ends.iter().flatten().all(Option::is_none) {
             return Err(refuse(AlignmentError::NoMarkers));
         }
         if reader.has_base() {
             let base = base::median(base).map_err(refuse)?;
-            let seen = frames.ends.iter_mut().flatten().flatten();
+            // Zeros are no pose in any frame.
+            let seen = ends.iter_mut().flatten().flatten().filter(|pose| pose.x_m != 0.0 || pose.y_m != 0.0);
             seen.for_each(|pose| *pose = base::from_base(&base, pose));
         }
-        frames.ends.iter_mut().for_each(|end| unwrap(end));
-        Ok(frames)
+        let (truth, left_out) = judge(camera, arm, first_s, &times_s, &ends)?;
+        for (i, end) in ends.iter_mut().enumerate() {
+            for (frame, pose) in end.iter_mut().enumerate() {
+                *pose = pose.filter(|_| !left_out.contains(frame, i));
+            }
+            unwrap(end);
+        }
+        Ok(Self { first_s, defects: reader.defects(), times_s, ends, truth })
     }
 
     pub fn segments(&self) -> usize {
@@ -111,6 +123,27 @@ impl Frames {
             heading_rad: between(from.heading_rad, to.heading_rad),
         })
     }
+}
+
+/// Judges the poses of all frames.
+fn judge(
+    camera: &Path,
+    arm: &ArmFile,
+    first_s: f64,
+    times_s: &[f64],
+    ends: &[Vec<Option<Pose>>],
+) -> Result<(JudgedTruth, LeftOut), Error> {
+    let mut judge = TruthJudge::new(camera, arm);
+    for (frame, time_s) in times_s.iter().enumerate() {
+        let mut poses = [None; MAX_SEGMENTS];
+        for (truth, end) in poses.iter_mut().zip(ends) {
+            *truth =
+                end[frame].map(|Pose { x_m, y_m, heading_rad }| Truth { x_m, y_m, heading_rad: Some(heading_rad) });
+        }
+        let row = frame as u64 + 1;
+        judge.update(&TruthRow { row, time_s: first_s + time_s, starts: false, poses, imu: [None; MAX_SEGMENTS] });
+    }
+    judge.finish()
 }
 
 /// Unwraps headings, beginning within ±π.

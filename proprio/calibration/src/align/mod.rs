@@ -13,26 +13,24 @@ mod angle;
 mod base;
 mod coarse;
 mod error;
-mod fine;
 mod frames;
 mod motion;
-mod signal;
 mod truth;
 
 use std::path::Path;
 
+use proprio_analysis::clock_fit::{self, ClockFit};
 use proprio_session::{LoadedTable, Progress};
 
 pub use alignment::{Alignment, AlignmentReport};
 pub use error::AlignmentError;
-pub use motion::ComparedSensors;
+pub use proprio_analysis::clock_fit::ComparedSensors;
 pub use truth::Written;
 
 use crate::error::Error;
 use coarse::LEAST_OVERLAP_S;
-use fine::ClockFit;
 use frames::Frames;
-use motion::{Motion, Readings};
+use motion::{Readings, motion};
 
 /// Longest recording, h: memory grows with its length, and a wrong time stamp may give any length.
 const MOST_H: f64 = 24.0;
@@ -51,12 +49,12 @@ pub fn align(
 ) -> Result<Alignment, Error> {
     let refuse = |path: &Path, source| Error::Alignment { path: path.to_owned(), source };
     let mut readings = Readings::read(session, &arm.file, progress)?;
-    let frames = Frames::read(camera, arm.file.segments.len(), progress)?;
+    let frames = Frames::read(camera, &arm.file, progress)?;
     for (path, seconds) in [(session, readings.seconds()), (camera, frames.seconds())] {
         check_length(seconds).map_err(|source| refuse(path, source))?;
     }
-    let motion = Motion::of(&mut readings, &frames).map_err(|source| refuse(session, source))?;
-    let fit = coarse::lag_s(&motion).and_then(|lag_s| fine::fit(&motion, lag_s));
+    let motion = motion(&mut readings, &frames).map_err(|source| refuse(session, source))?;
+    let fit = coarse::lag_s(&motion).and_then(|lag_s| clock_fit::fit(&motion, lag_s).ok_or(AlignmentError::Still));
     let fit = fit.and_then(|fit| check(motion.by, fit)).map_err(|source| refuse(camera, source))?;
 
     let start_s = readings.first_us() as f64 / 1e6;

@@ -1,10 +1,11 @@
-//! Motion in both recordings: pairs of a sensor's and the camera's column that follow the same motion.
+//! Readings of the sensors, and the motion that they and the camera have measured.
 
 use std::mem;
 use std::path::Path;
 
 use calibration_tables::ArmFile;
 use estimator_core::{ImuReading, SENSORS_PER_SEGMENT};
+use proprio_analysis::clock_fit::{ComparedSensors, Motion, Pair, Reading, Signal};
 use proprio_session::{
     FileDefects, FileFormat, Progress, RequiredColumns, Row, SessionError, SessionProblem, SessionReader,
 };
@@ -12,48 +13,7 @@ use proprio_session::{
 use super::angle::unwrap_near;
 use super::error::AlignmentError;
 use super::frames::Frames;
-use super::signal::{Reading, Signal};
 use crate::error::Error;
-
-/// A sensor and the camera's column of the same motion.
-pub(super) struct Pair {
-    pub sensor: Signal,
-    pub camera: usize,
-}
-
-/// The motion in both recordings. Times are since the first row and the first frame.
-pub(super) struct Motion {
-    pub pairs: Vec<Pair>,
-    pub cameras: Vec<Signal>,
-    pub by: ComparedSensors,
-}
-
-/// Sensors that are compared with the camera.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum ComparedSensors {
-    /// IMUs, whose headings must follow those of the segments' ends.
-    Imus,
-    /// Bend sensors, of unknown sign. Each of them has a lag of its own.
-    Bend,
-}
-
-impl ComparedSensors {
-    /// Smallest correlation of good sensors.
-    pub(super) const fn least_correlation(self) -> f64 {
-        match self {
-            Self::Imus => 0.95,
-            Self::Bend => 0.9,
-        }
-    }
-
-    /// Largest scatter of the windows' lags that sensors explain, s: more is an uneven clock.
-    pub(super) const fn most_residual_s(self) -> f64 {
-        match self {
-            Self::Imus => 0.02,
-            Self::Bend => 0.1,
-        }
-    }
-}
 
 /// Readings of a session's sensors, without the missing ones.
 pub(super) struct Readings {
@@ -128,32 +88,25 @@ impl Readings {
     }
 }
 
-impl Motion {
-    /// The motion by IMUs where there are any, as they have the least lag and memory; else by bend sensors.
-    ///
-    /// Takes the readings' columns out of `readings`, as they are large.
-    pub fn of(readings: &mut Readings, frames: &Frames) -> Result<Self, AlignmentError> {
-        let imus = mem::take(&mut readings.imu).into_iter().map(unwrapped).enumerate();
-        let bend =
-            mem::take(&mut readings.bend).into_iter().enumerate().flat_map(|(i, pair)| pair.map(|sensor| (i, sensor)));
-        let (imus, bend) = (seen(imus), seen(bend));
-        let by = if imus.is_empty() { ComparedSensors::Bend } else { ComparedSensors::Imus };
-        let (sensors, cameras, starts_s) = match by {
-            ComparedSensors::Imus => (imus, frames.headings(), &readings.starts_s[..]),
-            ComparedSensors::Bend => (bend, frames.bends(), &[][..]),
-        };
-        let pairs: Vec<Pair> =
-            sensors.into_iter().map(|(camera, read)| Pair { sensor: Signal::new(&read, starts_s), camera }).collect();
-        if pairs.is_empty() {
-            return Err(AlignmentError::NoSensors);
-        }
-        Ok(Self { pairs, cameras: cameras.iter().map(|seen| Signal::new(seen, &[])).collect(), by })
+/// The motion by IMUs where there are any, as they have the least lag and memory; else by bend sensors.
+///
+/// Takes the readings' columns out of `readings`, as they are large.
+pub(super) fn motion(readings: &mut Readings, frames: &Frames) -> Result<Motion, AlignmentError> {
+    let imus = mem::take(&mut readings.imu).into_iter().map(unwrapped).enumerate();
+    let bend =
+        mem::take(&mut readings.bend).into_iter().enumerate().flat_map(|(i, pair)| pair.map(|sensor| (i, sensor)));
+    let (imus, bend) = (seen(imus), seen(bend));
+    let by = if imus.is_empty() { ComparedSensors::Bend } else { ComparedSensors::Imus };
+    let (sensors, cameras, starts_s) = match by {
+        ComparedSensors::Imus => (imus, frames.headings(), &readings.starts_s[..]),
+        ComparedSensors::Bend => (bend, frames.bends(), &[][..]),
+    };
+    let pairs: Vec<Pair> =
+        sensors.into_iter().map(|(camera, read)| Pair { sensor: Signal::new(&read, starts_s), camera }).collect();
+    if pairs.is_empty() {
+        return Err(AlignmentError::NoSensors);
     }
-
-    /// Difference of the camera's column of a pair.
-    pub fn camera_step(&self, pair: usize, time_s: f64) -> Option<f64> {
-        self.cameras[self.pairs[pair].camera].step(time_s).map(|[step, _]| step)
-    }
+    Ok(Motion { pairs, cameras: cameras.iter().map(|seen| Signal::new(seen, &[])).collect(), by })
 }
 
 /// The columns that have readings.

@@ -1,7 +1,6 @@
 //! Error of constant curvature: the true ends of the segments against those that the true bend angles give.
 
-use calibration_tables::{SegmentToml, Side};
-use estimator_core::{Angle, OffsetAt, Pcc, SegmentConfig, forward_kinematics};
+use estimator_core::{Angle, Pcc, SegmentConfig, forward_kinematics};
 use nalgebra::Vector2;
 use proprio_session::Row;
 
@@ -16,16 +15,6 @@ pub(crate) fn constant_curvature_error(row: &Row, segments: &[SegmentConfig<f64>
     let tip = forward_kinematics(links).last()?.end?;
     let truth = row.truth.get(segments.len() - 1)?.as_ref()?;
     Some((tip - Vector2::new(truth.x_m, truth.y_m)).norm())
-}
-
-/// A segment without its sensors.
-pub(super) fn geometry(segment: &SegmentToml) -> SegmentConfig<f64> {
-    let offset_at = match segment.offset_at {
-        Side::Start => OffsetAt::Start,
-        Side::End => OffsetAt::End,
-    };
-    let plain = SegmentConfig::uncalibrated(segment.length_mm / 1000.0, segment.offset_mm / 1000.0);
-    SegmentConfig { offset_at, ..plain }
 }
 
 /// True end of a segment less that of constant curvature with the true bend angle, in the segment's own frame, m.

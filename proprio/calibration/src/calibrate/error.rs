@@ -116,6 +116,14 @@ pub enum CalibrationError {
         /// The segment that it follows, from 1.
         follows: usize,
     },
+    /// Two IMUs of one channel.
+    #[error("imu{segment} and imu{other} give the same readings: both are of one mux channel")]
+    SameImus {
+        /// Segment of the first, from 1.
+        segment: usize,
+        /// Segment of the second.
+        other: usize,
+    },
     /// An IMU that does not follow the arm.
     #[error("imu{segment} does not follow the end of its segment")]
     UnrelatedImu {

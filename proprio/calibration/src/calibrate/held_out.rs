@@ -41,11 +41,13 @@ pub(super) fn evaluate(
     let table = LoadedTable { file: derived.table, path: arm.path };
     let mut errors = ErrorMetrics::new(table.file.length_mm());
     let mut rows = is_held_out.into_iter();
-    for session in sessions {
+    for (session, left_out) in sessions.iter().zip(&sweep.left_out) {
+        let mut number = 0;
         replay::<Q>(session, &table, progress, |row, outcome| {
             if rows.next().is_some_and(|is_held_out| is_held_out) {
-                errors.add(row, outcome);
+                errors.add(&left_out.without(row, number), outcome);
             }
+            number += 1;
             Ok(())
         })?;
     }

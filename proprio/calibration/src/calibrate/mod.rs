@@ -1,13 +1,14 @@
 //! Calibration: an arm description and sessions with camera truth become a table.
 //!
-//! 1. Each bend sensor's quadratic is fitted to the truth by least squares (paper, eq. 1), after checks that name a
+//! 1. Wrong poses of the truth are left out, and its lengths and clock are compared with the arm's and the IMUs'.
+//! 2. Each bend sensor's quadratic is fitted to the truth by least squares (paper, eq. 1), after checks that name a
 //!    sensor that is dead, saturated, swapped or not monotonic.
-//! 2. A monotone curve replaces the quadratic, and the memory of lags and plays is added to it, where that lowers the
+//! 3. A monotone curve replaces the quadratic, and the memory of lags and plays is added to it, where that lowers the
 //!    error on parts of the sweep that were held back.
-//! 3. The residuals of the maps give the error model of the bias filter; the IMUs' turns compared with the camera's give
+//! 4. The residuals of the maps give the error model of the bias filter; the IMUs' turns compared with the camera's give
 //!    their sensitivity.
-//! 4. The error sources of the estimates, contact detection and coupled segments are set.
-//! 5. The same is done without the last fifth of the session, on which the methods are then compared.
+//! 5. The error sources of the estimates, contact detection and coupled segments are set.
+//! 6. The same is done without the last fifth of the session, on which the methods are then compared.
 //!
 //! An arm description with `[drift] kind = "anchor"` gets the paper's table: quadratics, and KF_orient and KF_coord with
 //! the errors that bend sensors and anchored IMUs make in a replay of the sweep.
@@ -27,6 +28,7 @@ mod imus;
 mod maps;
 mod memory;
 mod options;
+mod pieces;
 mod report;
 mod residuals;
 mod sensors;
@@ -46,6 +48,7 @@ pub use options::{CalibrationOptions, HysteresisMode, MapKind, MapMode};
 pub use report::{SegmentReport, SensorReport};
 
 use crate::error::Error;
+use crate::truth::JudgedTruth;
 use sweep::Sweep;
 
 /// A table and its quality.
@@ -61,6 +64,8 @@ pub struct Calibration {
     pub held_out: Option<HeldOut>,
     /// Defects of each session's file.
     pub defects: Vec<FileDefects>,
+    /// The truth of each session.
+    pub truth: Vec<JudgedTruth>,
     /// Warnings about the table.
     pub warnings: Vec<Warning>,
 }
@@ -84,5 +89,13 @@ pub fn calibrate(
     let held_out = held_out::evaluate(&sweep, sessions, arm, options, progress)?;
     warnings.extend(held_out.as_ref().and_then(HeldOut::warning));
     let sensors = derived.sensors.into_iter().map(|sensor| sensor.report).collect();
-    Ok(Calibration { table: derived.table, sensors, segments, held_out, defects: sweep.defects, warnings })
+    Ok(Calibration {
+        table: derived.table,
+        sensors,
+        segments,
+        held_out,
+        defects: sweep.defects,
+        truth: sweep.truth,
+        warnings,
+    })
 }

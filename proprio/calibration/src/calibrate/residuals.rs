@@ -80,12 +80,14 @@ pub(super) fn set_filters(
     let compiled = compiled.config();
     let mut residuals = Residuals::new(&compiled);
     for (number, session) in sessions.iter().enumerate() {
-        let mut rows_left = sweep.sessions.iter().filter(|of| **of == number).count();
+        let rows = sweep.sessions.iter().filter(|of| **of == number).count();
+        let left_out = &sweep.left_out[number];
+        let mut row_number = 0;
         residuals.start();
         replay::<f64>(session, table, progress, |row, outcome| {
-            if rows_left > 0 {
-                residuals.add_row(row, &outcome.estimate.segments);
-                rows_left -= 1;
+            if row_number < rows {
+                residuals.add_row(&left_out.without(row, row_number), &outcome.estimate.segments);
+                row_number += 1;
             }
             Ok(())
         })?;

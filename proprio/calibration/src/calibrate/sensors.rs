@@ -1,11 +1,14 @@
 //! The bend sensors: each fitted to its segment, and checked.
 
+use std::ops::Range;
+
 use calibration_tables::BendToml;
 
 use super::error::{CalibrationError, Warning};
 use super::fit::{QuadraticFit, quadratic, volts};
 use super::maps::{self, FittedMap};
 use super::options::CalibrationOptions;
+use super::pieces::{median, moving};
 use super::report::SensorReport;
 use super::sweep::{LEAST_ROWS, SensorColumn, Sweep, range};
 
@@ -56,7 +59,7 @@ fn fit_one(
     warnings: &mut Vec<Warning>,
 ) -> Result<FittedSensor, CalibrationError> {
     let name = column.name.clone();
-    let pairs = pairs(column, &sweep.theta[column.segment]);
+    let pairs = pairs(&column.counts, &sweep.theta[column.segment]);
     if pairs.len() < LEAST_ROWS {
         return Err(CalibrationError::TooFewRows { name, found: pairs.len(), least: LEAST_ROWS });
     }
@@ -81,8 +84,14 @@ fn fit_one(
 }
 
 /// Readings and true angles of the rows that have both.
-fn pairs(column: &SensorColumn, theta: &[Option<f64>]) -> Vec<(u16, f64)> {
-    column.counts.iter().zip(theta).filter_map(|(counts, theta)| Some(((*counts)?, (*theta)?))).collect()
+fn pairs(counts: &[Option<u16>], theta: &[Option<f64>]) -> Vec<(u16, f64)> {
+    counts.iter().zip(theta).filter_map(|(counts, theta)| Some(((*counts)?, (*theta)?))).collect()
+}
+
+/// Share of a segment's bending that a quadratic of its own leaves in a piece of the sweep; `None` where too few rows have both.
+fn unexplained(column: &SensorColumn, theta: &[Option<f64>], rows: Range<usize>) -> Option<f64> {
+    let pairs = pairs(&column.counts[rows.clone()], &theta[rows]);
+    if pairs.len() < LEAST_ROWS { None } else { Some(quadratic(&pairs)?.unexplained) }
 }
 
 fn ends(pairs: &[(u16, f64)]) -> [u16; 2] {
@@ -117,14 +126,15 @@ fn check_alive(name: &str, pairs: &[(u16, f64)]) -> Result<(), CalibrationError>
     Ok(())
 }
 
-/// Refuses a sensor that follows another segment than its own, or no segment.
+/// Refuses a sensor that follows another segment than its own in most pieces of the sweep, or no segment.
 fn check_place(sweep: &Sweep, column: &SensorColumn, fit: &QuadraticFit) -> Result<(), CalibrationError> {
     let name = column.name.clone();
-    if fit.unexplained > GOOD_ENOUGH {
+    let moving = moving(&sweep.theta[column.segment]);
+    let left = |j: usize| median(moving.iter().map(|rows| unexplained(column, &sweep.theta[j], rows.clone())));
+    if let Some(own) = left(column.segment).filter(|own| *own > GOOD_ENOUGH) {
         let others = (0..sweep.theta.len()).filter(|j| *j != column.segment);
-        let fits = others.filter_map(|j| Some((j, quadratic(&pairs(column, &sweep.theta[j]))?.unexplained)));
-        let best = fits.min_by(|a, b| a.1.total_cmp(&b.1));
-        if let Some((j, _)) = best.filter(|(_, unexplained)| unexplained * SWAPPED < fit.unexplained) {
+        let best = others.filter_map(|j| Some((j, left(j)?))).min_by(|a, b| a.1.total_cmp(&b.1));
+        if let Some((j, _)) = best.filter(|(_, unexplained)| unexplained * SWAPPED < own) {
             return Err(CalibrationError::Swapped { name, follows: j + 1 });
         }
     }

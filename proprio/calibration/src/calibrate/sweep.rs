@@ -4,13 +4,15 @@ use std::path::{Path, PathBuf};
 
 use calibration_tables::{ArmFile, MAX_SEGMENTS};
 use estimator_core::{HeadingTracker, ImuReading, Phase, SENSORS_PER_SEGMENT, SegmentConfig, Turns};
+use proprio_analysis::check::truth::{LeftOut, geometry};
 use proprio_session::{
     FileDefects, Progress, RequiredColumns, Row, SENSOR_NAMES, SessionError, SessionProblem, SessionReader,
 };
 
-use super::curvature::{constant_curvature_error, end_error, geometry};
+use super::curvature::{constant_curvature_error, end_error};
 use super::error::{CalibrationError, Warning};
 use crate::error::Error;
+use crate::truth::{self, JudgedTruth};
 
 /// Smallest range of bending to which a quadratic can be fitted, degrees.
 const LEAST_RANGE_DEG: f64 = 10.0;
@@ -57,6 +59,10 @@ pub(super) struct Sweep {
     pub ends: Vec<MeanSquare>,
     /// Distance of the tip from the chain of the true bend angles.
     pub tip: MeanSquare,
+    /// The truth of each session.
+    pub truth: Vec<JudgedTruth>,
+    /// The wrong poses of each session, which are not in the columns.
+    pub left_out: Vec<LeftOut>,
     segments: Vec<SegmentConfig<f64>>,
 }
 
@@ -97,6 +103,8 @@ impl Sweep {
             sensors: Vec::new(),
             ends: vec![MeanSquare::default(); n],
             tip: MeanSquare::default(),
+            truth: Vec::new(),
+            left_out: Vec::new(),
             segments: arm.segments.iter().map(geometry).collect(),
         };
         let mut needs = RequiredColumns::of_calibration(arm);
@@ -119,6 +127,8 @@ impl Sweep {
             let path = session.to_owned();
             return Err(SessionError { path, line: None, column: None, problem: SessionProblem::NotAFile }.into());
         }
+        let (judged, left_out) = truth::judge(session, arm, needs, progress)?;
+        judged.check_lengths()?;
         let refuse = |source| Error::Calibration { path: session.to_owned(), source };
         let rate_hz = reader.rate_hz(arm.rate_hz)?;
         if number == 0 {
@@ -134,11 +144,15 @@ impl Sweep {
         let unread = [HeadingTracker::new(0, Turns::ZERO); MAX_SEGMENTS];
         let mut unwrap = Unwrap { imu: unread, truth: unread };
         let work = format!("reading {}", session.display());
+        let mut rows = 0;
         while let Some(row) = reader.next_row()? {
-            self.push(&row, number, &mut unwrap);
+            self.push(&left_out.without(&row, rows), number, &mut unwrap);
+            rows += 1;
             progress.advance(&work, reader.progress());
         }
         self.defects.push(reader.defects());
+        self.truth.push(judged);
+        self.left_out.push(left_out);
         Ok(())
     }
 
@@ -175,6 +189,8 @@ impl Sweep {
             imu: columns(&self.imu),
             sensors: self.sensors.iter().map(sensor).collect(),
             ends: self.ends.clone(),
+            truth: self.truth.clone(),
+            left_out: self.left_out.clone(),
             segments: self.segments.clone(),
             ..*self
         }
@@ -293,6 +309,8 @@ impl Sweep {
             sensors: vec![SensorColumn { name: "bend1a".to_owned(), segment: 0, place: 0, counts }],
             ends: vec![MeanSquare::default()],
             tip: MeanSquare::default(),
+            truth: Vec::new(),
+            left_out: Vec::new(),
             segments: vec![SegmentConfig::uncalibrated(0.1, 0.0)],
         }
     }

@@ -33,6 +33,7 @@ pub use dual::Dual;
 pub use error::TuningError;
 
 use crate::error::Error;
+use crate::truth::JudgedTruth;
 use descent::{Iterate, MAX_ITERATIONS, descend};
 use errors::{Errors, SessionErrors};
 use objective::{Evaluation, Objective};
@@ -82,6 +83,11 @@ impl<'t> Tuner<'t> {
     /// Each session with the defects of its file.
     pub fn defects(&self) -> impl Iterator<Item = (&Path, &FileDefects)> {
         self.objective.sessions().iter().map(|session| (session.path.as_path(), &session.defects))
+    }
+
+    /// The truth of each session.
+    pub fn truth(&self) -> impl Iterator<Item = &JudgedTruth> {
+        self.objective.sessions().iter().map(|session| &session.truth)
     }
 
     /// Searches or descends until the RMSE converges, or until `is_interrupted` after a run or an iteration.
@@ -196,11 +202,12 @@ impl<'t> Tuner<'t> {
         let mut consistency = FilterConsistency::default();
         let named = LoadedTable { file: table.clone(), path: self.table.path };
         for session in self.objective.sessions() {
-            let mut rows = 0..session.training_count();
+            let mut number = 0;
             replay::<f64>(&session.path, &named, progress, |row, outcome| {
-                if rows.next().is_some() {
-                    consistency.add(row, outcome);
+                if number < session.training_count() {
+                    consistency.add(&session.left_out.without(row, number), outcome);
                 }
+                number += 1;
                 Ok(())
             })?;
         }

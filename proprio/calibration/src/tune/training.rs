@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use calibration_tables::{ArmFile, MAX_SEGMENTS};
 use estimator_core::{Estimator, Sample};
 use proprio_analysis::HostEstimator;
+use proprio_analysis::check::truth::{LeftOut, TruthRow};
 use proprio_session::{FileDefects, LoadedTable, Progress, RequiredColumns, SessionReader};
 
 use super::error::TuningError;
@@ -12,6 +13,7 @@ use super::errors::{Errors, SessionErrors, ends};
 use super::sample::{Measured, TrainingSample};
 use crate::calibrate::{MISFIT_PERCENT, constant_curvature_error};
 use crate::error::Error;
+use crate::truth::{JudgedTruth, TruthJudge};
 
 /// One in this number of samples, at the end of a session, is for validation where no whole session is.
 const VALIDATION_SAMPLES: usize = 5;
@@ -51,6 +53,9 @@ pub(super) struct Training {
     part: Part,
     pub rate_hz: f64,
     pub defects: FileDefects,
+    pub truth: JudgedTruth,
+    /// The wrong poses, which are not in the samples.
+    pub left_out: LeftOut,
     /// Root mean square distance of the true tip from the chain of the true bend angles, % of the arm's length.
     misfit_percent: f64,
     segments: usize,
@@ -72,21 +77,35 @@ impl Training {
 
         let work = format!("reading {}", session.display());
         let (mut samples, mut measured, mut starts) = (Vec::new(), Vec::new(), Vec::new());
-        let (mut misfit, mut tips) = (0.0, 0.0);
+        let mut distances = Vec::new();
+        let mut judge = TruthJudge::new(session, &table.file);
         while let Some(row) = reader.next_row()? {
-            if let Some(distance) = constant_curvature_error(&row, segments) {
-                (misfit, tips) = (misfit + distance * distance, tips + 1.0);
-            }
+            judge.update(&TruthRow::of(&row, samples.len() as u64 + 1));
+            distances.push(constant_curvature_error(&row, segments));
             samples.push(row.sample);
             measured.extend(row.truth.iter().take(segments.len()).map(|truth| Measured::unknown(*truth)));
             starts.push(row.starts);
             progress.advance(&work, reader.progress());
+        }
+        let (truth, left_out) = judge.finish()?;
+        truth.check_lengths()?;
+        for (place, measured) in measured.iter_mut().enumerate() {
+            let (row, i) = (place / segments.len(), place % segments.len());
+            measured.truth = measured.truth.filter(|_| !left_out.contains(row, i));
+        }
+        let is_whole = |row: usize| (0..segments.len()).all(|i| !left_out.contains(row, i));
+        let (mut misfit, mut tips) = (0.0, 0.0);
+        for (_, distance) in distances.iter().enumerate().filter(|(row, _)| is_whole(*row)) {
+            let Some(distance) = distance else { continue };
+            (misfit, tips) = (misfit + distance * distance, tips + 1.0);
         }
         let mut training = Self {
             path: session.to_owned(),
             part,
             rate_hz,
             defects: reader.defects(),
+            truth,
+            left_out,
             misfit_percent: (misfit / f64::max(tips, 1.0)).sqrt() * 1e5 / table.file.length_mm(),
             segments: segments.len(),
             samples,

@@ -2,9 +2,10 @@
 
 use std::slice;
 
-use proprio_calibration::align::{AlignmentReport, ComparedSensors, Written, align};
+use proprio_calibration::align::{Alignment, AlignmentReport, ComparedSensors, Written, align};
 use proprio_session::{LoadedTable, OutputFile};
 
+use super::truth;
 use super::warnings::{checked, warn_of_defects};
 use crate::args::AlignArgs;
 use crate::error::Error;
@@ -19,14 +20,17 @@ pub fn run(args: &AlignArgs) -> Result<(), Error> {
     for (path, defects) in [&args.session, &args.camera].into_iter().zip(&alignment.defects) {
         warn_of_defects(path, defects);
     }
+    truth::warn(alignment.truth());
     let written = alignment.write(&args.session, &mut file)?;
     // Last, so that a command that fails leaves no file.
-    terminal::print_beside(Some(&args.output), &text(&alignment.report, written))?;
+    terminal::print_beside(Some(&args.output), &text(&alignment, written))?;
     terminal::eprint_line(&file.finish()?);
     Ok(())
 }
 
-fn text(report: &AlignmentReport, Written { rows, with_truth }: Written) -> String {
+fn text(alignment: &Alignment, Written { rows, with_truth }: Written) -> String {
+    let report = &alignment.report;
+    let lengths = alignment.truth().lengths.map_or_else(|| "-".to_owned(), |lengths| format!("{:.4}", lengths.scale));
     let sensors = match report.sensors {
         ComparedSensors::Imus => "IMUs",
         ComparedSensors::Bend => "bend sensors",
@@ -40,6 +44,7 @@ fn text(report: &AlignmentReport, Written { rows, with_truth }: Written) -> Stri
          residual     {residual_ms:.1} ms RMS: what offset and skew leave, in pieces of 20 s\n\
          correlation  {correlation:.4}: {sensors} and camera\n\
          matched      {matched} moments, ten a second\n\
+         lengths      {lengths} times those of the arm: what the markers fit\n\
          truth        {with_truth} of {rows} rows, {percent:.1} %\n"
     )
 }

@@ -7,6 +7,7 @@ use proprio_analysis::check::{Finding, Kind};
 use proprio_calibration::calibrate::{Calibration, CalibrationOptions, HysteresisMode, MapMode, calibrate};
 use proprio_session::{LoadedTable, OutputFile};
 
+use super::truth;
 use super::warnings::{checked, warn_of_defects};
 use crate::args::{CalibrateArgs, HysteresisName, MapName};
 use crate::error::Error;
@@ -29,12 +30,14 @@ pub fn run(args: &CalibrateArgs) -> Result<(), Error> {
         warn_of_defects(path, defects);
     }
     let names: Vec<String> = args.sessions.iter().map(|session| session.display().to_string()).collect();
+    calibration.truth.iter().for_each(truth::warn);
     for warning in &calibration.warnings {
         terminal::warn(&format_args!("{}: {warning}", names.join(", ")));
     }
     file.write_all(calibration.table.to_toml().as_bytes()).map_err(|error| file.error(error))?;
     // Last, so that a command that fails leaves no file.
-    let tables = [text_tables::sensors(&calibration.sensors), text_tables::segments(&calibration.segments)];
+    let truth = calibration.truth.iter().map(truth::line).collect();
+    let tables = [truth, text_tables::sensors(&calibration.sensors), text_tables::segments(&calibration.segments)];
     for text in tables.into_iter().chain(calibration.held_out.as_ref().map(text_tables::held_out)) {
         terminal::print_beside(Some(&args.output), &text)?;
     }

@@ -17,6 +17,7 @@ mod report;
 mod simulate;
 mod status;
 mod table;
+mod truth;
 mod tune;
 mod warnings;
 

@@ -7,6 +7,7 @@ use calibration_tables::{StopReason, TuningToml};
 use proprio_calibration::tune::{Tuner, Tuning};
 use proprio_session::{LoadedTable, OutputFile};
 
+use super::truth;
 use super::warnings::{checked, warn_of_defects};
 use crate::args::TuneArgs;
 use crate::error::Error;
@@ -23,12 +24,15 @@ pub fn run(args: &TuneArgs) -> Result<(), Error> {
     let tuner = Tuner::new(&args.sessions, &table, &mut progress);
     let tuner = checked(tuner, &args.sessions, |_| table.clone(), |_| true)?;
     tuner.defects().for_each(|(path, defects)| warn_of_defects(path, defects));
+    tuner.truth().for_each(truth::warn);
+    let lines: String = tuner.truth().map(truth::line).collect();
     let shutdown = ShutdownGuard::new();
     let Tuning { table, record, iteration_time } = tuner.tune(&mut progress, || shutdown.is_requested())?;
     drop((shutdown, progress));
     warnings(&record).for_each(|warning| terminal::warn(&warning));
     file.write_all(table.to_toml().as_bytes()).map_err(|error| file.error(error))?;
     // Last, so that a command that fails leaves no file.
+    terminal::print_beside(Some(&args.output), &lines)?;
     terminal::print_beside(Some(&args.output), &text_tables::tuning(&record, iteration_time))?;
     terminal::eprint_line(&file.finish()?);
     Ok(())

@@ -1,10 +1,26 @@
 //! Remedies of errors of calibration, tuning and alignment.
 
+use proprio_calibration::TruthError;
 use proprio_calibration::align::AlignmentError;
 use proprio_calibration::calibrate::CalibrationError;
 use proprio_calibration::tune::TuningError;
 
 use super::Help;
+
+impl Help for TruthError {
+    fn help(&self) -> String {
+        match self {
+            Self::Unit(finding) => finding.help(),
+            Self::Lengths(_) => {
+                "measure the arm and correct length_mm and offset_mm of its description, or the camera's scale".to_owned()
+            }
+            Self::Wrong { .. } => {
+                "correct the markers' reading, or leave the cells of wrong poses empty; `proprio check` lists all faults"
+                    .to_owned()
+            }
+        }
+    }
+}
 
 impl Help for CalibrationError {
     fn help(&self) -> String {
@@ -30,6 +46,10 @@ impl Help for CalibrationError {
             }
             Self::Swapped { .. } => "exchange the two wires, or the two columns of the session".to_owned(),
             Self::InvertedImu { .. } => "mount it with z up, or give the heading clockwise positive".to_owned(),
+            Self::SameImus { .. } => {
+                "check the multiplexer's wires and addresses, and that the program selects a channel for each IMU"
+                    .to_owned()
+            }
             Self::SwappedImu { .. } => "exchange the two mux channels, or the two columns".to_owned(),
             Self::UnrelatedImu { .. } => "check its mount, and that camera and IMUs share one clock".to_owned(),
         }

@@ -56,6 +56,30 @@ impl Help for Finding {
             (Kind::LeavesTwin, _) => {
                 "check the sensor's mount and plug, or leave its cells empty from there on; where many do, take the table of this arm"
             }
+            (Kind::TruthZeros | Kind::TruthRepeated, _) => {
+                "let the camera program leave the cells of a lost marker empty; calibrate, align and tune leave these rows out"
+            }
+            (Kind::TruthStaircase, _) => {
+                "give the camera's frames with their own times to `proprio align`; calibrate and tune leave the repeats out"
+            }
+            (Kind::TruthJump, _) => {
+                "check the marker's reading, and that headings are not resampled over a whole turn; calibrate, align and tune leave these rows out"
+            }
+            (Kind::TruthMisplaced, _) => {
+                "check the marker's number and its mount; calibrate, align and tune leave these rows out"
+            }
+            (Kind::TruthExchanged, _) => {
+                "check the markers' numbers in the camera program; calibrate, align and tune leave these rows out"
+            }
+            (Kind::TruthUnit, _) => "write the places in mm in columns of _mm, or in metres in columns of _m",
+            (Kind::TruthRadians, _) => "write the headings in degrees, or rename the columns to _heading_rad",
+            (Kind::TruthAxes, _) => "x is to the right, y along the base, headings clockwise from y: check the axes",
+            (Kind::TruthLengths, _) => {
+                "measure the arm and correct length_mm and offset_mm of its description, or the camera's scale"
+            }
+            (Kind::TruthLag, _) => {
+                "remove the columns of truth and join the camera's file again: proprio align SESSION --camera CAMERA --arm ARM -o ALIGNED"
+            }
         };
         help.to_owned()
     }

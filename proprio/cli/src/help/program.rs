@@ -56,6 +56,7 @@ impl Help for proprio_calibration::Error {
         match self {
             Self::File(error) => error.help(),
             Self::Replay(error) => error.help(),
+            Self::Truth { source, .. } => source.help(),
             Self::Calibration { source, .. } => source.help(),
             Self::Tuning { source, .. } => source.help(),
             Self::Alignment { source, .. } => source.help(),

@@ -4,17 +4,17 @@
 /// IMU's own filter.
 const SPAN_S: f64 = 2.0;
 /// Period of the compared differences, s.
-pub(super) const GRID_S: f64 = 0.1;
+pub const GRID_S: f64 = 0.1;
 /// Longest time between readings that is no pause, s.
 const PAUSE_S: f64 = 0.3;
 /// The same at low rates, in usual sampling periods.
 const PAUSE_STEPS: f64 = 2.5;
 
 /// A time, s, and the value read then.
-pub(super) type Reading = (f64, f64);
+pub type Reading = (f64, f64);
 
 /// A column, linear between readings.
-pub(super) struct Signal {
+pub struct Signal {
     points: Vec<Point>,
 }
 
@@ -32,6 +32,7 @@ struct Point {
 
 impl Signal {
     /// The signal of readings in the order of time, which have a new zero from each of `starts_s` on.
+    #[must_use]
     pub fn new(readings: &[Reading], starts_s: &[f64]) -> Self {
         let mut steps: Vec<f64> = readings.windows(2).map(|pair| pair[1].0 - pair[0].0).collect();
         steps.sort_unstable_by(f64::total_cmp);
@@ -52,6 +53,7 @@ impl Signal {
     }
 
     /// Times of the first and the last reading, s.
+    #[must_use]
     pub fn ends_s(&self) -> Option<[f64; 2]> {
         Some([self.points.first()?.time_s, self.points.last()?.time_s])
     }
@@ -65,6 +67,7 @@ impl Signal {
 
     /// The difference at `time_s`, which is the mean over the span after it less the mean over the span before, and its rate
     /// of change; `None` where the column has a pause in these spans.
+    #[must_use]
     pub fn step(&self, time_s: f64) -> Option<[f64; 2]> {
         let [before, now, after] = [-SPAN_S, 0.0, SPAN_S].map(|offset_s| self.at(time_s + offset_s));
         let (before, now, after) = (before?, now?, after?);

@@ -1,8 +1,10 @@
 //! Both clocks to a fraction of a sample: lags of windows of the recording, and the regression line through them.
 
-use super::error::AlignmentError;
-use super::motion::{ComparedSensors, Motion, Pair};
-use super::signal::GRID_S;
+mod motion;
+mod signal;
+
+pub use motion::{ComparedSensors, Motion, Pair};
+pub use signal::{GRID_S, Reading, Signal};
 
 /// Length of a window, s.
 const WINDOW_S: f64 = 20.0;
@@ -19,12 +21,16 @@ const LEAST_WINDOWS: f64 = 2.5;
 
 /// The camera's clock as a line over the sensors': camera = lag + (1 + skew) · sensors, each since its own start.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Clocks {
+pub struct Clocks {
+    /// The camera's time at the sensors' start, s.
     pub lag_s: f64,
+    /// Rate by which the camera's clock is faster.
     pub skew: f64,
 }
 
 impl Clocks {
+    /// The camera's time at a time of the sensors.
+    #[must_use]
     pub fn camera_s(&self, sensor_s: f64) -> f64 {
         self.lag_s + sensor_s + self.skew * sensor_s
     }
@@ -32,12 +38,14 @@ impl Clocks {
 
 /// The fitted clocks, with their errors.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct ClockFit {
+pub struct ClockFit {
+    /// The line.
     pub clocks: Clocks,
     /// Middle of the overlap by the sensors' clock, s, where the lag is known best.
     pub middle_s: f64,
-    /// Standard errors of the lag there, s, and of the skew, from the scatter of the windows.
+    /// Standard error of the lag there, s, from the scatter of the windows.
     pub lag_error_s: f64,
+    /// Standard error of the skew.
     pub skew_error: f64,
     /// Root mean square of the windows' lags about the line, s.
     pub residual_s: f64,
@@ -47,33 +55,43 @@ pub(super) struct ClockFit {
     pub matched: usize,
 }
 
-/// Steps of all sensors that were read at one moment, and the steps' rates of change, by pair.
+/// Differences of all sensors that were read at one moment.
 struct Moment {
     time_s: f64,
-    steps: Vec<(usize, [f64; 2])>,
+    steps: Vec<Step>,
 }
 
-/// Refines a lag that is right to some tenths of a second.
-pub(super) fn fit(motion: &Motion, lag_s: f64) -> Result<ClockFit, AlignmentError> {
-    let windows = windows(motion);
+/// Difference of a pair's sensor, its rate of change, and the difference of the camera's column at the same time.
+struct Step {
+    pair: usize,
+    value: f64,
+    rate: f64,
+    camera: Option<f64>,
+}
+
+/// Refines a lag that is right to some tenths of a second; `None` where too few windows have motion.
+#[must_use]
+pub fn fit(motion: &Motion, lag_s: f64) -> Option<ClockFit> {
+    let mut windows = windows(motion);
     let mut clocks = Clocks { lag_s, skew: 0.0 };
     let mut rounds = 0;
     loop {
-        let gains = gains(motion, &windows, clocks);
-        let lags: Vec<WindowLag> =
-            windows.iter().filter_map(|window| window_lag(motion, window, clocks, &gains)).collect();
-        let line = Line::through(&lags).ok_or(AlignmentError::Still)?;
+        compare(motion, &mut windows, clocks);
+        let gains = gains(motion, &windows);
+        let lags: Vec<WindowLag> = windows.iter().filter_map(|window| window_lag(window, &gains)).collect();
+        let line = Line::through(&lags)?;
         clocks = Clocks { lag_s: clocks.lag_s + line.at(0.0), skew: clocks.skew + line.slope };
         rounds += 1;
         if line.lag_s.abs().max(line.at(0.0).abs()) < CONVERGED_S || rounds == ROUNDS {
-            return Ok(ClockFit {
+            compare(motion, &mut windows, clocks);
+            return Some(ClockFit {
                 clocks,
                 middle_s: line.middle_s,
                 lag_error_s: line.lag_error_s,
                 skew_error: line.slope_error,
                 residual_s: line.residual_s,
                 correlation: median_correlation(motion.by, &gains),
-                matched: matched(motion, &windows, clocks),
+                matched: matched(&windows),
             });
         }
     }
@@ -90,11 +108,8 @@ fn median_correlation(by: ComparedSensors, gains: &[Gain]) -> f64 {
 }
 
 /// Number of moments at which a sensor's difference has one of the camera.
-fn matched(motion: &Motion, windows: &[Vec<Moment>], clocks: Clocks) -> usize {
-    let has_like = |moment: &&Moment| {
-        let camera_s = clocks.camera_s(moment.time_s);
-        moment.steps.iter().any(|(i, _)| motion.camera_step(*i, camera_s).is_some())
-    };
+fn matched(windows: &[Vec<Moment>]) -> usize {
+    let has_like = |moment: &&Moment| moment.steps.iter().any(|step| step.camera.is_some());
     windows.iter().flatten().filter(has_like).count()
 }
 
@@ -105,11 +120,22 @@ fn windows(motion: &Motion) -> Vec<Vec<Moment>> {
     let per_window = (WINDOW_S / GRID_S).round() as usize;
     let moment = |k: usize| {
         let time_s = k as f64 * GRID_S;
-        let step = |(i, pair): (usize, &Pair)| Some((i, pair.sensor.step(time_s)?));
+        let step = |(pair, of): (usize, &Pair)| {
+            let [value, rate] = of.sensor.step(time_s)?;
+            Some(Step { pair, value, rate, camera: None })
+        };
         Moment { time_s, steps: motion.pairs.iter().enumerate().filter_map(step).collect() }
     };
     let moments: Vec<usize> = (0..(end_s / GRID_S) as usize).collect();
     moments.chunks(per_window).map(|window| window.iter().copied().map(moment).collect()).collect()
+}
+
+/// Sets the camera's differences, by a guess of the clocks.
+fn compare(motion: &Motion, windows: &mut [Vec<Moment>], clocks: Clocks) {
+    for moment in windows.iter_mut().flatten() {
+        let camera_s = clocks.camera_s(moment.time_s);
+        moment.steps.iter_mut().for_each(|step| step.camera = motion.camera_step(step.pair, camera_s));
+    }
 }
 
 /// Regression of a pair's sensor on the camera.
@@ -145,13 +171,11 @@ impl Gain {
     }
 }
 
-fn gains(motion: &Motion, windows: &[Vec<Moment>], clocks: Clocks) -> Vec<Gain> {
+fn gains(motion: &Motion, windows: &[Vec<Moment>]) -> Vec<Gain> {
     let mut gains = vec![Gain::default(); motion.pairs.len()];
-    for moment in windows.iter().flatten() {
-        for (i, [step, _]) in &moment.steps {
-            if let Some(camera) = motion.camera_step(*i, clocks.camera_s(moment.time_s)) {
-                gains[*i].add(*step, camera);
-            }
+    for step in windows.iter().flatten().flat_map(|moment| &moment.steps) {
+        if let Some(camera) = step.camera {
+            gains[step.pair].add(step.value, camera);
         }
     }
     gains
@@ -169,14 +193,13 @@ struct WindowLag {
 
 /// One Gauss–Newton step: the lag that maps the camera's differences to the sensors'. The slope is that of the sensors, which is
 /// less noisy than a single camera's.
-fn window_lag(motion: &Motion, window: &[Moment], clocks: Clocks, gains: &[Gain]) -> Option<WindowLag> {
+fn window_lag(window: &[Moment], gains: &[Gain]) -> Option<WindowLag> {
     let (mut pull, mut weight, mut time) = (0.0, 0.0, 0.0);
     for moment in window {
-        for (i, [step, rate]) in &moment.steps {
-            let (gain, noise) = (gains[*i].value(), gains[*i].noise());
-            let camera = motion.camera_step(*i, clocks.camera_s(moment.time_s)).filter(|_| noise > 0.0);
-            if let Some(camera) = camera {
-                pull += rate * (step - gain * camera) / noise;
+        for Step { pair, value, rate, camera } in &moment.steps {
+            let (gain, noise) = (gains[*pair].value(), gains[*pair].noise());
+            if let Some(camera) = camera.filter(|_| noise > 0.0) {
+                pull += rate * (value - gain * camera) / noise;
                 weight += rate * rate / noise;
                 time += rate * rate / noise * moment.time_s;
             }
