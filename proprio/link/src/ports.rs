@@ -112,14 +112,16 @@ pub fn find_due(ports: &[Port]) -> Result<&Port, LinkError> {
 /// and no ModemManager, whose probing resets the board. ModemManager reads its mark on the USB device, above the tty.
 #[must_use]
 pub fn udev_rules() -> String {
-    let mut rules =
-        "# Arduino Due, programming port: access, and no ModemManager, which would reset the board.\n".to_owned();
-    for vendor in ARDUINO {
-        let due = format!("ATTRS{{idVendor}}==\"{vendor:04x}\", ATTRS{{idProduct}}==\"{PROGRAMMING:04x}\"");
-        rules += &format!("{due}, ENV{{ID_MM_DEVICE_IGNORE}}=\"1\"\n");
-        rules += &format!("SUBSYSTEM==\"tty\", {due}, MODE=\"0660\", GROUP=\"plugdev\", TAG+=\"uaccess\"\n");
-    }
-    rules
+    let rules = ARDUINO.map(|vendor| {
+        let due = format!(r#"ATTRS{{idVendor}}=="{vendor:04x}", ATTRS{{idProduct}}=="{PROGRAMMING:04x}""#);
+        format!(
+            r#"{due}, ENV{{ID_MM_DEVICE_IGNORE}}="1"
+SUBSYSTEM=="tty", {due}, MODE="0660", GROUP="plugdev", TAG+="uaccess"
+"#
+        )
+    });
+    let title = "# Arduino Due, programming port: access, and no ModemManager, which would reset the board.\n";
+    title.to_owned() + &rules.concat()
 }
 
 #[cfg(test)]
