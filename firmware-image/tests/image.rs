@@ -27,7 +27,7 @@ fn elf(segments: &[(u32, &[u8])]) -> Vec<u8> {
         }
         offset += length;
     }
-    segments.iter().for_each(|(_, data)| file.extend(*data));
+    file.extend(segments.iter().flat_map(|(_, data)| *data));
     file
 }
 
