@@ -22,7 +22,7 @@ pub enum Error {
         /// The file.
         path: PathBuf,
         /// The problem.
-        source: TruthError,
+        source: Box<TruthError>,
     },
     /// A calibration cannot be made of a session.
     #[error("{}: {source}", path.display())]

@@ -33,7 +33,9 @@ impl JudgedTruth {
     /// Refuses lengths of another arm.
     pub(crate) fn check_lengths(&self) -> Result<(), Error> {
         match self.lengths.filter(|lengths| (lengths.scale - 1.0).abs() > MOST_STRETCH) {
-            Some(lengths) => Err(Error::Truth { path: self.path.clone(), source: TruthError::Lengths(lengths) }),
+            Some(lengths) => {
+                Err(Error::Truth { path: self.path.clone(), source: Box::new(TruthError::Lengths(lengths)) })
+            }
             None => Ok(()),
         }
     }
@@ -78,7 +80,7 @@ impl TruthJudge {
         }
         let TruthReport { findings, scale, lag_s, wrong_share } = report;
         let lengths = scale.map(|scale| TruthLengths { scale, given_mm });
-        let refuse = |source| Error::Truth { path: path.clone(), source };
+        let refuse = |source| Error::Truth { path: path.clone(), source: Box::new(source) };
         if let Some(finding) = findings.iter().find(|of| matches!(of.kind, Kind::TruthUnit | Kind::TruthRadians)) {
             return Err(refuse(TruthError::Unit(*finding)));
         }
