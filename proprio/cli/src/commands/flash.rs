@@ -56,7 +56,7 @@ fn dry_run(args: &FlashArgs, firmware: &Firmware) -> Result<(), Error> {
     let mut steps = plan(firmware, &port, &std::env::temp_dir().join(IMAGE))?;
     let table = args.table.to_string_lossy();
     steps.push(Step::Run(ToolCommand::new("proprio", &["table", "push", &table, "--port", &port])));
-    terminal::print(&steps.iter().map(|step| format!("{step}\n")).collect::<String>())
+    steps.iter().try_for_each(|step| terminal::print(&format!("{step}\n")))
 }
 
 /// Flashes. Ctrl-C goes to the running command and ends this one after it, without temporary files.
