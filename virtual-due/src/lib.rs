@@ -31,7 +31,7 @@ mod memory_map;
 mod peripheral_map;
 pub mod rig;
 
-pub use elf::ElfError;
+pub use firmware_image::ImageError;
 pub use machine::{FLASH_BYTES, Machine, Reset};
 pub use rig::WiredRig;
 pub use sam3x_models::WarningLog;

@@ -2,8 +2,9 @@
 
 use crate::chip::Chip;
 use crate::cpu::{Bus, Cpu, Stop};
-use crate::elf::{Elf, ElfError};
+use crate::elf::Elf;
 use crate::engine::Engine;
+use firmware_image::ImageError;
 use sam3x_models::flash::{BANK, FLASH};
 use sam3x_models::model::{Cause, Cycles, Memory, World};
 
@@ -48,8 +49,8 @@ impl<W: World> Machine<W> {
     ///
     /// # Errors
     ///
-    /// [`ElfError`] if `elf` is not a firmware for the Due.
-    pub fn new(elf: &[u8], world: W) -> Result<Self, ElfError> {
+    /// [`ImageError`] if `elf` is not a firmware for the Due.
+    pub fn new(elf: &[u8], world: W) -> Result<Self, ImageError> {
         let elf = Elf::parse(elf)?;
         let mut chip = Chip::new(world);
         for (address, bytes) in &elf.pieces {

@@ -7,7 +7,8 @@ use crate::tool::{cargo, check};
 /// Lets the emulated board's engine build, which declares a newer Rust than it needs.
 pub const ANY_RUST: &str = "--ignore-rust-version";
 
-const TARGET: &str = "thumbv7m-none-eabi";
+/// The board's target.
+pub const TARGET: &str = "thumbv7m-none-eabi";
 
 /// Adds the board's target to the toolchain where it is missing.
 pub fn add_target() -> Result<(), String> {

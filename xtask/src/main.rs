@@ -5,6 +5,7 @@ mod bench;
 mod board;
 mod commands;
 mod demo;
+mod dist;
 mod pictures;
 mod results;
 mod style;
@@ -20,13 +21,13 @@ fn main() -> ExitCode {
         Some("accept") => accept::run(),
         Some("verify") => board::verify(),
         Some("bench") => bench::run(),
+        Some("dist") => dist::run(),
         Some("results") => results::run(),
         Some("style") => style::run(),
         Some("commands") => commands::run(),
         Some("pictures") => pictures::run(),
-        _ => {
-            Err("usage: cargo xtask demo | verify | bench | style | results | commands | pictures | accept".to_owned())
-        }
+        _ => Err("usage: cargo xtask demo | verify | bench | dist | style | results | commands | pictures | accept"
+            .to_owned()),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

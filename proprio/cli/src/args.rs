@@ -45,7 +45,7 @@ pub enum Command {
     Report(ReportArgs),
     /// Record a session of the simulated arm
     Simulate(SimulateArgs),
-    /// Build the firmware with a table, flash it and verify that it runs
+    /// Flash the firmware onto a board, store its table, and verify both
     Flash(FlashArgs),
     /// Store, read or erase the table on a board
     Table(TableArgs),

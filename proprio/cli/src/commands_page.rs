@@ -57,12 +57,18 @@ fn section(command: &mut Command) -> String {
     let about = command.get_about().map(ToString::to_string).unwrap_or_default();
     let usage = command.render_usage().to_string();
     let usage = usage.trim_start_matches("Usage: ").replace("\n       ", "\n");
-    let mut section = format!("\n## proprio {}\n\n{about}.\n\n```text\n{usage}\n```\n", command.get_name());
+    let name = command.get_bin_name().unwrap_or_else(|| command.get_name());
+    let mut section = format!("\n## {name}\n\n{about}.\n\n```text\n{usage}\n```\n");
     let arguments: Vec<&Arg> =
         command.get_arguments().filter(|argument| !matches!(argument.get_id().as_str(), "help" | "version")).collect();
-    section.push_str("\n| argument | meaning |\n|---|---|\n");
+    if !arguments.is_empty() {
+        section.push_str("\n| argument | meaning |\n|---|---|\n");
+    }
     for argument in arguments {
         let _ = writeln!(section, "| {} | {} |", cell(&typed(argument)), cell(&meaning(argument)));
+    }
+    for command in command.get_subcommands_mut().filter(|command| command.get_name() != "help") {
+        section.push_str(&self::section(command));
     }
     section
 }

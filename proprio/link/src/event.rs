@@ -101,7 +101,7 @@ impl fmt::Display for Mismatch {
             Self::Table { arm, board, given } => write!(
                 f,
                 "the board estimates with another table (of arm \"{arm}\", checksum {board:08x}) than the one given \
-                 ({given:08x}): `proprio flash --table` puts that onto it, or give the board's table"
+                 ({given:08x}): `proprio table push` stores that on it, or give the board's table"
             ),
         }
     }

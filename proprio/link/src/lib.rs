@@ -33,11 +33,13 @@
 //! | `table/` | transfer of the table to the board and back |
 //! | `source.rs` | [`Source`]: opens a line, once or again |
 //! | `ports.rs`, `serial.rs`, `virtual_due.rs` | the sources: serial ports and the emulated Due |
+//! | `firmware_path.rs` | the prebuilt firmware |
 
 pub mod drive;
 mod error;
 mod event;
 mod file_recorder;
+mod firmware_path;
 mod handle;
 mod history;
 mod ports;
@@ -55,9 +57,10 @@ mod worker;
 pub use error::LinkError;
 pub use event::{EventKind, LinkEvent, Mismatch};
 pub use file_recorder::FileRecorder;
+pub use firmware_path::{built_firmware, firmware_path};
 pub use handle::{Link, PendingRequest};
 pub use history::ReceivedBytes;
-pub use ports::{Port, PortKind, find_due, list};
+pub use ports::{Port, PortKind, find_due, list, udev_rules};
 pub use requests::RequestError;
 pub use serial::{Baud, PortSource};
 pub use shared::{LinkState, Subscription};

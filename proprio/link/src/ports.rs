@@ -108,6 +108,22 @@ pub fn find_due(ports: &[Port]) -> Result<&Port, LinkError> {
     Err(LinkError::NoDue)
 }
 
+/// A udev rule file for the programming port of the Due: access for the user at the computer (`uaccess`) and the group plugdev,
+/// and no ModemManager, whose probing resets the board. ModemManager reads its mark on the USB device, above the tty.
+#[must_use]
+pub fn udev_rules() -> String {
+    let rules = ARDUINO.map(|vendor| {
+        let due = format!(r#"ATTRS{{idVendor}}=="{vendor:04x}", ATTRS{{idProduct}}=="{PROGRAMMING:04x}""#);
+        format!(
+            r#"{due}, ENV{{ID_MM_DEVICE_IGNORE}}="1"
+SUBSYSTEM=="tty", {due}, MODE="0660", GROUP="plugdev", TAG+="uaccess"
+"#
+        )
+    });
+    let title = "# Arduino Due, programming port: access, and no ModemManager, which would reset the board.\n";
+    title.to_owned() + &rules.concat()
+}
+
 #[cfg(test)]
 mod tests {
     use serialport::UsbPortInfo;

@@ -2,7 +2,6 @@
 
 use std::collections::VecDeque;
 use std::env;
-use std::ffi::OsString;
 use std::io::{self, BufRead, BufReader, Read, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStderr, ChildStdin, ChildStdout, Command, Stdio};
@@ -14,6 +13,7 @@ use board_table::STORE_BYTES;
 use tempfile::NamedTempFile;
 
 use super::{LinkError, Source, Transport};
+use crate::firmware_path::firmware_path;
 use crate::table::StoredTable;
 
 /// Environment variable with the path of the program, where it is in no usual folder.
@@ -28,7 +28,7 @@ const LINES: usize = 5;
 /// A run of the emulated Due.
 #[derive(Debug, Clone)]
 pub struct VirtualDue {
-    /// ELF of the firmware; `None`: where cargo leaves it.
+    /// ELF of the firmware; `None`: beside the program, or where cargo leaves it ([`firmware_path`]).
     pub firmware: Option<PathBuf>,
     /// Scenario of the arm until the firmware drives its regulators: 1 to 3.
     pub scenario: u8,
@@ -70,7 +70,7 @@ impl Flash {
 impl Source for VirtualDue {
     fn open(&mut self) -> Result<(String, Box<dyn Transport>), LinkError> {
         let program = program().ok_or(LinkError::NoVirtualDue)?;
-        let firmware = self.firmware.clone().unwrap_or_else(|| built_firmware(&program));
+        let firmware = self.firmware.clone().unwrap_or_else(|| firmware_path(&program));
         if !firmware.is_file() {
             return Err(LinkError::NoFirmware(firmware));
         }
@@ -113,16 +113,6 @@ fn program() -> Option<PathBuf> {
     let folders = own_folder.map(Path::to_owned).into_iter().chain(built).chain(env::split_paths(&path));
     let named = env::var_os(VARIABLE).map(PathBuf::from);
     named.into_iter().chain(folders.map(|folder| folder.join(&name))).find(|program| program.is_file())
-}
-
-/// Path of the firmware that cargo has built: in the target folder of the program, or below the current folder.
-fn built_firmware(program: &Path) -> PathBuf {
-    let below: PathBuf = ["thumbv7m-none-eabi", "firmware", "firmware"].iter().collect();
-    let targets = program.parent().and_then(Path::parent).map(Path::to_owned);
-    let current = PathBuf::from(env::var_os("CARGO_TARGET_DIR").unwrap_or_else(|| OsString::from("target")));
-    let found =
-        targets.into_iter().chain([current.clone()]).map(|target| target.join(&below)).find(|path| path.is_file());
-    found.unwrap_or_else(|| current.join(below))
 }
 
 /// The program while it runs.

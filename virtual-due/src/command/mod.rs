@@ -14,7 +14,7 @@ use rig_twin::Scenario;
 use run::Run;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use virtual_due::{ElfError, Machine, rig::WiredRig};
+use virtual_due::{ImageError, Machine, rig::WiredRig};
 
 /// An emulated Arduino Due with the simulated arm on its pins.
 #[derive(Debug, Parser)]
@@ -96,7 +96,7 @@ pub enum Error {
         /// The path as it was given.
         path: String,
         /// The reason.
-        error: ElfError,
+        error: ImageError,
     },
     /// The file of the flash cannot be read or written.
     #[error("{path}: {error}; --flash takes a file of 512 KiB, or the name of a new one")]

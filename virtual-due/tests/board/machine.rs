@@ -2,7 +2,7 @@
 
 use crate::program::{ENTRY, MILLISECOND, SPIN, WFI, board, elf, load_r0};
 use rig_twin::Scenario;
-use virtual_due::{CYCLES_PER_SECOND, Cause, ElfError, Machine, WiredRig};
+use virtual_due::{CYCLES_PER_SECOND, Cause, ImageError, Machine, WiredRig};
 
 #[test]
 fn instructions_take_7_5_of_a_core_cycle_and_sleep_takes_none() {
@@ -96,5 +96,5 @@ fn a_run_in_pieces_is_the_same_run() {
 #[test]
 fn firmware_for_another_address_is_refused() {
     let refused = Machine::new(&elf(0x0800_0000, &[0; 64]), WiredRig::new(Scenario::FreeSwing, 1)).err();
-    assert_eq!(refused, Some(ElfError::Outside { address: 0x0800_0000, length: 64 }));
+    assert_eq!(refused, Some(ImageError::Outside { address: 0x0800_0000, length: 64 }));
 }

@@ -5,6 +5,8 @@ mod boot;
 mod drive;
 mod engine;
 mod faults;
+#[cfg(unix)]
+mod flash;
 mod last_words;
 #[cfg(unix)]
 mod late_recording;

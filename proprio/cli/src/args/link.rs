@@ -20,7 +20,7 @@ pub struct LinkArgs {
     /// An emulated Due with a simulated arm instead of a real one
     #[arg(long = "virtual")]
     pub emulated: bool,
-    /// Firmware of the emulated Due [default: where cargo leaves it]
+    /// Firmware of the emulated Due [default: firmware.elf beside the program, or where cargo leaves it]
     #[arg(long, value_name = "ELF", requires = "emulated")]
     pub firmware: Option<PathBuf>,
     /// File of the emulated Due's flash, kept between runs [default: one with --table, or with the reference arm's table]
@@ -84,12 +84,15 @@ pub struct FlashArgs {
     /// The board's programming port [default: that of the one Due that is plugged in]
     #[arg(long, value_name = "PORT")]
     pub port: Option<String>,
-    /// Print the commands without building or flashing
+    /// Firmware: ELF file or plain image [default: firmware.elf beside the program, or where cargo leaves it]
+    #[arg(long, value_name = "FILE")]
+    pub firmware: Option<PathBuf>,
+    /// Build the firmware first, from the source of proprio in this folder
+    #[arg(long, alias = "source", value_name = "FOLDER", conflicts_with = "firmware")]
+    pub from_source: Option<PathBuf>,
+    /// Print the commands without running them; needs no board
     #[arg(long)]
     pub dry_run: bool,
-    /// Folder of the firmware's source, which is this project's
-    #[arg(long, value_name = "FOLDER", default_value = ".")]
-    pub source: PathBuf,
 }
 
 #[derive(Debug, Args)]
@@ -97,6 +100,9 @@ pub struct PortsArgs {
     /// Print the list as JSON
     #[arg(long)]
     pub json: bool,
+    /// Print a udev rule file for the Due on Linux instead
+    #[arg(long, conflicts_with = "json")]
+    pub udev: bool,
 }
 
 #[derive(Debug, Args)]

@@ -1,46 +1,72 @@
 //! `proprio flash`.
 
-use estimator_core::Q;
-use proprio_link::{Baud, Link, LinkError, PortKind, PortSource, find_due, list};
+use proprio_link::table::push;
+use proprio_link::{Baud, Link, LinkError, PortKind, PortSource, find_due, firmware_path, list};
 use proprio_session::LoadedTable;
-use telemetry::TICK_HZ;
 
+use super::link;
 use crate::args::FlashArgs;
 use crate::error::Error;
-use crate::flash::{FlashError, Flashing, verify};
+use crate::flash::{Firmware, FlashError, Step, ToolCommand, plan, verify};
 use crate::interrupt::{ShutdownGuard, end};
+use crate::progress_bar::Bar;
 use crate::terminal;
 
 /// File that bossac flashes.
 const IMAGE: &str = "firmware.bin";
 
+/// Stands in a dry run for a port that is not there.
+const NO_PORT: &str = "PORT";
+
 pub fn run(args: &FlashArgs) -> Result<(), Error> {
-    let checksum = LoadedTable::load(&args.table)?.compile::<Q>(TICK_HZ)?.checksum();
-    let port = args.port.clone().map_or_else(programming_port, Ok).map_err(FlashError::Port)?;
+    let table = link::stored(&LoadedTable::load(&args.table)?)?;
+    let firmware = firmware(args);
     if args.dry_run {
-        let image = std::env::temp_dir().join(IMAGE);
-        return terminal::print(&Flashing::plan(&args.source, &args.table, &port, &image)?.to_string());
+        return dry_run(args, &firmware);
     }
-    flash(args, &port)?;
+    let port = args.port.clone().map_or_else(programming_port, Ok).map_err(FlashError::Port)?;
+    flash(&firmware, &port)?;
     terminal::eprint_line(&format_args!("waiting for the board's Hello on {port}"));
-    let (link, events) = Link::start(Box::new(PortSource::new(Some(port.clone()), Baud::default())), Some(checksum))
-        .map_err(FlashError::Unheard)?;
-    let hello = verify(&link, &events)?;
+    let source = PortSource::new(Some(port.clone()), Baud::default());
+    let (link, events) = Link::start(Box::new(source), None).map_err(FlashError::Unheard)?;
+    verify(&link, &events)?;
+    let hello = push(&link, &table, &mut Bar::new()).map_err(FlashError::Table)?;
     let (firmware, revision, arm) = (&hello.firmware, &hello.revision, &hello.arm);
     terminal::print(&format!(
-        "flashed: {port} runs firmware {firmware} ({revision}) with table {checksum:08x} of arm {arm}\n"
+        "flashed: {port} runs firmware {firmware} ({revision}) with table {:08x} of arm {arm}\n",
+        hello.table
     ))
 }
 
-/// Builds and flashes. Ctrl-C goes to the running command and ends this one after it, without temporary files.
-fn flash(args: &FlashArgs, port: &str) -> Result<(), FlashError> {
+fn firmware(args: &FlashArgs) -> Firmware {
+    match (&args.firmware, &args.from_source) {
+        (Some(file), _) => Firmware::File(file.clone()),
+        (None, Some(folder)) => Firmware::Source(folder.clone()),
+        // Without a path of its own it looks below the current folder alone.
+        (None, None) => Firmware::File(firmware_path(&std::env::current_exe().unwrap_or_default())),
+    }
+}
+
+/// Prints the commands of a run. Its image would be in a temporary folder of its own.
+fn dry_run(args: &FlashArgs, firmware: &Firmware) -> Result<(), Error> {
+    let port = match args.port.clone().map_or_else(programming_port, Ok) {
+        Err(LinkError::NoDue) => NO_PORT.to_owned(),
+        port => port.map_err(FlashError::Port)?,
+    };
+    let mut steps = plan(firmware, &port, &std::env::temp_dir().join(IMAGE))?;
+    let table = args.table.to_string_lossy();
+    steps.push(Step::Run(ToolCommand::new("proprio", &["table", "push", &table, "--port", &port])));
+    steps.iter().try_for_each(|step| terminal::print(&format!("{step}\n")))
+}
+
+/// Flashes. Ctrl-C goes to the running command and ends this one after it, without temporary files.
+fn flash(firmware: &Firmware, port: &str) -> Result<(), FlashError> {
     let folder = tempfile::tempdir().map_err(FlashError::Temporary)?;
-    let flashing = Flashing::plan(&args.source, &args.table, port, &folder.path().join(IMAGE))?;
-    flashing.check()?;
+    let steps = plan(firmware, port, &folder.path().join(IMAGE))?;
     let shutdown = ShutdownGuard::new();
-    for step in flashing.steps() {
-        terminal::eprint_line(step);
-        let done = flashing.run(step);
+    for step in steps {
+        terminal::eprint_line(&step);
+        let done = step.run();
         if shutdown.is_requested() {
             drop(folder);
             end();

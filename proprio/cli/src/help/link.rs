@@ -18,7 +18,7 @@ impl Help for LinkError {
             Self::Open { source, .. } => open_remedy(source),
             Self::NoVirtualDue => "build it: cargo virtual-due --version",
             Self::NoFirmware(_) => {
-                "build it: cargo build --profile firmware -p firmware --target thumbv7m-none-eabi, or name one with --firmware"
+                "put firmware.elf beside the program, name one with --firmware, or build it: cargo build --profile firmware -p firmware --target thumbv7m-none-eabi"
             }
             Self::Start { .. } => "build it again, or set PROPRIO_VIRTUAL_DUE to its path",
             Self::Flash(_) => "check the space and the permissions of the folder for temporary files",
@@ -34,10 +34,11 @@ impl Help for LinkError {
     }
 }
 
-fn open_remedy(source: &serialport::Error) -> &'static str {
+/// The remedy of an error when a port is opened.
+pub fn open_remedy(source: &serialport::Error) -> &'static str {
     match source.kind() {
         serialport::ErrorKind::Io(io::ErrorKind::PermissionDenied) if cfg!(target_os = "linux") => {
-            "join the group that the port belongs to (sudo usermod -aG dialout $USER), and log in again"
+            "let `proprio ports --udev` give access to the port, or join its group (sudo usermod -aG dialout $USER) and log in again"
         }
         serialport::ErrorKind::NoDevice => {
             "check the name (`proprio ports` lists them), and close other programs that have the port open"
@@ -72,7 +73,9 @@ impl Help for TransferError {
 impl Help for DriveError {
     fn help(&self) -> String {
         let help = match self {
-            Self::OtherTable(_) => "put this table onto the board with `proprio flash --table`, or give the board's",
+            Self::OtherTable(_) => {
+                "store this table on the board with `proprio table push`, or give the board's (`proprio table pull`)"
+            }
             Self::Crashed(_) => {
                 "turn the air off and find the cause; running `proprio drive` again acknowledges the crash"
             }

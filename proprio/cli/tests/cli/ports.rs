@@ -40,3 +40,17 @@ fn without_the_emulator_the_error_names_the_command_that_builds_it() {
     assert_eq!(output.status.code(), Some(2));
     assert!(message.contains("cargo virtual-due --version"), "{message}");
 }
+
+#[test]
+fn the_udev_rules_name_the_programming_port_of_both_vendors_and_keep_modemmanager_away() {
+    let rules = Folder::new().done(&["ports", "--udev"]).stdout;
+    let mut lines = rules.lines().filter(|line| !line.starts_with('#'));
+    for vendor in ["2341", "2a03"] {
+        let due = format!("ATTRS{{idVendor}}==\"{vendor}\", ATTRS{{idProduct}}==\"003d\"");
+        // ModemManager looks for its mark on the USB device, which is no tty.
+        assert_eq!(lines.next(), Some(&format!("{due}, ENV{{ID_MM_DEVICE_IGNORE}}=\"1\"")[..]));
+        let access = "MODE=\"0660\", GROUP=\"plugdev\", TAG+=\"uaccess\"";
+        assert_eq!(lines.next(), Some(&format!("SUBSYSTEM==\"tty\", {due}, {access}")[..]));
+    }
+    assert_eq!(lines.next(), None);
+}
