@@ -3,7 +3,7 @@
 use proprio_link::status::{KnownShape, Status};
 use proprio_session::Ellipse;
 use proprio_session::recording::chip_number;
-use telemetry::{SensorHealth, SensorState};
+use telemetry::{Hello, SensorHealth, SensorState};
 
 use super::link;
 use crate::error::Error;
@@ -28,7 +28,7 @@ fn screen(status: &Status) -> String {
     let lines = [
         ("line", format!("{}, {}", status.port, if status.answers { "answers" } else { "does NOT answer requests" })),
         ("firmware", format!("{} ({}), proprio {}", hello.firmware, hello.revision, status.proprio)),
-        ("arm", format!("{}, table {:08x}{table}", hello.arm, hello.table)),
+        ("arm", arm(hello, table)),
         ("chip", chip_number(&hello.chip)),
         ("boot", format!("number {} since power-on, by {:?}, {}", hello.boot, hello.reset, up(health.tick))),
         ("last panic", hello.last_panic.as_deref().unwrap_or("none").to_owned()),
@@ -71,6 +71,14 @@ fn screen(status: &Status) -> String {
     ];
     let notes = status.mismatches.iter().map(|mismatch| format!("\nnote: {mismatch}\n"));
     text_tables::pairs(&lines) + &notes.collect::<String>()
+}
+
+/// The arm and the table of the board; `compared`: with the table that was given.
+fn arm(hello: &Hello, compared: &str) -> String {
+    if hello.arm.is_empty() {
+        return "none: the board has no valid table and sends samples alone; see `proprio table show`".to_owned();
+    }
+    format!("{}, table {:08x}{compared}", hello.arm, hello.table)
 }
 
 fn up(tick: u32) -> String {
