@@ -82,7 +82,7 @@ impl SessionCheck {
     /// never change, and IMUs with the same readings.
     ///
     /// # Errors
-    /// [`Error::File`].
+    /// [`Error::Table`].
     pub fn new(table: &LoadedTable) -> Result<Self, Error> {
         let decoder = Decoder::new(table)?;
         let segments = table.file.segments.len();
