@@ -117,7 +117,7 @@ fn a_panic_vents_the_arm_and_reports_its_message() {
 #[test]
 fn a_task_that_stands_still_is_named_after_the_watchdogs_reset() {
     let mut board = under_pressure();
-    let dispatcher = board.machine.symbol("SSC").expect("RTIC runs the estimation task from it");
+    let dispatcher = board.machine.symbol("HSMCI").expect("RTIC runs the estimation task from it");
     let whole = board.machine.peek(dispatcher, STANDSTILL.len()).expect("it is in flash");
     assert!(board.machine.poke(dispatcher, &STANDSTILL));
     board.run_ms(BACK_WITHIN_MS);

@@ -35,6 +35,10 @@ const FACTOR: f64 = 8.0;
 const LARGEST_FACTOR: f64 = 1.5;
 /// Smallest limit that a sweep of a quarter of an hour can show, and the largest that detects anything, degrees.
 const LIMITS_DEG: [f64; 2] = [2.0, 10.0];
+/// Largest change within the window that a sweep's arm can make; a larger one is a fault of a sensor, degrees.
+const FAULT_DEG: f64 = 45.0;
+/// Largest limit that a table can have, degrees.
+const MOST_DEG: f64 = 90.0;
 
 /// The sweep at the detector's rate.
 struct Values {
@@ -182,7 +186,12 @@ impl Values {
     }
 
     fn limit(&self, residuals: &[Residual]) -> Option<ChangeToml> {
-        let scatter = rms_change(residuals, &self.runs, WINDOW)?;
+        let is_motion = |change: &f64| change.abs() <= FAULT_DEG.to_radians();
+        let changes_of = || changes(residuals, &self.runs, WINDOW).map(|[change, _]| change).filter(is_motion);
+        if changes_of().count() < LEAST_ROWS {
+            return None;
+        }
+        let scatter = rms(changes_of());
         let mut held = 0.0_f64;
         let motions = changes(residuals, &self.runs, MOTION_WINDOW).map(|[_, motion]| {
             held = motion.abs().max(held * (1.0 - MOTION_DECAY));
@@ -190,10 +199,10 @@ impl Values {
         });
         let mut motions: Vec<f64> = motions.collect();
         motions.sort_unstable_by(f64::total_cmp);
-        let largest = changes(residuals, &self.runs, WINDOW).map(|[change, _]| change.abs()).fold(0.0, f64::max);
+        let largest = changes_of().map(f64::abs).fold(0.0, f64::max);
         let change_rad = (FACTOR * scatter).max(LARGEST_FACTOR * largest);
         Some(ChangeToml {
-            change_deg: rounded(change_rad.to_degrees().max(LIMITS_DEG[0])),
+            change_deg: rounded(change_rad.to_degrees().clamp(LIMITS_DEG[0], MOST_DEG)),
             motion_deg: rounded(quantile(&motions, USUAL).to_degrees()),
         })
     }

@@ -121,7 +121,7 @@ impl Session {
             let step = (now - last).min(LONGEST_STEP);
             last = now;
             let pressures_pa = ramp.step(profile.at(passed.as_secs_f64()), step.as_secs_f64());
-            let requested = driver.set(pressures_pa).map_err(DriveError::from)?;
+            let requested = driver.set(pressures_pa)?;
             if let Some(recorder) = &mut self.recorder {
                 recorder.set_points(&requested)?;
             }

@@ -11,7 +11,8 @@ impl Help for FileError {
             Self::Size => "name the .toml file of the arm",
             Self::Syntax { .. } => "correct the line; the keys are listed in docs/reference/table.md",
             Self::Format(_) => "use a version of proprio that reads this format",
-            Self::Value { .. } => "correct the value, or make the table again with `proprio calibrate`",
+            Self::Value { key, .. } if key.ends_with("_mm") => "correct the value, which is in mm",
+            Self::Value { .. } => "correct the value; docs/reference/table.md has the keys and their units",
             Self::NotCalibrated(_) => "make a table of it with `proprio calibrate`, or write bend = [] if it has none",
         };
         help.to_owned()

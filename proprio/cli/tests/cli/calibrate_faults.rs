@@ -49,6 +49,23 @@ fn keep_small(session: &mut Csv, limit_deg: f64) {
 }
 
 #[test]
+fn a_single_wrong_reading_leaves_the_limits_of_contact_as_they_are() {
+    let limits = |session: &Csv| -> Vec<f64> {
+        let table = Calibration::of(session).table();
+        table.segments.iter().map(|segment| segment.contact.map_or(f64::NAN, |contact| contact.change_deg)).collect()
+    };
+    let good = limits(&sweep());
+    let mut session = sweep();
+    // The heading is far from 0 there: the reading is off by the whole angle.
+    let headings = session.numbers("imu2_deg");
+    let row = (600..headings.len()).find(|row| (90.0..270.0).contains(&headings[*row])).expect("the arm bends");
+    session.map("imu2_deg", |at, cell| if at == row { "0.0000".to_owned() } else { cell.to_owned() });
+    for (faulty, good) in limits(&session).into_iter().zip(good) {
+        assert!((faulty - good).abs() < 0.5, "{faulty} instead of {good} degrees");
+    }
+}
+
+#[test]
 fn a_dead_sensor_is_named() {
     let error = refused(|session| session.map("bend3a_adc", |_, _| "2000".to_owned()));
     assert!(error.starts_with(": bend3a is dead"), "{error}");

@@ -27,6 +27,8 @@ pub struct Driver<'l> {
     link: &'l Link,
     requested_pa: VecDeque<[u32; REGULATORS]>,
     is_armed: bool,
+    /// Restarts of the board when it was armed.
+    restarts: u32,
 }
 
 impl<'l> Driver<'l> {
@@ -36,7 +38,7 @@ impl<'l> Driver<'l> {
     /// [`DriveError`]: the board has another table, has restarted after a crash, reads no IMU, or refuses.
     pub fn arm(link: &'l Link, status: &Status) -> Result<Self, DriveError> {
         check(link, status)?;
-        let driver = Self { link, requested_pa: VecDeque::new(), is_armed: true };
+        let driver = Self { link, requested_pa: VecDeque::new(), is_armed: true, restarts: link.state().restarts };
         link.request(Command::Arm)?;
         Ok(driver)
     }
@@ -44,10 +46,14 @@ impl<'l> Driver<'l> {
     /// Sets the pressures, Pa, waits until the board has acknowledged them, and returns the request.
     ///
     /// # Errors
-    /// [`LinkError::Request`].
-    pub fn set(&mut self, pressures_pa: [u32; REGULATORS]) -> Result<SetPressures, LinkError> {
+    /// [`DriveError::Restarted`], after which the board is not armed; [`DriveError::Link`].
+    pub fn set(&mut self, pressures_pa: [u32; REGULATORS]) -> Result<SetPressures, DriveError> {
         let requested = SetPressures { pressures_pa, valid_ms: VALID_MS };
-        self.link.request(Command::SetPressures(requested))?;
+        let done = self.link.request(Command::SetPressures(requested));
+        if self.link.state().restarts != self.restarts {
+            return Err(DriveError::Restarted);
+        }
+        done?;
         if self.requested_pa.len() == STORED {
             self.requested_pa.pop_front();
         }

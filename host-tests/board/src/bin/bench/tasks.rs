@@ -27,7 +27,7 @@ pub fn figures() -> [Figure; 5] {
         longest("task_twi1", "TWI1"),
         longest("task_time", "TC1"),
         longest("task_tick", "TC0"),
-        longest("task_commands", "HSMCI"),
+        longest("task_commands", "SPI0"),
         Figure { name: "task_estimation", value: longest_tick() as f64 / CYCLES_PER_US },
     ]
 }
@@ -71,7 +71,7 @@ fn longest(handler: &Handler) -> Cycles {
 
 /// The longest from a tick to the last piece of the estimation task, cycles.
 fn longest_tick() -> Cycles {
-    let (tick, estimation) = (Handler::of("TC0"), Handler::of("SSC"));
+    let (tick, estimation) = (Handler::of("TC0"), Handler::of("HSMCI"));
     let mut longest = 0;
     fault_run::board(|board, ms| {
         let end = board.machine.now() + ms * CYCLES_PER_MS;
