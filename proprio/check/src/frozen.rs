@@ -5,7 +5,8 @@ use calibration_tables::MAX_SEGMENTS;
 use super::finding::{Finding, Kind, Rows, Source};
 use super::frame::{Frame, difference};
 
-/// Least motion of the other sensors during the repeats, deg: both references of a sensor must show it.
+/// Least motion of the other sensors during the repeats, deg: both references of a sensor must show it. A bend sensor whose
+/// twin repeats its value, too, is compared with the IMUs alone.
 const MOTION: f64 = 20.0;
 /// Least duration of the repeats, s, and their least number.
 const SECONDS: f64 = 1.0;
@@ -52,10 +53,11 @@ impl Repeats {
         motion: 0.0,
     };
 
-    fn update(&mut self, frame: &Frame, value: Option<i32>, references: [f64; 2]) {
+    /// Takes a reading; `ignores_still`: a reference that does not change at all is frozen, too.
+    fn update(&mut self, frame: &Frame, value: Option<i32>, references: [f64; 2], ignores_still: bool) {
         let Some(value) = value else { return };
         if self.value != Some(value) {
-            self.end();
+            self.end(ignores_still);
             self.changes += u64::from(self.value.is_some());
             self.value = Some(value);
             self.run = Rows::default();
@@ -67,11 +69,12 @@ impl Repeats {
         }
     }
 
-    fn end(&mut self) {
+    fn end(&mut self, ignores_still: bool) {
         if self.run.count < REPEATS || self.run.to_s - self.run.from_s < SECONDS {
             return;
         }
-        let motion = self.references.iter().filter_map(Span::width).reduce(f64::min).unwrap_or(0.0);
+        let widths = self.references.iter().filter_map(Span::width);
+        let motion = widths.filter(|width| !ignores_still || *width > 0.0).reduce(f64::min).unwrap_or(0.0);
         if motion >= MOTION {
             self.frozen.append(&self.run);
             self.motion = self.motion.max(motion);
@@ -108,9 +111,9 @@ impl Frozen {
             sums = [sums[0] + by_a, sums[1] + by_b];
             let theta = difference(&frame.heading, i);
             let [of_a, of_b] = frame.counts[i].map(|counts| counts.map(i32::from));
-            a.update(frame, of_a, [by_b, theta]);
-            b.update(frame, of_b, [by_a, theta]);
-            imu.update(frame, frame.headings[i].map(estimator_core::Phase::bits), sums);
+            a.update(frame, of_a, [by_b, theta], true);
+            b.update(frame, of_b, [by_a, theta], true);
+            imu.update(frame, frame.headings[i].map(estimator_core::Phase::bits), sums, false);
             self.headings[i].add(frame.heading[i]);
         }
     }
@@ -122,7 +125,7 @@ impl Frozen {
         }
         for (i, sensors) in self.sensors.iter_mut().enumerate() {
             for (place, repeats) in sensors.iter_mut().enumerate() {
-                repeats.end();
+                repeats.end(place < 2);
                 if repeats.frozen.count == 0 {
                     continue;
                 }

@@ -21,6 +21,13 @@ fn findings(session: &Csv) -> Vec<(String, String)> {
     list.iter().map(|finding| (text(&finding["sensor"]), text(&finding["kind"]))).collect()
 }
 
+/// Findings of the session after an edit.
+fn findings_of(edit: impl FnOnce(&mut Csv)) -> Vec<(String, String)> {
+    let mut session = session();
+    edit(&mut session);
+    findings(&session)
+}
+
 #[track_caller]
 fn assert_found(edit: impl FnOnce(&mut Csv), expected: &[(&str, &str)]) {
     let mut session = session();
@@ -123,6 +130,11 @@ fn repeated_values_are_found() {
     };
     assert_found(repeat("imu4_deg", 250), &[("imu4", "frozen")]);
     assert_found(repeat("bend3b_adc", 250), &[("bend3b", "frozen")]);
+    let both = |session: &mut Csv| {
+        repeat("bend3a_adc", 250)(session);
+        repeat("bend3b_adc", 250)(session);
+    };
+    assert!(findings_of(both).iter().filter(|(_, kind)| kind == "frozen").count() == 2);
     assert_found(repeat("bend3b_adc", 0), &[("bend3b", "constant")]);
 }
 
