@@ -85,8 +85,8 @@ impl TruthJudge {
             return Err(refuse(TruthError::Unit(*finding)));
         }
         // No pose is wrong by itself; the misfit of all is an error of the table that is made of them.
-        if findings.iter().any(|finding| finding.kind == Kind::TruthAxes) {
-            return Ok((JudgedTruth { path, findings: Vec::new(), lengths, lag_s }, LeftOut::default()));
+        if let Some(axes) = findings.iter().find(|finding| finding.kind == Kind::TruthAxes) {
+            return Ok((JudgedTruth { path, findings: vec![*axes], lengths, lag_s }, LeftOut::default()));
         }
         let worst = findings.iter().filter(|finding| finding.kind.is_wrong_pose()).max_by_key(|of| of.rows.count);
         if let Some(worst) = worst.filter(|_| wrong_share > MOST_WRONG) {

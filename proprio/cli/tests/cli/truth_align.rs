@@ -51,6 +51,17 @@ fn zeros_of_a_lost_marker_are_not_in_the_truth() {
     assert!(most_mm < 10.0, "{most_mm} mm");
 }
 
+/// Places and headings do not turn the same way.
+#[test]
+fn a_mirrored_axis_of_the_camera_is_a_warning() {
+    let (_, stderr) = aligned(|camera| {
+        for name in (1..=6).map(|segment| format!("truth{segment}_x_mm")).chain(["base_x_mm".to_owned()]) {
+            camera.map(&name, |_, cell| if cell.is_empty() { String::new() } else { (-number(cell)).to_string() });
+        }
+    });
+    assert!(stderr.contains("warning: camera.csv: truth, "), "{stderr}");
+}
+
 #[test]
 fn exchanged_names_are_not_in_the_truth() {
     let mut count = 0;
