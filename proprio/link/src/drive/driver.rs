@@ -1,7 +1,7 @@
 //! Driver of a board's pressures: the board stays armed while the driver exists.
 
 use std::collections::VecDeque;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use telemetry::{Command, Health, REGULATORS, SensorState, SetPressures};
 
@@ -14,6 +14,9 @@ pub const PERIOD: Duration = Duration::from_millis(50);
 
 /// Time for which the board holds them, ms: a lost request is repeated twice until then.
 pub const VALID_MS: u16 = 300;
+
+/// Longest time from a board's first reply to its first `Hello`.
+const FIRST_HELLO: Duration = Duration::from_millis(200);
 
 /// Number of set-points that are stored: those of the second before a `Health`.
 const STORED: usize = 20;
@@ -49,16 +52,29 @@ impl<'l> Driver<'l> {
     /// [`DriveError::Restarted`], after which the board is not armed; [`DriveError::Link`].
     pub fn set(&mut self, pressures_pa: [u32; REGULATORS]) -> Result<SetPressures, DriveError> {
         let requested = SetPressures { pressures_pa, valid_ms: VALID_MS };
-        let done = self.link.request(Command::SetPressures(requested));
-        if self.link.state().restarts != self.restarts {
-            return Err(DriveError::Restarted);
+        match self.link.request(Command::SetPressures(requested)) {
+            Err(LinkError::Request(_)) if self.has_restarted() => return Err(DriveError::Restarted),
+            done => done?,
         }
-        done?;
         if self.requested_pa.len() == STORED {
             self.requested_pa.pop_front();
         }
         self.requested_pa.push_back(pressures_pa);
         Ok(requested)
+    }
+
+    /// True where the board has restarted since it was armed. It replies to a request before its first `Hello`, which shows the
+    /// restart.
+    fn has_restarted(&self) -> bool {
+        let (start, events) = (Instant::now(), self.link.subscribe());
+        while self.link.state().restarts == self.restarts {
+            if start.elapsed() >= FIRST_HELLO {
+                return false;
+            }
+            // The state changes with the events.
+            let _ = events.next(Duration::from_millis(10));
+        }
+        true
     }
 
     /// Checks that the board follows the requested pressures.
