@@ -46,9 +46,8 @@ impl Buffers {
 /// Drivers and data for the tasks.
 pub struct Board {
     pub watchdog: Watchdog,
-    pub trigger: Trigger,
-    /// Time of the trigger's first edge, µs.
-    pub start_us: u64,
+    /// For the trigger of the ticks.
+    pub tick_channel: tc::Channel0,
     pub adc: Adc<BEND_SENSORS>,
     pub regulators: Pwm<REGULATORS>,
     pub imus: Imus<ImuBus, MuxReset>,
@@ -80,7 +79,14 @@ pub enum Error {
     Flash(#[from] eefc::Error),
 }
 
-/// Initialises the chip; returns the board, vented and with its trigger running.
+/// Starts the trigger of the ticks, last: a first tick that waits for the rest of the start would cut off its IMUs. Returns it
+/// and the time of its first edge, µs.
+pub fn start_ticks(channel: tc::Channel0) -> Result<(Trigger, u64), Error> {
+    let start_us = Mono::now_us();
+    Ok((Trigger::start(channel, TICK_HZ, SCAN_US)?, start_us))
+}
+
+/// Initialises the chip; returns the board, vented. No tick comes before [`start_ticks`].
 pub fn set_up(device: Peripherals, buffers: &'static mut Buffers) -> Result<Board, Error> {
     crash::on_fault(outputs_safe);
     // First, so that it resets the board if anything below hangs.
@@ -121,7 +127,6 @@ pub fn set_up(device: Peripherals, buffers: &'static mut Buffers) -> Result<Boar
     Mono::start(channels.channel1);
     let adc = Adc::new(device.ADC, BEND_CHANNELS, adc::Trigger::Tc0Channel0, &mut buffers.scan, clocks);
     let adc = adc?;
-    let start_us = Mono::now_us();
-    let trigger = Trigger::start(channels.channel0, TICK_HZ, SCAN_US)?;
-    Ok(Board { watchdog, trigger, start_us, adc, regulators, imus, tx, rx, backup, boots, hello, tables })
+    let tick_channel = channels.channel0;
+    Ok(Board { watchdog, tick_channel, adc, regulators, imus, tx, rx, backup, boots, hello, tables })
 }

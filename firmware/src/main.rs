@@ -100,17 +100,6 @@ mod app {
         let (to_commands, command_ticks) = cx.local.for_commands.split();
         let (to_estimation, estimation_ticks) = cx.local.for_estimation.split();
         let (to_table, table_requests) = make_channel!(Request, TABLE_REQUESTS);
-        let ticker = Ticker {
-            trigger: board.trigger,
-            start_us: board.start_us,
-            adc: board.adc,
-            regulators: board.regulators,
-            watchdog: board.watchdog,
-            backup: board.backup,
-            boots: board.boots,
-            subscribers: [to_commands, to_estimation],
-            missed_deadline: None,
-        };
         let has_table = table_state.status == TableStatus::InUse;
         let config = cx.local.config.write(cx.local.table.config().unwrap_or(ArmConfig::uncalibrated(&[])));
         let estimator = place_estimator(cx.local.estimator, config);
@@ -126,6 +115,21 @@ mod app {
             damaged_frames: 0,
             has_table,
             completed: None,
+        };
+        let (trigger, start_us) = match board::start_ticks(board.tick_channel) {
+            Ok(started) => started,
+            Err(error) => panic!("the ticks do not start: {error}"),
+        };
+        let ticker = Ticker {
+            trigger,
+            start_us,
+            adc: board.adc,
+            regulators: board.regulators,
+            watchdog: board.watchdog,
+            backup: board.backup,
+            boots: board.boots,
+            subscribers: [to_commands, to_estimation],
+            missed_deadline: None,
         };
         (
             Shared { actuator: Actuator::new(LIMITS_PA), control, sender: TelemetrySender::new(board.tx) },
