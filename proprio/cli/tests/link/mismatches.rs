@@ -39,7 +39,7 @@ fn another_table_is_reported_once_with_both_checksums() {
     let received = received(Some(8), &hello(1));
     let expected = Mismatch::Table { arm: "planar-6".to_owned(), board: 7, given: 8 };
     assert_eq!(mismatches(&received), [&expected]);
-    assert!(expected.to_string().contains("00000007") && expected.to_string().contains("proprio flash"));
+    assert!(expected.to_string().contains("00000007") && expected.to_string().contains("proprio table push"));
 }
 
 #[test]
