@@ -27,6 +27,7 @@ pub mod clock_fit;
 mod finding;
 mod frame;
 mod frozen;
+mod median;
 mod new_zero;
 mod plugs;
 mod quaternions;

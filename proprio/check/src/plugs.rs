@@ -5,6 +5,7 @@ use calibration_tables::MAX_SEGMENTS;
 
 use super::finding::{Finding, Kind, Rows, Source, is_bend_blamed, is_imu_blamed};
 use super::frame::{Decoder, Frame};
+use super::median::median;
 use super::tare::reference_angles;
 
 /// Least number of steps, and least root mean square of them, deg.
@@ -125,9 +126,9 @@ impl Plugs {
     fn factor(&self) -> Option<f64> {
         let plugs = || self.pairs.iter().enumerate().flat_map(|(i, plugs)| plugs.iter().map(move |plug| (i, plug)));
         let at_rest: Vec<f64> = plugs().filter_map(|(_, plug)| plug.factor_at_rest()).collect();
-        let factor = median(at_rest.clone())?;
+        let factor = common_factor(at_rest.clone())?;
         let agree = at_rest.iter().filter(|of| (*of / factor - 1.0).abs() < SPREAD).count();
-        let in_motion = median(plugs().filter_map(|(i, plug)| plug.factor_in_motion(i)).collect())?;
+        let in_motion = common_factor(plugs().filter_map(|(i, plug)| plug.factor_in_motion(i)).collect())?;
         let is_common = agree as f64 >= SHARE * at_rest.len() as f64 && (in_motion / factor).ln().abs() < AGREES;
         (is_common && factor.ln().abs() > FACTOR).then_some(factor)
     }
@@ -208,8 +209,7 @@ impl Plug {
     }
 }
 
-/// The median of at least [`SENSORS`] numbers.
-fn median(mut numbers: Vec<f64>) -> Option<f64> {
-    numbers.sort_unstable_by(f64::total_cmp);
-    numbers.get(numbers.len() / 2).copied().filter(|_| numbers.len() >= SENSORS)
+/// The median factor of at least [`SENSORS`] sensors.
+fn common_factor(factors: Vec<f64>) -> Option<f64> {
+    if factors.len() < SENSORS { None } else { median(factors) }
 }

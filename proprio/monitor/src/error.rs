@@ -15,9 +15,6 @@ pub enum Error {
     /// A request to the board.
     #[error(transparent)]
     Link(#[from] proprio_link::LinkError),
-    /// The session check of an opened session.
-    #[error(transparent)]
-    Analysis(#[from] proprio_analysis::Error),
     /// The port cannot be opened.
     #[error("port {port} of 127.0.0.1 cannot be listened on: {source}")]
     Listen {

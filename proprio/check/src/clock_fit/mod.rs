@@ -6,6 +6,8 @@ mod signal;
 pub use motion::{ComparedSensors, Motion, Pair};
 pub use signal::{GRID_S, Reading, Signal};
 
+use crate::median::median;
+
 /// Length of a window, s.
 const WINDOW_S: f64 = 20.0;
 /// Largest number of rounds; four are usual.
@@ -99,12 +101,11 @@ pub fn fit(motion: &Motion, lag_s: f64) -> Option<ClockFit> {
 
 fn median_correlation(by: ComparedSensors, gains: &[Gain]) -> f64 {
     let known = gains.iter().map(Gain::correlation).filter(|correlation| correlation.is_finite());
-    let mut known: Vec<f64> = match by {
+    let known = match by {
         ComparedSensors::Imus => known.collect(),
         ComparedSensors::Bend => known.map(f64::abs).collect(),
     };
-    known.sort_unstable_by(f64::total_cmp);
-    known.get(known.len() / 2).copied().unwrap_or_default()
+    median(known).unwrap_or_default()
 }
 
 /// Number of moments at which a sensor's difference has one of the camera.

@@ -3,8 +3,8 @@
 
 use super::links::{Chain, wrapped};
 use super::row::TruthRow;
-use super::usual::median;
 use crate::clock_fit::{ComparedSensors, Motion, Pair, Reading, Signal, fit};
+use crate::median::median;
 
 /// Length of a piece, s.
 const PIECE_S: f64 = 120.0;
@@ -154,7 +154,7 @@ impl Piece {
     }
 }
 
-/// Lag of the truth by the fine fit of `align`, begun at `start_s`; `None` where the motion does not determine it.
+/// Lag of the truth by the fine fit of `align`, which starts at `start_s`; `None` where the motion does not determine it.
 fn lag_s(motion: &Motion, start_s: f64) -> Option<f64> {
     let fit = fit(motion, start_s).filter(|fit| {
         fit.correlation > motion.by.least_correlation()

@@ -6,6 +6,7 @@ use nalgebra::Vector2;
 
 use super::links::Chain;
 use super::row::TruthRow;
+use crate::median::median;
 
 /// Rows with truth from which the usual values are found.
 const FIRST: usize = 1000;
@@ -73,10 +74,4 @@ impl Usual {
         }
         self.found = Some((scale, found));
     }
-}
-
-/// The middle of the values.
-pub(super) fn median(mut values: Vec<f64>) -> Option<f64> {
-    values.sort_unstable_by(f64::total_cmp);
-    values.get(values.len() / 2).copied()
 }
