@@ -23,13 +23,12 @@ pub struct TableAnswer {
 #[derive(Debug)]
 pub struct TableServer<F> {
     store: TableStore<F>,
-    received_bytes: u32,
 }
 
 impl<F: Storage + AsRef<[u8]>> TableServer<F> {
     /// A server for the store in a flash.
     pub fn new(flash: F) -> Self {
-        Self { store: TableStore::new(flash), received_bytes: 0 }
+        Self { store: TableStore::new(flash) }
     }
 
     /// Reads the table into `table`, which is empty if there is no usable one. Returns its state.
@@ -52,15 +51,14 @@ impl<F: Storage + AsRef<[u8]>> TableServer<F> {
                     source_bytes: announced.source_bytes,
                     crc: announced.crc,
                 };
-                self.received_bytes = self.store.begin(announced).map_err(refusal)?;
+                self.store.begin(announced).map_err(refusal)?;
             }
             Command::TableWrite(chunk) => {
-                self.received_bytes = self.store.write(chunk.offset, &chunk.bytes).map_err(refusal)?;
+                self.store.write(chunk.offset, &chunk.bytes).map_err(refusal)?;
                 return Ok(TableAnswer { message: None, restart: false });
             }
             Command::TableCommit => {
                 self.store.commit(SEGMENTS, WINDOW as u16).map_err(refusal)?;
-                self.received_bytes = 0;
             }
             Command::TableErase => self.store.erase().map_err(refusal)?,
             Command::TableRead(offset) => return self.read(*offset),
@@ -84,7 +82,7 @@ impl<F: Storage + AsRef<[u8]>> TableServer<F> {
             image_bytes: header.map_or(0, |header| header.image_bytes),
             source_bytes: header.map_or(0, |header| header.source_bytes),
             crc: header.map_or(0, |header| header.crc),
-            received_bytes: self.received_bytes,
+            received_bytes: self.store.received_bytes(),
         }
     }
 

@@ -15,8 +15,8 @@ pub enum TableError {
     /// The anchor's window is empty, or longer than the board's estimator has room for.
     #[error("the anchor's window is empty, or longer than the board's estimator has room for")]
     Window,
-    /// No transfer was begun.
-    #[error("no transfer was begun")]
+    /// A chunk or a commit without a transfer under way.
+    #[error("no transfer is under way")]
     NotBegun,
     /// A chunk does not follow the one before it, or exceeds the announced length.
     #[error("a chunk does not follow the one before it")]

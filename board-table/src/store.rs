@@ -117,16 +117,20 @@ impl<F: Storage + AsRef<[u8]>> TableStore<F> {
         Ok(0)
     }
 
-    /// Takes a chunk of the body, image first; returns the number of bytes received so far. A chunk that was received
-    /// before is taken again without effect.
+    /// Bytes received of the transfer under way; 0 without one.
+    pub fn received_bytes(&self) -> u32 {
+        self.transfer.as_ref().map_or(0, |transfer| transfer.received as u32)
+    }
+
+    /// Takes a chunk of the body, image first. A chunk that was received before is taken again without effect.
     ///
     /// # Errors
     /// [`TableError::NotBegun`], [`TableError::Order`] or [`TableError::Flash`], which ends the transfer.
-    pub fn write(&mut self, offset: u32, bytes: &[u8]) -> Result<u32, TableError> {
+    pub fn write(&mut self, offset: u32, bytes: &[u8]) -> Result<(), TableError> {
         let transfer = self.transfer.as_ref().ok_or(TableError::NotBegun)?;
         let (received, end) = (transfer.received, (offset as usize).saturating_add(bytes.len()));
         if end <= received {
-            return Ok(received as u32);
+            return Ok(());
         }
         if offset as usize != received || end > transfer.announced.length() {
             return Err(TableError::Order);
@@ -142,7 +146,7 @@ impl<F: Storage + AsRef<[u8]>> TableStore<F> {
                 self.write_page()?;
             }
         }
-        Ok(end as u32)
+        Ok(())
     }
 
     /// Ends a transfer: compares the checksum with what the flash holds, and makes the new table count. `segments` and

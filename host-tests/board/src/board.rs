@@ -47,7 +47,7 @@ impl Board {
         Self::start(machine(rig))
     }
 
-    /// A board with the firmware and another content of the flash beside it.
+    /// A board with the firmware and this content of the rest of the flash.
     ///
     /// # Panics
     /// If the firmware does not build.

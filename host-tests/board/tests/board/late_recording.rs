@@ -44,8 +44,8 @@ fn a_recording_that_begins_while_the_firmware_runs_replays_bit_for_bit_from_its_
     let page = MonitorRun::live(&[]);
     // Some seconds after the first tare.
     wait_for(&page, |status| status["frames"].as_u64() > Some(2000));
-    let begun = request(&page, "POST", "/record", r#"{"on":true}"#);
-    assert_eq!(begun["is_comparable"], true, "{begun}");
+    let started = request(&page, "POST", "/record", r#"{"on":true}"#);
+    assert_eq!(started["is_comparable"], true, "{started}");
     wait_for(&page, |status| status["recording"]["samples"].as_u64() >= Some(400));
     let done = request(&page, "POST", "/record", r#"{"on":false}"#);
     let samples = done["samples"].as_u64().expect("a number");

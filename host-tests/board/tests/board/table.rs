@@ -3,9 +3,7 @@
 use board_tests::{Board, flash_with, stored_table};
 use proprio_link::table::StoredTable;
 use rig_twin::{MotionProgram, Scenario};
-use telemetry::{
-    Command, Message, Refusal, RequestOutcome, TABLE_CHUNK_BYTES, TableAnnouncement, TableChunk, TableStatus,
-};
+use telemetry::{Command, Message, Refusal, RequestOutcome, TABLE_CHUNK_BYTES, TableChunk, TableStatus};
 use virtual_due::{CYCLES_PER_SECOND, Cycles, FLASH_BYTES, WiredRig};
 
 use crate::replay::assert_replays;
@@ -21,15 +19,6 @@ fn empty_board() -> Board {
     let mut board = Board::with_flash(rig(), &vec![0xFF; FLASH_BYTES]);
     board.run_ms(300);
     board
-}
-
-fn begin(table: &StoredTable) -> Command {
-    let announced = table.announcement();
-    Command::TableBegin(TableAnnouncement {
-        image_bytes: announced.image_bytes,
-        source_bytes: announced.source_bytes,
-        crc: announced.crc,
-    })
 }
 
 /// The pieces of a table, from the first to the last.
@@ -62,7 +51,7 @@ fn request(board: &mut Board, command: Command) -> RequestOutcome {
 /// Sends a table; returns the time until the board has restarted with it.
 fn push(board: &mut Board, table: &StoredTable) -> Cycles {
     let start = board.machine.now();
-    assert_eq!(request(board, begin(table)), RequestOutcome::Ack);
+    assert_eq!(request(board, table.begin()), RequestOutcome::Ack);
     // Two pieces ahead of their replies, as `proprio table push` sends them.
     let acknowledged = |board: &Board| {
         let is_ack =
@@ -152,7 +141,7 @@ fn a_table_of_another_format_version_is_not_used() {
 fn a_loss_of_power_in_a_transfer_leaves_the_old_table() {
     let mut board = Board::new(rig());
     board.run_ms(300);
-    assert_eq!(request(&mut board, begin(&other_table())), RequestOutcome::Ack);
+    assert_eq!(request(&mut board, other_table().begin()), RequestOutcome::Ack);
     let pieces = pieces(&other_table());
     for (index, piece) in pieces.iter().enumerate() {
         // The power goes while the last piece is on the line or being written.
@@ -177,12 +166,12 @@ fn pieces_that_are_repeated_or_missing_are_noticed_and_the_transfer_is_resumed()
     let mut board = empty_board();
     let table = stored_table();
     let pieces = pieces(&table);
-    assert_eq!(request(&mut board, begin(&table)), RequestOutcome::Ack);
+    assert_eq!(request(&mut board, table.begin()), RequestOutcome::Ack);
     assert_eq!(request(&mut board, pieces[0].clone()), RequestOutcome::Ack);
     assert_eq!(request(&mut board, pieces[0].clone()), RequestOutcome::Ack, "under another number");
     assert_eq!(request(&mut board, pieces[2].clone()), RequestOutcome::Nack(Refusal::TableOrder));
     assert_eq!(request(&mut board, Command::TableCommit), RequestOutcome::Nack(Refusal::TableOrder));
-    assert_eq!(request(&mut board, begin(&table)), RequestOutcome::Ack);
+    assert_eq!(request(&mut board, table.begin()), RequestOutcome::Ack);
     board.run_ms(20);
     let received = board.table_states().next_back().map(|state| state.received_bytes);
     assert_eq!(received, Some(TABLE_CHUNK_BYTES as u32));
@@ -197,7 +186,7 @@ fn an_armed_board_refuses_another_table_and_goes_on() {
     let mut board = Board::new(rig());
     board.run_ms(1500);
     assert_eq!(board.request(Command::Arm), RequestOutcome::Ack);
-    for command in [begin(&other_table()), Command::TableCommit, Command::TableErase] {
+    for command in [other_table().begin(), Command::TableCommit, Command::TableErase] {
         assert_eq!(request(&mut board, command), RequestOutcome::Nack(Refusal::Armed));
     }
     assert_eq!(arm_of(&board), "planar-6");
@@ -209,7 +198,7 @@ fn a_transfer_disturbs_neither_ticks_nor_imus() {
     let mut board = Board::new(rig());
     board.run_ms(1500);
     let (from, before) = (board.samples().count(), *board.healths().next_back().expect("it comes at 5 Hz"));
-    assert_eq!(request(&mut board, begin(&other_table())), RequestOutcome::Ack);
+    assert_eq!(request(&mut board, other_table().begin()), RequestOutcome::Ack);
     for piece in pieces(&other_table()) {
         assert_eq!(request(&mut board, piece), RequestOutcome::Ack);
     }

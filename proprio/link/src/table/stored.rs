@@ -9,7 +9,7 @@ use estimator_core::Q;
 use flate2::Compression;
 use flate2::read::ZlibDecoder;
 use flate2::write::ZlibEncoder;
-use telemetry::TICK_HZ;
+use telemetry::{Command, TICK_HZ, TableAnnouncement};
 
 /// Room for an image, bytes: more than a slot of the board.
 const IMAGE_ROOM: usize = STORE_BYTES;
@@ -59,13 +59,19 @@ impl StoredTable {
     }
 
     /// Lengths and checksum, which the board receives first.
-    #[must_use]
-    pub fn announcement(&self) -> Announcement {
+    fn announcement(&self) -> Announcement {
         Announcement {
             image_bytes: self.image.len() as u32,
             source_bytes: self.source.len() as u32,
             crc: body_crc([&self.image[..], &self.source[..]]),
         }
+    }
+
+    /// The command that begins the transfer of this table.
+    #[must_use]
+    pub fn begin(&self) -> Command {
+        let Announcement { image_bytes, source_bytes, crc } = self.announcement();
+        Command::TableBegin(TableAnnouncement { image_bytes, source_bytes, crc })
     }
 
     /// Image and source, as they are sent.

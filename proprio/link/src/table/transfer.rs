@@ -6,9 +6,7 @@ use std::time::{Duration, Instant};
 
 use board_table::body_crc;
 use proprio_session::Progress;
-use telemetry::{
-    Command, Hello, Message, Refusal, TABLE_CHUNK_BYTES, TableAnnouncement, TableChunk, TableState, TableStatus,
-};
+use telemetry::{Command, Hello, Message, Refusal, TABLE_CHUNK_BYTES, TableChunk, TableState, TableStatus};
 
 use super::stored::{StoredTable, expand};
 use crate::error::LinkError;
@@ -67,23 +65,17 @@ pub struct PulledTable {
 }
 
 /// Sends a table to a board, which checks it, restarts and uses it; returns the board's `Hello` after that. `progress` is
-/// told of the bytes that were sent. An interrupted transfer is resumed.
+/// called with the bytes sent. An interrupted transfer is resumed.
 ///
 /// # Errors
 /// [`TransferError`]: the board goes on with the table that it had.
 pub fn push(link: &Link, table: &StoredTable, progress: &mut dyn Progress) -> Result<Hello, TransferError> {
     link.wait_until_connected()?;
     let events = link.subscribe();
-    let announced = table.announcement();
-    let announcement = TableAnnouncement {
-        image_bytes: announced.image_bytes,
-        source_bytes: announced.source_bytes,
-        crc: announced.crc,
-    };
     let body = table.body();
     let mut resumptions = 0;
     loop {
-        link.request(Command::TableBegin(announcement))?;
+        link.request(table.begin())?;
         let state = next_state(&events)?;
         match send(link, &body, state.received_bytes as usize, progress) {
             Err(LinkError::Request(
