@@ -20,7 +20,7 @@ pub struct LinkArgs {
     /// An emulated Due with a simulated arm instead of a real one
     #[arg(long = "virtual")]
     pub emulated: bool,
-    /// Firmware of the emulated Due [default: firmware.elf beside the program, or where cargo leaves it]
+    /// Firmware of the emulated Due [default: firmware.elf in the program's folder, or where cargo leaves it]
     #[arg(long, value_name = "ELF", requires = "emulated")]
     pub firmware: Option<PathBuf>,
     /// File of the emulated Due's flash, kept between runs [default: one with --table, or with the reference arm's table]
@@ -84,7 +84,7 @@ pub struct FlashArgs {
     /// The board's programming port [default: that of the one Due that is plugged in]
     #[arg(long, value_name = "PORT")]
     pub port: Option<String>,
-    /// Firmware: ELF file or plain image [default: firmware.elf beside the program, or where cargo leaves it]
+    /// Firmware: ELF file or plain image [default: firmware.elf in the program's folder, or where cargo leaves it]
     #[arg(long, value_name = "FILE")]
     pub firmware: Option<PathBuf>,
     /// Build the firmware first, from the source of proprio in this folder

@@ -200,18 +200,8 @@ fn a_tuned_fusion_with_the_anchor_is_better_than_any_other_method_in_every_scena
     folder.done(&["simulate", "--scenario", "1", "--seconds", "900", "--seed", "7", "-o", "session.csv"]);
     folder.done(&["tune", "session.csv", "--table", "table.toml", "-o", "tuned.toml"]);
     for scenario in ["1", "2", "3"] {
-        folder.done(&[
-            "simulate",
-            "--scenario",
-            scenario,
-            "--seconds",
-            "900",
-            "--seed",
-            "12",
-            "--force",
-            "-o",
-            "unseen.csv",
-        ]);
+        let unseen = simulate(&format!("--scenario {scenario} --seconds 900 --seed 12"));
+        folder.write("unseen.csv", unseen.to_string());
         let rmse = |table, method| {
             let report = json(&folder.done(&["replay", "unseen.csv", "--table", table, "--json"]));
             figure(&report, method, "tip_rmse_mm")

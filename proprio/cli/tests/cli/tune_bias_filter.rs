@@ -188,18 +188,8 @@ fn a_tuned_bias_filter_is_better_than_uncorrected_sensors_in_every_scenario() {
     folder.done(&["simulate", "--scenario", "1", "--seconds", "900", "--seed", "7", "-o", "session.csv"]);
     folder.done(&["tune", "session.csv", "--table", table(), "-o", "tuned.toml"]);
     for scenario in ["1", "2", "3"] {
-        folder.done(&[
-            "simulate",
-            "--scenario",
-            scenario,
-            "--seconds",
-            "900",
-            "--seed",
-            "12",
-            "--force",
-            "-o",
-            "unseen.csv",
-        ]);
+        let unseen = simulate(&format!("--scenario {scenario} --seconds 900 --seed 12"));
+        folder.write("unseen.csv", unseen.to_string());
         let report = json(&folder.done(&["replay", "unseen.csv", "--table", "tuned.toml", "--json"]));
         let rmse_mm = |method| figure(&report, method, "tip_rmse_mm");
         let tuned = rmse_mm("fusion");
