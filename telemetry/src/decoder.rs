@@ -98,8 +98,8 @@ impl<P: Payload> Decoder<P> {
         if self.oversize {
             return Err(DecodeError::Oversize);
         }
-        let frame = Frame::open(&mut self.block)?;
-        let payload = P::read(frame.topic, frame.body);
+        let frame = Frame::open(&mut self.block, P::VERSIONS)?;
+        let payload = P::read(frame.version, frame.topic, frame.body);
         let sequence = frame.sequence;
         self.count_lost(sequence);
         if let Some(boot) = payload.as_ref().ok().and_then(P::boot) {
