@@ -9,6 +9,9 @@ pub const REST_RANGE: i32 = 1_171_270;
 /// Ticks of half the window: the range is that of the last 25 to 50 ticks, 0.25 to 0.5 s.
 const HALF_WINDOW_TICKS: u8 = 25;
 
+/// 2⁻³² turns in units of 2⁻⁵² rad.
+const PHASE_RAD: i64 = 6_588_397;
+
 /// Monitor of the headings' ranges.
 ///
 /// ```
@@ -62,9 +65,8 @@ impl Range {
                 (low.min(of(next_low)), high.max(of(next_high)))
             }
         };
-        /// 2π / 2³² in units of 2⁻⁵² rad.
-        const RAD: i64 = 6_588_397;
-        Some(((i64::from(high) - i64::from(low)) * RAD >> 26) as i32)
+        let turned = (i64::from(high) - i64::from(low)) * PHASE_RAD;
+        Some((turned >> 26) as i32)
     }
 }
 

@@ -24,7 +24,7 @@ const EVENTS: usize = 16;
 /// The arm's sensors.
 pub struct Sensors {
     pub imus: Imus<ImuBus, MuxReset>,
-    pub bend_sensors: BendSensorMonitor,
+    pub bend: BendSensorMonitor,
     pub rest: RestMonitor,
 }
 
@@ -165,7 +165,7 @@ impl EstimationTask {
         if tick.scan.is_none() {
             self.counters.stale_scans = self.counters.stale_scans.saturating_add(1);
         }
-        let bend = self.sensors.bend_sensors.step(tick.scan.as_ref(), |event| {
+        let bend = self.sensors.bend.step(tick.scan.as_ref(), |event| {
             let _ = events.push(event);
         });
         if tare || self.estimator.needs_first_tare(tick.number, all_imus_read) {
@@ -212,9 +212,8 @@ impl EstimationTask {
         let no_imu = self.sensors.imus.health().iter().all(|imu| imu.state != SensorState::Ok);
         let mut segments = self.config.segments.iter().enumerate();
         no_imu
-            || segments.any(|(i, segment)| {
-                segment.bend.iter().any(Option::is_some) && self.sensors.bend_sensors.segment_is_lost(i)
-            })
+            || segments
+                .any(|(i, segment)| segment.bend.iter().any(Option::is_some) && self.sensors.bend.segment_is_lost(i))
     }
 
     fn health(
@@ -228,7 +227,7 @@ impl EstimationTask {
         let counters = &mut self.counters;
         Health {
             tick,
-            bend: self.sensors.bend_sensors.health(),
+            bend: self.sensors.bend.health(),
             imu: self.sensors.imus.health(),
             max_estimate_latency_us: core::mem::take(&mut counters.max_estimate_latency_us),
             longest_imu_read_us: core::mem::take(&mut counters.longest_imu_read_us),

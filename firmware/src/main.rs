@@ -109,7 +109,7 @@ mod app {
         let estimator = place_estimator(cx.local.estimator, config);
         let sensors = Sensors {
             imus: Imus::new(board.imu_bus, board.mux, wiring),
-            bend_sensors: BendSensorMonitor::new(wiring),
+            bend: BendSensorMonitor::new(wiring),
             rest: RestMonitor::new(),
         };
         let estimation_task = EstimationTask::new(sensors, estimator, config, board.hello, table_state, safe_mode);

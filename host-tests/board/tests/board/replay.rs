@@ -8,7 +8,7 @@ use virtual_due::WiredRig;
 /// Checks that every estimate, uncertainty and contact of the board equals the host's of the same samples. The first
 /// `skipped` samples are of an earlier boot, which had no table.
 pub fn assert_replays(board: &Board, skipped: usize) {
-    let expected = replay(board.samples().skip(skipped));
+    let expected = replay(&table(), board.samples().skip(skipped));
     let found: Vec<_> = board.estimates().copied().collect();
     assert!(found.len() > 100, "{} estimates", found.len());
     // The last sample may have left the board before its estimate.
