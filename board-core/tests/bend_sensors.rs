@@ -5,6 +5,8 @@ use board_table::{SegmentWiring, Wiring};
 use telemetry::{Event, SensorState};
 
 const BEND_SENSORS: usize = 12;
+const OK: SensorState = SensorState::Ok;
+const NOT_WIRED: SensorState = SensorState::NotWired;
 
 const GOOD: Scan = [1500, 1600, 1700, 1800, 1900, 2000, 2100, 2200, 2300, 2400, 2500, 2600];
 
@@ -135,9 +137,8 @@ fn each_place_reads_its_own_pin_and_a_place_without_a_sensor_is_no_fault() {
         let counts = monitor.step(Some(&scan), |event| panic!("{event:?}"));
         assert_eq!(counts, [Some(1111), None, None, None, Some(1000), Some(1005)]);
     }
-    use SensorState::{NotWired, Ok};
     let states: Vec<_> = monitor.health().iter().map(|health| health.state).collect();
-    assert_eq!(states, [Ok, NotWired, NotWired, NotWired, Ok, Ok]);
+    assert_eq!(states, [OK, NOT_WIRED, NOT_WIRED, NOT_WIRED, OK, OK]);
     assert!(monitor.health().iter().all(|health| health.missed == 0));
     assert!((0..3).all(|segment| !monitor.segment_is_lost(segment)));
 }

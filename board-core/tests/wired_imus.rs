@@ -44,9 +44,9 @@ fn eight_imus_are_read_in_time() {
 fn a_segment_without_an_imu_has_no_reading_and_no_fault() {
     let (rig, readings) = running(&wiring([Some((0, 0x28)), None, Some((1, 0x28))]));
     assert_eq!(readings.imu, [Some(heading(10.0)), None, Some(heading(30.0))]);
-    use SensorState::{NotWired, Ok};
+    let (ok, not_wired) = (SensorState::Ok, SensorState::NotWired);
     let health = rig.imus.health();
-    assert_eq!(health.iter().map(|imu| imu.state).collect::<Vec<_>>(), [Ok, NotWired, Ok]);
+    assert_eq!(health.iter().map(|imu| imu.state).collect::<Vec<_>>(), [ok, not_wired, ok]);
     assert_eq!(health[1].missed, 0);
     assert!(readings.all_are_read(&health), "the first tare does not wait for an IMU that is not wired");
 }
