@@ -141,7 +141,7 @@ impl From<Control> for Command {
             Control::Vent => Self::Disarm,
             Control::SetPressures { kpa } => {
                 // The cast saturates; the board refuses pressures over its regulators' range, and another number of them than it has.
-                let pressures_pa = kpa.iter().take(MAX_REGULATORS).map(|kpa| (kpa * 1e3).round() as u32);
+                let pressures_pa = kpa.iter().map(|kpa| (kpa * 1e3).round() as u32);
                 Self::SetPressures(SetPressures { pressures_pa: pressures_pa.collect(), valid_ms: VALID_MS })
             }
         }
@@ -154,6 +154,10 @@ pub(super) async fn control(State(state): State<AppState>, headers: HeaderMap, b
     check_token(&state, &headers).map_err(Refused::into_response)?;
     let control: Control =
         serde_json::from_slice(&body).map_err(|error| (StatusCode::BAD_REQUEST, error.to_string()).into_response())?;
+    if matches!(&control, Control::SetPressures { kpa } if kpa.len() > MAX_REGULATORS) {
+        let text = format!("a board has {MAX_REGULATORS} regulators at most");
+        return Err((StatusCode::BAD_REQUEST, text).into_response());
+    }
     let shared = Arc::clone(&state.monitor);
     // This handler is dropped with its connection: nothing is sent for a page that has gone, except what vents.
     let page = Arc::new(());
