@@ -1,7 +1,7 @@
 //! The arm's firmware for the Arduino Due.
 //!
-//! A timer triggers the ADC 100 times a second, by hardware and without jitter. 200 µs later, when the scan of the twelve
-//! bend sensors is in memory, its interrupt is the tick, which starts everything else.
+//! A timer triggers the ADC 100 times a second, by hardware and without jitter. 200 µs later, when the scan of the
+//! twelve analog pins is in memory, its interrupt is the tick, which starts everything else.
 //!
 //! | task | priority | period | bound, µs | longest measured, µs | work |
 //! |---|---|---|---|---|---|
@@ -9,7 +9,7 @@
 //! | `time` | 4 | a timer's alarm | 5 | 2.4 | delays and deadlines |
 //! | `tick` | 3 | 10 ms | 100 | 53 | scan, pressures, watchdog |
 //! | `commands` | 2 | 10 ms | 1000 | 385 | requests of the host |
-//! | `estimation` | 1 | 10 ms | 6000 | 4471 | IMUs (4 ms at most), estimator, messages |
+//! | `estimation` | 1 | 10 ms | 7000 | 4471 | IMUs (5 ms at most), estimator, messages |
 //! | `idle` | 0 | | | | sleep |
 //!
 //! Times are from a task's interrupt to its end, preemption included, and for `estimation` from the tick. `cargo xtask bench`
@@ -45,8 +45,9 @@ mod app {
     use atsam3x8e_hal::pac::TWI1;
     use atsam3x8e_hal::tc::{Mono, prelude::*};
     use atsam3x8e_hal::{reset, twi};
-    use board_core::{Actuator, BoardEstimator, Schedule};
-    use board_table::{BoardTable, MAX_SEGMENTS};
+    use board_core::imus::Imus;
+    use board_core::{Actuator, BendSensorMonitor, BoardEstimator, RestMonitor, Schedule};
+    use board_table::{BoardTable, MAX_SEGMENTS, Wiring};
     use estimator_core::{ArmConfig, Q};
     use rtic_sync::channel::Receiver;
     use rtic_sync::make_channel;
@@ -54,12 +55,12 @@ mod app {
     use telemetry::{Request, TableStatus};
 
     use crate::board::{self, Buffers};
-    use crate::command_task::{CommandTask, Control, TABLE_REQUESTS};
+    use crate::command_task::{CommandTask, Control, Pose, TABLE_REQUESTS};
     use crate::downlink::TelemetrySender;
-    use crate::estimation::{EstimationTask, place_estimator};
-    use crate::parameters::LIMITS_PA;
+    use crate::estimation::{EstimationTask, Sensors, place_estimator};
+    use crate::parameters::SEGMENTS_WITHOUT_TABLE;
     use crate::table_task::TableTask;
-    use crate::tick::{Tick, Ticker};
+    use crate::tick::{Tick, Ticker, regulator_outputs};
     use crate::{cpu_load, device_info};
 
     #[shared]
@@ -96,7 +97,9 @@ mod app {
         let safe_mode = board.boots.safe_mode();
         let table = cx.local.table.write(BoardTable::new());
         let table_state = board.tables.load(table);
-        device_info::enter_table(&mut board.hello, table);
+        let reference = Wiring::reference(SEGMENTS_WITHOUT_TABLE);
+        let wiring = table.wiring().unwrap_or(&reference);
+        device_info::enter_arm(&mut board.hello, table, wiring);
         log_boot(&board.hello, &table_state, safe_mode);
         let (to_commands, command_ticks) = cx.local.for_commands.split();
         let (to_estimation, estimation_ticks) = cx.local.for_estimation.split();
@@ -104,14 +107,20 @@ mod app {
         let has_table = table_state.status == TableStatus::InUse;
         let config = cx.local.config.write(table.config().unwrap_or(ArmConfig::uncalibrated(&[])));
         let estimator = place_estimator(cx.local.estimator, config);
-        let estimation_task = EstimationTask::new(board.imus, estimator, config, board.hello, table_state, safe_mode);
+        let sensors = Sensors {
+            imus: Imus::new(board.imu_bus, board.mux, wiring),
+            bend: BendSensorMonitor::new(wiring),
+            rest: RestMonitor::new(),
+        };
+        let estimation_task = EstimationTask::new(sensors, estimator, config, board.hello, table_state, safe_mode);
         // Each is spawned once and never ends, so that there is room for it.
         let _ = commands::spawn();
         let _ = estimation::spawn();
         let _ = table::spawn();
         let control = Control {
-            schedule: Schedule::default(),
+            schedule: Schedule::of_arm(wiring.segments.len(), wiring.regulators.len()),
             tare_requested: false,
+            pose: Pose::default(),
             hello_requested: false,
             damaged_frames: 0,
             has_table,
@@ -126,6 +135,7 @@ mod app {
             start_us,
             adc: board.adc,
             regulators: board.regulators,
+            outputs: regulator_outputs(wiring),
             watchdog: board.watchdog,
             backup: board.backup,
             boots: board.boots,
@@ -133,7 +143,7 @@ mod app {
             missed_deadline: None,
         };
         (
-            Shared { actuator: Actuator::new(LIMITS_PA), control, sender: TelemetrySender::new(board.tx) },
+            Shared { actuator: Actuator::new(wiring), control, sender: TelemetrySender::new(board.tx) },
             Local {
                 ticker,
                 command_task: CommandTask::new(board.rx, to_table),

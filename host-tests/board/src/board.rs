@@ -151,7 +151,10 @@ impl Board {
     /// Sends set-points that stand for 200 ms, as shares of the full scale.
     pub fn set_pressures(&mut self, duties: [f64; REGULATORS]) {
         let pressures_pa = duties.map(|duty| (duty * f64::from(FULL_SCALE_PA)) as u32);
-        self.send(Command::SetPressures(SetPressures { pressures_pa, valid_ms: 200 }));
+        self.send(Command::SetPressures(SetPressures {
+            pressures_pa: pressures_pa.into_iter().collect(),
+            valid_ms: 200,
+        }));
     }
 
     /// True if no regulator is commanded any pressure.

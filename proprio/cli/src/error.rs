@@ -37,8 +37,13 @@ pub enum Error {
     #[error(transparent)]
     Tare(#[from] TareError),
     /// A table cannot be stored on a board.
-    #[error(transparent)]
-    TableImage(#[from] TableImageError),
+    #[error("{name}: {source}")]
+    TableImage {
+        /// Name of the table's file.
+        name: String,
+        /// The reason.
+        source: TableImageError,
+    },
     /// A table was not transferred.
     #[error(transparent)]
     Transfer(#[from] TransferError),

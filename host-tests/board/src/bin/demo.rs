@@ -40,7 +40,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     view.finish();
 
     record(&board, &path)?;
-    let expected = replay(board.samples());
+    let expected = replay(&table(), board.samples());
     let equal = board.estimates().zip(&expected).filter(|(found, expected)| **found == expected.estimate).count();
     println!(
         "{equal} of {} estimates of the board are, bit for bit, the host's of the same samples",

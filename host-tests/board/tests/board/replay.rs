@@ -2,13 +2,13 @@
 
 use board_tests::{Board, replay};
 use rig_twin::{MotionProgram, Scenario};
-use telemetry::{Command, Event, RequestOutcome};
+use telemetry::{Command, Event, RequestOutcome, TareMode};
 use virtual_due::WiredRig;
 
 /// Checks that every estimate, uncertainty and contact of the board equals the host's of the same samples. The first
 /// `skipped` samples are of an earlier boot, which had no table.
 pub fn assert_replays(board: &Board, skipped: usize) {
-    let expected = replay(board.samples().skip(skipped));
+    let expected = replay(&table(), board.samples().skip(skipped));
     let found: Vec<_> = board.estimates().copied().collect();
     assert!(found.len() > 100, "{} estimates", found.len());
     // The last sample may have left the board before its estimate.
@@ -45,7 +45,7 @@ fn every_estimate_is_the_hosts_after_a_tare() {
     board.run_ms(2000);
     board.swing(&MotionProgram::new(Scenario::FreeSwing, 6), 3);
     board.run_ms(2500);
-    assert_eq!(board.request(Command::Tare), RequestOutcome::Ack);
+    assert_eq!(board.request(Command::Tare(TareMode::Force)), RequestOutcome::Ack);
     board.swing(&MotionProgram::new(Scenario::FreeSwing, 6), 3);
     assert_eq!(board.samples().next_back().expect("samples come").tare_epoch, 2);
     assert_replays(&board, 0);

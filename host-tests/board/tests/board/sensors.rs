@@ -4,9 +4,12 @@ use std::collections::BTreeSet;
 
 use board_tests::Board;
 use rig_twin::Scenario;
-use telemetry::{BEND_SENSORS, SEGMENTS, SensorState};
+use telemetry::SensorState;
 use virtual_due::WiredRig;
 use virtual_due::rig::{ImuFault, Rail};
+
+const SEGMENTS: usize = 6;
+const BEND_SENSORS: usize = 12;
 
 /// A board whose sensors have all come up.
 fn ready() -> Board {

@@ -2,7 +2,7 @@
 
 use board_tests::Board;
 use rig_twin::{MotionProgram, Push, Scenario};
-use telemetry::{Command, Event, Message, RequestOutcome, SEGMENTS, SegmentUncertainty};
+use telemetry::{Command, Event, Message, RequestOutcome, SegmentUncertainty};
 use virtual_due::{CYCLES_PER_SECOND, WiredRig};
 
 use crate::replay::assert_replays;
@@ -64,7 +64,7 @@ fn the_tips_ellipse_is_known_four_times_a_second_and_wider_than_the_bases() {
     assert!((7..=8).contains(&known.len()), "{}", known.len());
     for uncertainty in known {
         let ends: Vec<_> = uncertainty.segments.iter().filter_map(SegmentUncertainty::end_m2).collect();
-        assert_eq!(ends.len(), SEGMENTS, "{uncertainty:?}");
+        assert_eq!(ends.len(), 6, "{uncertainty:?}");
         let spread = |[xx, _, yy]: [f64; 3]| xx + yy;
         assert!(ends.windows(2).all(|pair| spread(pair[0]) < spread(pair[1])), "{ends:?}");
     }

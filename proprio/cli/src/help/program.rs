@@ -13,7 +13,7 @@ impl Help for Error {
             Self::Link(error) => return error.help(),
             Self::Drive(error) => return error.help(),
             Self::Flash(error) => return error.help(),
-            Self::TableImage(error) => return error.help(),
+            Self::TableImage { source, .. } => return source.help(),
             Self::Transfer(error) => return error.help(),
             Self::Tare(error) => return error.help(),
             Self::OutputTwice(_) => "give the output another name",
