@@ -12,7 +12,7 @@ use clap_complete::Shell;
 pub use force::ForceArgs;
 pub use link::{
     ConvertArgs, DriveArgs, FlashArgs, LinkArgs, MonitorArgs, PortsArgs, RecordArgs, RecoverArgs, StatusArgs,
-    TableArgs, TableCommand,
+    TableArgs, TableCommand, TareArgs,
 };
 
 /// Colours of help and errors; off where stderr is not a terminal or NO_COLOR is set.
@@ -53,6 +53,8 @@ pub enum Command {
     Ports(PortsArgs),
     /// Show the status of a board: versions, sensors, rates, losses
     Status(StatusArgs),
+    /// Tare a board: its arm rests in the reference pose now, which is refused while the arm moves
+    Tare(TareArgs),
     /// Record a board's data to an MCAP file; opening the programming port restarts the board, and the recording has its tare
     Record(RecordArgs),
     /// Drive the arm's pressures, and vent them at the end

@@ -3,10 +3,10 @@
 use std::io;
 use std::path::PathBuf;
 
-use board_core::FULL_SCALE_PA;
-use proprio_link::LinkError;
+use board_table::MAX_FULL_SCALE_PA;
 use proprio_link::drive::DriveError;
 use proprio_link::table::{TableImageError, TransferError};
+use proprio_link::{LinkError, TareError};
 use proprio_session::DurationError;
 use proprio_simulation::SimulationError;
 
@@ -33,6 +33,9 @@ pub enum Error {
     /// A board cannot be driven, or not any more.
     #[error(transparent)]
     Drive(#[from] DriveError),
+    /// A board was not tared.
+    #[error(transparent)]
+    Tare(#[from] TareError),
     /// A table cannot be stored on a board.
     #[error("{name}: {source}")]
     TableImage {
@@ -65,8 +68,8 @@ pub enum Error {
     /// A duration that cannot be recorded or driven.
     #[error(transparent)]
     Seconds(#[from] DurationError),
-    /// A pressure over the regulators' full scale.
-    #[error("--kpa {0}, expected 0 to {most}", most = FULL_SCALE_PA / 1000)]
+    /// A pressure over the full scale of any regulator.
+    #[error("--kpa {0}, expected 0 to {most}", most = MAX_FULL_SCALE_PA / 1000)]
     Pressure(f64),
     /// A rate of change of pressures that is not positive.
     #[error("--ramp {0} kPa/s, expected more than 0")]

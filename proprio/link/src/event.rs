@@ -4,7 +4,7 @@ use std::fmt;
 use std::sync::Arc;
 
 use proprio_session::HostNs;
-use telemetry::{DecodeError, Message, PROTOCOL_VERSION, SCHEMA};
+use telemetry::{DecodeError, Message, PROTOCOL_VERSION, SCHEMA, protocol_2};
 
 /// An event on the link.
 #[derive(Debug, Clone)]
@@ -83,8 +83,9 @@ impl fmt::Display for Mismatch {
         match self {
             Self::Protocol(version) => write!(
                 f,
-                "the board speaks protocol version {version}, proprio {host} version {PROTOCOL_VERSION}: flash the \
-                 firmware of this release"
+                "the board speaks protocol version {version}, proprio {host} versions {} and {PROTOCOL_VERSION}: flash the \
+                 firmware of this release",
+                protocol_2::VERSION
             ),
             Self::Schema { board, firmware } => {
                 let firmware = firmware.as_deref().unwrap_or("of another version");

@@ -81,6 +81,12 @@ impl StreamDecoder {
         self.hello.as_ref()
     }
 
+    /// Version of the protocol that the board uses, once a frame has come since the line was opened.
+    #[must_use]
+    pub fn version(&self) -> Option<u8> {
+        self.decoder.version()
+    }
+
     /// Restarts of the board since its first `Hello`.
     #[must_use]
     pub fn restarts(&self) -> u32 {

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
 use proprio_link::Baud;
-use telemetry::REGULATORS;
+use telemetry::MAX_REGULATORS;
 
 use super::force::ForceArgs;
 
@@ -115,6 +115,15 @@ pub struct StatusArgs {
 }
 
 #[derive(Debug, Args)]
+pub struct TareArgs {
+    /// Tare an arm that moves, too
+    #[arg(long)]
+    pub force: bool,
+    #[command(flatten)]
+    pub link: LinkArgs,
+}
+
+#[derive(Debug, Args)]
 pub struct RecordArgs {
     #[command(flatten)]
     pub link: LinkArgs,
@@ -128,12 +137,12 @@ pub struct RecordArgs {
 
 #[derive(Debug, Args)]
 pub struct DriveArgs {
-    /// Profile: pressures over time, columns time_s and pressure1_kpa to pressure6_kpa
+    /// Profile: pressures over time, columns time_s and pressure1_kpa, pressure2_kpa, … for all regulators of the board
     #[arg(value_name = "PROFILE.csv", required_unless_present = "kpa", conflicts_with = "kpa")]
     pub profile: Option<PathBuf>,
-    /// Pressures to hold instead: module 1 right, left, module 2 right, left, module 3 right, left
-    #[arg(long, value_name = "KPA,KPA,KPA,KPA,KPA,KPA", value_parser = pressures_kpa, allow_negative_numbers = true)]
-    pub kpa: Option<[f64; REGULATORS]>,
+    /// Pressures to hold instead, one for each regulator of the board: module 1 right, left, module 2 right, left, …
+    #[arg(long, value_name = "KPA,KPA,…", value_parser = pressures_kpa, allow_negative_numbers = true)]
+    pub kpa: Option<Pressures>,
     /// Time to hold them, s [default: until Ctrl-C]
     #[arg(long, value_name = "S", requires = "kpa", allow_negative_numbers = true)]
     pub seconds: Option<f64>,
@@ -147,10 +156,17 @@ pub struct DriveArgs {
     pub link: LinkArgs,
 }
 
-fn pressures_kpa(text: &str) -> Result<[f64; REGULATORS], String> {
+/// Pressures of all regulators, kPa. A type of its own: of a `Vec`, clap would take the option several times.
+#[derive(Debug, Clone)]
+pub struct Pressures(pub Vec<f64>);
+
+fn pressures_kpa(text: &str) -> Result<Pressures, String> {
     let pressures = text.split(',').map(|part| part.trim().parse().map_err(|_| format!("\"{part}\" is not a number")));
     let pressures = pressures.collect::<Result<Vec<f64>, _>>()?;
-    pressures.try_into().map_err(|found: Vec<f64>| format!("{} pressures, expected {REGULATORS}", found.len()))
+    if pressures.len() > MAX_REGULATORS {
+        return Err(format!("{} pressures, a board has {MAX_REGULATORS} regulators at most", pressures.len()));
+    }
+    Ok(Pressures(pressures))
 }
 
 #[derive(Debug, Args)]

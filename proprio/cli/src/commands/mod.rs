@@ -17,6 +17,7 @@ mod report;
 mod simulate;
 mod status;
 mod table;
+mod tare;
 mod truth;
 mod tune;
 mod warnings;
@@ -42,6 +43,7 @@ impl Command {
             Self::Table(args) => table::run(&args.command),
             Self::Ports(args) => ports::run(&args),
             Self::Status(args) => status::run(&args),
+            Self::Tare(args) => tare::run(&args),
             Self::Record(args) => record::run(&args),
             Self::Drive(args) => drive::run(&args),
             Self::Monitor(args) => monitor::run(&args),

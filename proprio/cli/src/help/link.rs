@@ -5,7 +5,7 @@ use std::io;
 use board_table::TableError;
 use proprio_link::drive::DriveError;
 use proprio_link::table::{TableImageError, TransferError};
-use proprio_link::{LinkError, RequestError};
+use proprio_link::{LinkError, RequestError, TareError};
 
 use super::Help;
 
@@ -78,9 +78,21 @@ impl Help for TransferError {
     }
 }
 
+impl Help for TareError {
+    fn help(&self) -> String {
+        match self {
+            Self::Moving(_) => "let it rest, or use --force".to_owned(),
+            Self::Link(error) => error.help(),
+        }
+    }
+}
+
 impl Help for DriveError {
     fn help(&self) -> String {
         let help = match self {
+            Self::Regulators { .. } => {
+                "give one column of the profile, or one value of --kpa, for each regulator; `proprio status` shows their number"
+            }
             Self::OtherTable(_) => {
                 "store this table on the board with `proprio table push`, or give the board's (`proprio table pull`)"
             }

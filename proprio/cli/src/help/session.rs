@@ -26,7 +26,7 @@ impl Help for SessionProblem {
             Self::TimeUnit { rate_hz, factor, .. } => return time_unit(*rate_hz, *factor),
             Self::Backwards { from_s, to_s } => return backwards(*from_s, *to_s),
             Self::DuplicateColumn(_) => "remove or rename one of them",
-            Self::OtherArm { .. } | Self::RecordedSegments(_) => {
+            Self::OtherArm { .. } | Self::RecordedSegments { .. } => {
                 "take the arm description or table of the arm that was recorded"
             }
             Self::RowLength { .. } => {
@@ -37,6 +37,7 @@ impl Help for SessionProblem {
             Self::NoTime | Self::Time(_) | Self::Clock(_) => "give every row its time in seconds",
             Self::NoPressure => "give every regulator its pressure in every row; 0 is vented",
             Self::Pressure(_) => "write pressures over the atmosphere's: in kPa in _kpa, in Pa in _pa",
+            Self::TooManyRegulators(_) => "remove the columns of the regulators that the board does not have",
             Self::NoMoments => "give at least one row",
             Self::NotANumber(_) => "write numbers with a decimal point, and leave the cell of a missing reading empty",
             Self::NotFinite(_) => "leave the cell empty",
@@ -117,7 +118,7 @@ fn content(found: FileContent, expected: FileContent) -> &'static str {
             "remove the line, and write commas between the columns and decimal points in the numbers"
         }
         (FileContent::Html, _) => "download the file itself, as raw data",
-        (_, FileContent::Profile) => "a profile has time_s and pressure1_kpa to pressure6_kpa: docs/how-to/driving.md",
+        (_, FileContent::Profile) => "a profile has time_s and pressure1_kpa, pressure2_kpa, …: docs/how-to/driving.md",
         (_, FileContent::Camera) => {
             "a camera's file has time_s, and x, y and heading of each marker: docs/reference/files.md"
         }

@@ -21,7 +21,7 @@ pub fn write(
     mut file: OutputFile,
     progress: &mut dyn Progress,
 ) -> Result<(OutputFile, Vec<String>), Error> {
-    let bend_sensors = reader.bend_sensors().take(reader.segments_read()).collect();
+    let bend_sensors = reader.bend_sensors().take(reader.segments()).collect();
     let (has_truth, has_true_headings) = (reader.has_truth(), reader.has_true_headings());
     let layout = Layout { bend_sensors, has_truth, has_true_headings };
     layout.write_header(&mut file).map_err(|error| file.error(error))?;
@@ -29,7 +29,7 @@ pub fn write(
     while let Some(row) = reader.next_row()? {
         starts += u64::from(row.starts);
         before += u64::from(!row.is_recorded());
-        estimates += u64::from(row.board.is_some_and(|board| board.estimate.is_some()));
+        estimates += u64::from(row.board.as_ref().is_some_and(|board| board.estimate.is_some()));
         layout.write_row(&mut file, &row, starts.saturating_sub(1)).map_err(|error| file.error(error))?;
         progress.advance(WORK, reader.progress());
     }

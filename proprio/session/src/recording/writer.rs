@@ -7,7 +7,7 @@ use std::io::{self, Write};
 use mcap::records::{MessageHeader, Metadata};
 use mcap::write::NoSeek;
 use mcap::{Attachment, McapError, WriteOptions};
-use telemetry::{Estimate, Hello, Message, SCHEMA, SEGMENTS, Sample, SetPressures};
+use telemetry::{Estimate, Hello, Message, SCHEMA, Sample, SetPressures};
 
 use super::messages;
 use super::schema::{self, Schema};
@@ -30,6 +30,8 @@ pub struct Recorder<W: Write> {
     hello: Option<Hello>,
     /// Tick and time of the last sample, which its estimate follows at once.
     sample: Option<(u32, HostNs)>,
+    /// Segments of the board's arm.
+    segments: usize,
     flushed: HostNs,
     raw_messages: u32,
     /// Bytes of the history since the last flush.
@@ -101,6 +103,7 @@ impl<W: Write> Recorder<W> {
             clock,
             hello: None,
             sample: None,
+            segments: 0,
             flushed: at,
             raw_messages: 0,
             history_bytes: 0,
@@ -180,14 +183,16 @@ impl<W: Write> Recorder<W> {
                 self.write(self.channels.uncertainty, of.tick, at, stamp, &messages::uncertainty(stamp, of))
             }
             Message::Event(telemetry::Event::Contact(tick, touched)) => self.contact(at, *tick, *touched),
-            Message::Event(_) | Message::Reply(_) | Message::Table(_) | Message::TableData(_) => Ok(()),
+            Message::Event(_) | Message::Reply(_) | Message::Table(_) | Message::TableData(_) | Message::Tare(_) => {
+                Ok(())
+            }
         }
     }
 
-    fn contact(&mut self, at: HostNs, tick: u32, touched: [bool; SEGMENTS]) -> io::Result<()> {
+    fn contact(&mut self, at: HostNs, tick: u32, mask: u8) -> io::Result<()> {
         let channel = channel_once(&mut self.channels.contact, &mut self.mcap, CONTACT, &schema::CONTACT)?;
         let stamp = self.stamp(tick, at);
-        self.write(channel, tick, at, stamp, &messages::contact(stamp, touched))
+        self.write(channel, tick, at, stamp, &messages::contact(stamp, mask, self.segments))
     }
 
     /// Writes the truth of the sample with this tick, which was written before.
@@ -256,6 +261,7 @@ impl<W: Write> Recorder<W> {
     fn sample(&mut self, at: HostNs, sample: &Sample) -> io::Result<()> {
         let stamp = self.clock.host_ns(at, sample.time_us);
         self.sample = Some((sample.tick, stamp));
+        self.segments = sample.imu.len();
         self.samples += 1;
         self.write(self.channels.samples, sample.tick, at, stamp, &messages::sample(stamp, sample))
     }
