@@ -5,7 +5,7 @@ use std::error::Error;
 use std::fs::File;
 use std::io::BufWriter;
 
-use board_tests::{Board, View, replay};
+use board_tests::{Board, View, replay, table};
 use proprio_simulation::{ImuColumns, Recorded, SessionWriter};
 use rig_twin::{MotionProgram, Scenario};
 use telemetry::{Command, RequestOutcome};
@@ -56,8 +56,8 @@ fn record(board: &Board, path: &str) -> Result<(), Box<dyn Error>> {
         let Some(truth) = board.truths().get(sample.tick as usize) else { continue };
         session.write(&Recorded {
             time_us: sample.time_us,
-            counts: sample.bend,
-            quaternions: sample.imu,
+            counts: sample.bend.as_slice().try_into()?,
+            quaternions: sample.imu.as_slice().try_into()?,
             truth: *truth,
         })?;
     }
