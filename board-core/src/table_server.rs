@@ -3,7 +3,7 @@
 //! A page of the flash takes some milliseconds to write, so the server runs in a task of its own, of the lowest priority,
 //! and one request at a time.
 
-use board_table::{Announcement, BoardTable, TableError, TableStore};
+use board_table::{Announcement, BoardTable, MAX_SEGMENTS, TableError, TableStore};
 use embedded_storage::Storage;
 use heapless::Vec;
 use telemetry::{Command, Message, Refusal, SEGMENTS, TABLE_CHUNK_BYTES, TableChunk, TableState, TableStatus};
@@ -33,7 +33,7 @@ impl<F: Storage + AsRef<[u8]>> TableServer<F> {
 
     /// Reads the table into `table`, which is empty if there is no usable one. Returns its state.
     #[inline(never)]
-    pub fn load(&self, table: &mut BoardTable<SEGMENTS>) -> TableState {
+    pub fn load(&self, table: &mut BoardTable<MAX_SEGMENTS>) -> TableState {
         let is_usable = self.store.active().is_none_or(|stored| table.read(stored.image, WINDOW as u16).is_ok());
         let state = self.state();
         if is_usable { state } else { TableState { status: TableStatus::Unusable, ..state } }
@@ -98,7 +98,7 @@ impl<F: Storage + AsRef<[u8]>> TableServer<F> {
 fn refusal(error: TableError) -> Refusal {
     match error {
         TableError::TooLong => Refusal::TableTooLong,
-        TableError::Image => Refusal::TableImage,
+        TableError::Image | TableError::Wiring(_) => Refusal::TableImage,
         TableError::Segments | TableError::Window => Refusal::TableCapacity,
         TableError::NotBegun | TableError::Order | TableError::Incomplete => Refusal::TableOrder,
         TableError::Checksum => Refusal::TableChecksum,

@@ -2,8 +2,8 @@
 
 use atsam3x8e_hal::crash;
 use atsam3x8e_hal::reset::Cause;
-use board_table::BoardTable;
-use telemetry::{Hello, PROTOCOL_VERSION, ResetCause, SCHEMA, SEGMENTS, Text};
+use board_table::{BoardTable, MAX_SEGMENTS};
+use telemetry::{Hello, PROTOCOL_VERSION, ResetCause, SCHEMA, Text};
 
 /// The board's `Hello`, of a board without a table.
 pub fn hello(chip: [u8; 16], reset: ResetCause, boot: u32, last_panic: Option<&crash::Text>) -> Hello {
@@ -22,7 +22,7 @@ pub fn hello(chip: [u8; 16], reset: ResetCause, boot: u32, last_panic: Option<&c
 }
 
 /// Enters the board's table in its `Hello`.
-pub fn enter_table(hello: &mut Hello, table: &BoardTable<SEGMENTS>) {
+pub fn enter_table(hello: &mut Hello, table: &BoardTable<MAX_SEGMENTS>) {
     hello.arm = text(table.arm());
     hello.table = table.checksum();
 }

@@ -46,12 +46,12 @@ mod app {
     use atsam3x8e_hal::tc::{Mono, prelude::*};
     use atsam3x8e_hal::{reset, twi};
     use board_core::{Actuator, BoardEstimator, Schedule};
-    use board_table::BoardTable;
+    use board_table::{BoardTable, MAX_SEGMENTS};
     use estimator_core::{ArmConfig, Q};
     use rtic_sync::channel::Receiver;
     use rtic_sync::make_channel;
     use rtic_sync::signal::{Signal, SignalReader};
-    use telemetry::{Request, SEGMENTS, TableStatus};
+    use telemetry::{Request, TableStatus};
 
     use crate::board::{self, Buffers};
     use crate::command_task::{CommandTask, Control, TABLE_REQUESTS};
@@ -84,7 +84,7 @@ mod app {
         buffers: Buffers = Buffers::new(),
         for_commands: Signal<Tick> = Signal::new(),
         for_estimation: Signal<Tick> = Signal::new(),
-        table: BoardTable<SEGMENTS> = BoardTable::new(),
+        table: MaybeUninit<BoardTable<MAX_SEGMENTS>> = MaybeUninit::uninit(),
         config: MaybeUninit<ArmConfig<'static, Q>> = MaybeUninit::uninit(),
         estimator: MaybeUninit<BoardEstimator> = MaybeUninit::uninit(),
     ])]
@@ -94,14 +94,15 @@ mod app {
             Err(error) => panic!("the board does not come up: {error}"),
         };
         let safe_mode = board.boots.safe_mode();
-        let table_state = board.tables.load(cx.local.table);
-        device_info::enter_table(&mut board.hello, cx.local.table);
+        let table = cx.local.table.write(BoardTable::new());
+        let table_state = board.tables.load(table);
+        device_info::enter_table(&mut board.hello, table);
         log_boot(&board.hello, &table_state, safe_mode);
         let (to_commands, command_ticks) = cx.local.for_commands.split();
         let (to_estimation, estimation_ticks) = cx.local.for_estimation.split();
         let (to_table, table_requests) = make_channel!(Request, TABLE_REQUESTS);
         let has_table = table_state.status == TableStatus::InUse;
-        let config = cx.local.config.write(cx.local.table.config().unwrap_or(ArmConfig::uncalibrated(&[])));
+        let config = cx.local.config.write(table.config().unwrap_or(ArmConfig::uncalibrated(&[])));
         let estimator = place_estimator(cx.local.estimator, config);
         let estimation_task = EstimationTask::new(board.imus, estimator, config, board.hello, table_state, safe_mode);
         // Each is spawned once and never ends, so that there is room for it.

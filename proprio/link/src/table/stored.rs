@@ -51,7 +51,7 @@ impl StoredTable {
         let compiled = file.compile::<Q>(TICK_HZ)?;
         let checksum = compiled.checksum();
         let mut image = vec![0; IMAGE_ROOM];
-        let length = write_image(&file.arm, checksum, &compiled.config(), &mut image)?;
+        let length = write_image(&file.arm, checksum, &compiled.config(), None, &mut image)?;
         image.truncate(length);
         let mut encoder = ZlibEncoder::new(Vec::new(), Compression::best());
         encoder.write_all(toml)?;
