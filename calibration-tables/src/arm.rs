@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::board::BoardToml;
 use crate::contact::ContactToml;
 use crate::drift::{DriftKind, DriftToml};
 use crate::error::{FileError, ensure, within};
@@ -45,6 +46,9 @@ pub struct ArmFile {
     /// The segments from the base to the tip.
     #[serde(rename = "segment")]
     pub segments: Vec<SegmentToml>,
+    /// Wiring to the board; `None`: the reference wiring of docs/how-to/wiring.md.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub board: Option<BoardToml>,
 }
 
 /// `[tare]`: the arm rests in its reference pose for the first `seconds`.
@@ -131,6 +135,7 @@ impl ArmFile {
                 .map_or(Ok(()), |coupled| coupled.check(&format!("segment[{}].coupled_to", i + 1), i + 1))?;
             segment.contact.map_or(Ok(()), |limit| limit.check(&format!("segment[{}].contact", i + 1)))?;
         }
+        self.board.as_ref().map_or(Ok(()), |board| board.check(&self.segments))?;
         let length = self.length_mm();
         ensure(length <= MAX_ARM_MM, "segment", &format!("{length} mm of arm"), &format!("at most {MAX_ARM_MM} mm"))
     }
