@@ -52,6 +52,7 @@
 
 mod actuator;
 mod arm;
+mod arm_file;
 mod bno055;
 mod camera;
 mod constants;

@@ -3,7 +3,7 @@
 use std::io;
 use std::path::Path;
 
-use proprio_session::{OutputFile, Progress};
+use proprio_session::{LoadedTable, OutputFile, Progress};
 use proprio_simulation::{CameraWriter, ImuColumns, SessionWriter, Simulation};
 use rig_twin::{Camera, Layout, Motion, Scenario, Setup};
 
@@ -15,7 +15,7 @@ use crate::terminal;
 pub fn run(args: &SimulateArgs) -> Result<(), Error> {
     let setup = Setup {
         arm_seed: args.arm_seed,
-        layout: Layout::default(),
+        layout: args.arm.as_deref().map_or_else(|| Ok(Layout::default()), layout)?,
         scenario: args.scenario.into(),
         motion: args.motion.into(),
         seed: args.seed,
@@ -53,6 +53,12 @@ pub fn run(args: &SimulateArgs) -> Result<(), Error> {
         terminal::eprint_line(&file.finish()?);
     }
     Ok(())
+}
+
+/// Layout of the arm of a file.
+fn layout(path: &Path) -> Result<Layout, Error> {
+    let arm = LoadedTable::load(path)?;
+    Layout::of_file(&arm.file).map_err(|source| Error::Layout { path: path.to_owned(), source })
 }
 
 /// The error of a file that cannot be written.

@@ -15,6 +15,7 @@ impl Help for Error {
             Self::Flash(error) => return error.help(),
             Self::TableImage(error) => return error.help(),
             Self::Transfer(error) => return error.help(),
+            Self::Layout { .. } => "simulate an arm of 1 to 8 segments",
             Self::OutputTwice(_) => "give the output another name",
             Self::Stdout(_) => "write to a disk with free space, or use --out",
             Self::SessionWithoutTable => "give the arm's table with --table",
