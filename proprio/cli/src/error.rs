@@ -11,6 +11,7 @@ use proprio_session::DurationError;
 use proprio_simulation::SimulationError;
 use rig_twin::LayoutError;
 
+use crate::arm::NewArmError;
 use crate::flash::FlashError;
 
 /// An error that stops a command.
@@ -35,14 +36,22 @@ pub enum Error {
     #[error(transparent)]
     Drive(#[from] DriveError),
     /// A table cannot be stored on a board.
-    #[error(transparent)]
-    TableImage(#[from] TableImageError),
+    #[error("{name}: {source}")]
+    TableImage {
+        /// Name of the table's file.
+        name: String,
+        /// The reason.
+        source: TableImageError,
+    },
     /// A table was not transferred.
     #[error(transparent)]
     Transfer(#[from] TransferError),
     /// A board cannot be flashed.
     #[error(transparent)]
     Flash(#[from] FlashError),
+    /// A new arm cannot be described.
+    #[error(transparent)]
+    NewArm(#[from] NewArmError),
     /// A session cannot be simulated.
     #[error(transparent)]
     Simulation(#[from] SimulationError),
@@ -63,6 +72,9 @@ pub enum Error {
     /// The monitor is given a session and no table.
     #[error("a session is shown with the estimates of a replay, which needs a table")]
     SessionWithoutTable,
+    /// A session is checked without a table.
+    #[error("{}: a session is checked by the table of its arm", .0.display())]
+    CheckWithoutTable(PathBuf),
     /// `--out` with several sessions.
     #[error("--out takes the estimates of one session, found {0} sessions")]
     OneSession(usize),

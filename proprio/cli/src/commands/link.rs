@@ -53,7 +53,8 @@ fn flash_with(table: Option<&LoadedTable>) -> Result<Flash, Error> {
         Some(table) => stored(table)?,
         None => ArmFile::parse(PLANAR_6_TABLE)
             .map_err(TableImageError::File)
-            .and_then(|file| StoredTable::new(&file, PLANAR_6_TABLE.as_bytes()))?,
+            .and_then(|file| StoredTable::new(&file, PLANAR_6_TABLE.as_bytes()))
+            .map_err(|source| Error::TableImage { name: "the reference arm's table".to_owned(), source })?,
     };
     Ok(Flash::Table(stored))
 }
@@ -62,7 +63,8 @@ fn flash_with(table: Option<&LoadedTable>) -> Result<Flash, Error> {
 pub fn stored(table: &LoadedTable) -> Result<StoredTable, Error> {
     // An arm description is an error of its file.
     table.required_columns()?;
-    Ok(StoredTable::new(&table.file, &table.toml()?)?)
+    StoredTable::new(&table.file, &table.toml()?)
+        .map_err(|source| Error::TableImage { name: table.path.display().to_string(), source })
 }
 
 /// Begins a recording of the link in a new file, with the table attached.

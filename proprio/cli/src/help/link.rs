@@ -2,6 +2,7 @@
 
 use std::io;
 
+use board_table::TableError;
 use proprio_link::drive::DriveError;
 use proprio_link::table::{TableImageError, TransferError};
 use proprio_link::{LinkError, RequestError};
@@ -51,6 +52,13 @@ impl Help for TableImageError {
     fn help(&self) -> String {
         match self {
             Self::File(error) => error.help(),
+            Self::Segments(_) | Self::BendSensors(_) => {
+                "a host alone can replay and monitor such an arm; the board needs a smaller one".to_owned()
+            }
+            Self::ReferencePins { .. } => {
+                "give each segment its pins in a section `[board]` (docs/how-to/wiring.md)".to_owned()
+            }
+            Self::Table(TableError::Wiring(_)) => "correct the section `[board]` (docs/how-to/wiring.md)".to_owned(),
             Self::Table(_) => "give a table of a smaller arm".to_owned(),
             Self::Source(_) => "write the table again".to_owned(),
         }
