@@ -218,7 +218,10 @@ pub struct SimulateArgs {
     /// Seed of the motion, the pushes and all noise of the session
     #[arg(long, value_name = "K")]
     pub seed: u64,
-    /// Seed of the arm's tolerances and its sensors' flaws; 0 is the reference arm
+    /// Arm description or table of the arm: its segments, their lengths and their sensors; the reference arm by default
+    #[arg(long, value_name = "ARM.toml")]
+    pub arm: Option<PathBuf>,
+    /// Seed of the arm's tolerances and its sensors' flaws; 0: those of the reference arm
     #[arg(long, value_name = "K", default_value_t = 0)]
     pub arm_seed: u64,
     /// Samples per second, 1 to 1000

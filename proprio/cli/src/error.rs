@@ -9,6 +9,7 @@ use proprio_link::table::{TableImageError, TransferError};
 use proprio_link::{LinkError, TareError};
 use proprio_session::DurationError;
 use proprio_simulation::SimulationError;
+use rig_twin::LayoutError;
 
 use crate::arm::NewArmError;
 use crate::flash::FlashError;
@@ -57,6 +58,14 @@ pub enum Error {
     /// A session cannot be simulated.
     #[error(transparent)]
     Simulation(#[from] SimulationError),
+    /// An arm that the simulation has no room for.
+    #[error("{}: {source}", path.display())]
+    Layout {
+        /// The arm's file.
+        path: PathBuf,
+        /// The reason.
+        source: LayoutError,
+    },
     /// Two outputs of one name.
     #[error("{}: cannot hold two outputs of this command", .0.display())]
     OutputTwice(PathBuf),

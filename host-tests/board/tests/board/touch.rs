@@ -19,7 +19,7 @@ fn pushed(seed: u64, seconds: u64) -> Board {
     board.run_ms(2000);
     assert_eq!(board.request(Command::Arm), RequestOutcome::Ack);
     while board.machine.seconds() < seconds as f64 {
-        board.set_pressures(program.duties(board.machine.seconds()));
+        board.set_pressures(&program.duties(board.machine.seconds()));
         board.run_ms(50);
     }
     board

@@ -17,6 +17,7 @@ impl Help for Error {
             Self::TableImage { source, .. } => return source.help(),
             Self::Transfer(error) => return error.help(),
             Self::Tare(error) => return error.help(),
+            Self::Layout { .. } => "simulate an arm of 1 to 8 segments",
             Self::NewArm(error) => return error.help(),
             Self::OutputTwice(_) => "give the output another name",
             Self::Stdout(_) => "write to a disk with free space, or use --out",

@@ -48,11 +48,11 @@ impl SyntheticBoard {
         let read = self.simulation.next()?;
         let tick = self.tick;
         self.tick += 1;
-        let imu = if tick < IMUS_UP { [None; SEGMENTS] } else { read.quaternions };
+        let imu = if tick < IMUS_UP { [None; SEGMENTS] } else { read.quaternions.into_array().expect("six segments") };
         if self.estimator.needs_first_tare(tick, imu.iter().all(Option::is_some)) {
             self.estimator.tare();
         }
-        let mut bend = read.counts;
+        let mut bend = read.counts.into_array().expect("six segments");
         if tick % 50 == 7 {
             bend[(tick / 50) as usize % BEND_SENSORS] = None;
         }

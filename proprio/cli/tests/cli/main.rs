@@ -37,6 +37,7 @@ mod report;
 mod report_numbers;
 mod restarts;
 mod simulate;
+mod simulate_arms;
 mod smooth;
 mod streams;
 mod truth_align;
