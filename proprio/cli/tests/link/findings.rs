@@ -23,7 +23,13 @@ fn send_one_channel(line: &Line, ticks: std::ops::Range<u32>, tare_epoch: u8, is
             imu[3] = imu[2];
         }
         let time_us = u64::from(tick) * 10_000;
-        line.board().send(&Message::Sample(Sample { tick, time_us, tare_epoch, bend: read.counts, imu }));
+        line.board().send(&Message::Sample(Sample {
+            tick,
+            time_us,
+            tare_epoch,
+            bend: read.counts.into_iter().collect(),
+            imu: imu.into_iter().collect(),
+        }));
     }
 }
 
