@@ -100,7 +100,7 @@ fn slower(hello: &Hello) -> String {
 }
 
 fn up(tick: u32) -> String {
-    format!("up for {:.1} s", f64::from(tick) / telemetry::TICK_HZ)
+    format!("up for {:.1} s", f64::from(tick) / TICK_HZ)
 }
 
 /// Uncertainty of the tip.

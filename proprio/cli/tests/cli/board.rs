@@ -6,12 +6,16 @@ use estimator_core::Q;
 use proprio_simulation::Simulation;
 use rig_twin::Scenario;
 use telemetry::{
-    Actuation, BEND_SENSORS, Encoder, Estimate, Health, Hello, MAX_FRAME, Message, PROTOCOL_VERSION, REGULATORS,
-    ResetCause, SCHEMA, SEGMENTS, Sample, SensorHealth, SensorState, TICK_HZ, Text,
+    Actuation, Encoder, Estimate, Health, Hello, MAX_FRAME, Message, PROTOCOL_VERSION, ResetCause, SCHEMA, Sample,
+    SensorHealth, SensorState, TICK_HZ, Text,
 };
 
 use super::common::table;
 
+/// Segments of the reference arm.
+const SEGMENTS: usize = 6;
+/// Bend sensors of the reference arm.
+const BEND_SENSORS: usize = 2 * SEGMENTS;
 /// Tick at which the IMUs come up.
 const IMUS_UP: u32 = 80;
 
@@ -52,7 +56,7 @@ impl SyntheticBoard {
         if self.estimator.needs_first_tare(tick, imu.iter().all(Option::is_some)) {
             self.estimator.tare();
         }
-        let mut bend = read.counts.into_array().expect("six segments");
+        let mut bend = read.counts;
         if tick % 50 == 7 {
             bend[(tick / 50) as usize % BEND_SENSORS] = None;
         }
@@ -60,14 +64,14 @@ impl SyntheticBoard {
             tick,
             time_us: u64::from(tick) * 10_000 + 137,
             tare_epoch: self.estimator.tare_epoch(),
-            bend,
-            imu,
+            bend: bend.into_iter().collect(),
+            imu: imu.into_iter().collect(),
         };
         let estimate = self.estimator.update(&sample);
         let contact = self.estimator.contact_event(tick);
-        let mut messages = Vec::new();
+        let mut messages: Vec<Message> = Vec::new();
         messages.extend(tick.is_multiple_of(100).then(|| Message::Hello(self.hello())));
-        messages.extend([Message::Sample(sample), Message::Estimate(estimate)]);
+        messages.extend([Message::Sample(sample), Message::Estimate(estimate.clone())]);
         messages.extend(contact.map(Message::Event));
         messages.extend(tick.is_multiple_of(25).then(|| Message::Uncertainty(self.estimator.uncertainty(tick))));
         messages.extend(tick.is_multiple_of(20).then(|| Message::Health(health(tick))));
@@ -85,6 +89,9 @@ impl SyntheticBoard {
             revision: text("synthetic"),
             arm: Text::try_from("planar-6").expect("it is short"),
             table: self.table,
+            segments: SEGMENTS as u8,
+            bend_sensors: BEND_SENSORS as u8,
+            regulators: 6,
             chip: *b"a synthetic Due!",
             reset: ResetCause::Pin,
             boot: self.boot,
@@ -110,8 +117,8 @@ fn health(tick: u32) -> Health {
     let ok = SensorHealth { state: SensorState::Ok, missed: 0 };
     Health {
         tick,
-        bend: [ok; BEND_SENSORS],
-        imu: [ok; SEGMENTS],
+        bend: [ok; BEND_SENSORS].into_iter().collect(),
+        imu: [ok; SEGMENTS].into_iter().collect(),
         max_estimate_latency_us: 3000,
         longest_imu_read_us: 2000,
         load_permille: 100,
@@ -122,6 +129,6 @@ fn health(tick: u32) -> Health {
         bus_recoveries: 0,
         saturations: 0,
         actuation: Actuation::Disarmed,
-        pressures_pa: [0; REGULATORS],
+        pressures_pa: [0; 6].into_iter().collect(),
     }
 }

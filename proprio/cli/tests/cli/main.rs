@@ -3,6 +3,7 @@
 mod accepted_sessions;
 mod align;
 mod align_faults;
+mod any_arm;
 mod bad_cells;
 mod bad_sessions;
 mod board;

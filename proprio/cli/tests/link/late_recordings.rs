@@ -11,10 +11,13 @@ use proprio_session::{HostClock, SessionReader};
 use proprio_simulation::Simulation;
 use rig_twin::Scenario;
 use serde_json::Value;
-use telemetry::{Estimate, Message, SEGMENTS, Sample, TICK_HZ};
+use telemetry::{Estimate, Message, Sample, TICK_HZ};
 
 use super::http::Page;
 use super::line::{Line, hello, wait_for};
+
+/// Segments of the reference arm.
+const SEGMENTS: usize = 6;
 
 fn table() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../calibration-tables/planar-6.toml")
@@ -43,9 +46,13 @@ impl<'t> Arm<'t> {
             }
             let tare_epoch = u8::from(self.tick >= self.tare);
             let time_us = u64::from(self.tick) * 10_000;
-            let bend = read.counts.into_array().expect("six segments");
-            let imu = read.quaternions.into_array().expect("six segments");
-            let sample = Sample { tick: self.tick, time_us, tare_epoch, bend, imu };
+            let sample = Sample {
+                tick: self.tick,
+                time_us,
+                tare_epoch,
+                bend: read.counts.into_iter().collect(),
+                imu: read.quaternions.into_iter().collect(),
+            };
             let estimate = self.estimator.update_full(&(&sample).into());
             let shape = self.estimator.shape(&estimate, Method::Fusion);
             let mut board = line.board();

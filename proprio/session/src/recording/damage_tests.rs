@@ -262,6 +262,18 @@ fn a_recording_without_bytes_is_read_from_its_samples() {
 }
 
 #[test]
+fn samples_of_a_recording_of_version_0_2_are_read_without_its_bytes() {
+    let recording = include_bytes!("../../../../host-tests/recordings/earlier-schema-hash.mcap");
+    let readings = |recording: &[u8]| {
+        let rows = rows(recording).expect("it is whole").0.into_iter();
+        rows.map(|row| row.sample).collect::<Vec<_>>()
+    };
+    let whole = readings(recording);
+    assert_eq!(whole.len(), 300);
+    assert_eq!(readings(&with_topics(recording, |topic| topic != RAW)), whole);
+}
+
+#[test]
 fn a_foreign_file_is_refused_with_its_topics() {
     let foreign = with_topics(&recording(), |_| false);
     let error = rows(&foreign).expect_err("it has no samples").to_string();
