@@ -116,7 +116,9 @@ fn pieces_that_come_twice_are_no_loss_and_hide_none() {
             }
         }
         let late = messages.iter().filter(|message| decoded.messages.contains(message)).count() - in_order;
-        if late > 0 { eprintln!("DEBUG seed {seed}: {late} late"); }
+        if late > 0 {
+            eprintln!("DEBUG seed {seed}: {late} late");
+        }
         assert_eq!(decoded.decoder.counts().lost as usize, messages.len() - in_order, "seed {seed}");
     }
 }
