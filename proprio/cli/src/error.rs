@@ -9,7 +9,9 @@ use proprio_link::table::{TableImageError, TransferError};
 use proprio_link::{LinkError, TareError};
 use proprio_session::DurationError;
 use proprio_simulation::SimulationError;
+use rig_twin::LayoutError;
 
+use crate::arm::NewArmError;
 use crate::flash::FlashError;
 
 /// An error that stops a command.
@@ -50,9 +52,20 @@ pub enum Error {
     /// A board cannot be flashed.
     #[error(transparent)]
     Flash(#[from] FlashError),
+    /// A new arm cannot be described.
+    #[error(transparent)]
+    NewArm(#[from] NewArmError),
     /// A session cannot be simulated.
     #[error(transparent)]
     Simulation(#[from] SimulationError),
+    /// An arm that the simulation has no room for.
+    #[error("{}: {source}", path.display())]
+    Layout {
+        /// The arm's file.
+        path: PathBuf,
+        /// The reason.
+        source: LayoutError,
+    },
     /// Two outputs of one name.
     #[error("{}: cannot hold two outputs of this command", .0.display())]
     OutputTwice(PathBuf),
@@ -62,6 +75,9 @@ pub enum Error {
     /// The monitor is given a session and no table.
     #[error("a session is shown with the estimates of a replay, which needs a table")]
     SessionWithoutTable,
+    /// A session is checked without a table.
+    #[error("{}: a session is checked by the table of its arm", .0.display())]
+    CheckWithoutTable(PathBuf),
     /// `--out` with several sessions.
     #[error("--out takes the estimates of one session, found {0} sessions")]
     OneSession(usize),

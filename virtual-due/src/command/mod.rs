@@ -1,5 +1,6 @@
 //! The command line, and the run that it starts.
 
+mod arm_file;
 #[cfg(unix)]
 mod fault_injection;
 mod flash_file;
@@ -8,9 +9,10 @@ mod pty;
 mod run;
 mod stdio;
 
+use calibration_tables::FileError;
 use clap::{Parser, Subcommand, ValueEnum};
 use flash_file::FlashFile;
-use rig_twin::Scenario;
+use rig_twin::{LayoutError, MAX_SEGMENTS, Scenario, Setup};
 use run::Run;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -45,6 +47,10 @@ struct Arguments {
     /// Seed of the arm's motion and the sensors' noise.
     #[arg(long, default_value_t = 1)]
     seed: u64,
+    /// Arm description or table of the simulated arm: its segments, their lengths, and the pins in `[board]`; without it the
+    /// reference arm in its reference wiring.
+    #[arg(long, value_name = "ARM.toml")]
+    arm: Option<PathBuf>,
     /// File of the chip's flash, 512 KiB, kept between runs; the firmware is written over it. Made if there is none.
     #[arg(long, value_name = "FILE")]
     flash: Option<PathBuf>,
@@ -98,6 +104,22 @@ pub enum Error {
         /// The reason.
         error: ImageError,
     },
+    /// The arm's file is no arm description and no table.
+    #[error("{path}: {error}; --arm takes the arm's description or table")]
+    Arm {
+        /// The path as it was given.
+        path: String,
+        /// The reason.
+        error: FileError,
+    },
+    /// The arm is larger than the board has room for.
+    #[error("{path}: {error}; simulate an arm of 1 to {MAX_SEGMENTS} segments")]
+    Layout {
+        /// The path as it was given.
+        path: String,
+        /// The reason.
+        error: LayoutError,
+    },
     /// The file of the flash cannot be read or written.
     #[error("{path}: {error}; --flash takes a file of 512 KiB, or the name of a new one")]
     Flash {
@@ -116,10 +138,12 @@ impl Cli {
     ///
     /// # Errors
     ///
-    /// [`Error`] if the firmware or the serial port cannot be opened.
+    /// [`Error`] if the firmware, the arm's file or the serial port cannot be opened.
     pub fn execute(self) -> Result<ExitCode, Error> {
         let Command::Run(arguments) = self.command;
-        let mut machine = machine(&arguments.firmware, WiredRig::new(arguments.scenario, arguments.seed))?;
+        let setup = Setup::new(arguments.scenario, arguments.seed);
+        let rig = arm_file::rig(arguments.arm.as_deref(), setup)?;
+        let mut machine = machine(&arguments.firmware, rig)?;
         let flash = arguments.flash.map(|path| {
             let shown = path.display().to_string();
             FlashFile::load(path, &mut machine).map_err(|error| Error::Flash { path: shown, error })
@@ -133,7 +157,7 @@ impl Cli {
                 let mut pty = pty::Pty::new()?;
                 eprintln!("serial port: {}", pty.path());
                 let injector = fault_injection::FaultInjector::new();
-                run.execute(&mut pty, |rig| injector.apply(&mut rig.faults))?;
+                run.execute(&mut pty, |rig| injector.apply(rig))?;
             }
         }
         Ok(run.summary())

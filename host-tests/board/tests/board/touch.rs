@@ -19,7 +19,7 @@ fn pushed(seed: u64, seconds: u64) -> Board {
     board.run_ms(2000);
     assert_eq!(board.request(Command::Arm), RequestOutcome::Ack);
     while board.machine.seconds() < seconds as f64 {
-        board.set_pressures(program.duties(board.machine.seconds()));
+        board.set_pressures(&program.duties(board.machine.seconds()));
         board.run_ms(50);
     }
     board
@@ -30,8 +30,9 @@ fn begins_s(board: &Board, segment: usize) -> Vec<f64> {
     let mut was_touched = false;
     let begins = board.received().iter().filter_map(|received| match received.message {
         Message::Event(Event::Contact(_, touched)) => {
-            let begins = touched[segment] && !was_touched;
-            was_touched = touched[segment];
+            let is_touched = touched >> segment & 1 == 1;
+            let begins = is_touched && !was_touched;
+            was_touched = is_touched;
             begins.then_some(received.at as f64 / CYCLES_PER_SECOND as f64)
         }
         _ => None,

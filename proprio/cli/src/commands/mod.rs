@@ -9,6 +9,7 @@ mod drive;
 mod flash;
 mod link;
 mod monitor;
+mod new_arm;
 mod ports;
 mod record;
 mod recover;
@@ -33,6 +34,7 @@ impl Command {
         match self {
             Self::Check(args) => return check::run(&args),
             Self::Recover(args) => return recover::run(&args),
+            Self::NewArm(args) => new_arm::run(&args),
             Self::Align(args) => align::run(&args),
             Self::Calibrate(args) => calibrate::run(&args),
             Self::Tune(args) => tune::run(&args),

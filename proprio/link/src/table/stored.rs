@@ -32,13 +32,18 @@ pub struct StoredTable {
 }
 
 impl StoredTable {
-    /// The stored form of a table and of its file's text.
+    /// The stored form of a table and of its file's text. An arm description gives the board its wiring, without any bend map:
+    /// the board then sends samples for a first sweep, and no shape.
     ///
     /// # Errors
-    /// [`TableImageError`] on an arm description, or an arm that does not fit the board.
+    /// [`TableImageError`] where some segments are calibrated and others are not, or on an arm that does not fit the board.
     pub fn new(file: &ArmFile, toml: &[u8]) -> Result<Self, TableImageError> {
-        let compiled = file.compile::<Q>(TICK_HZ)?;
         let wiring = wiring(file)?;
+        let compiled = if file.is_description() {
+            file.without_bend_maps().compile::<Q>(TICK_HZ)?
+        } else {
+            file.compile::<Q>(TICK_HZ)?
+        };
         let checksum = compiled.checksum();
         let mut image = vec![0; IMAGE_ROOM];
         let length = write_image(&file.arm, checksum, &compiled.config(), Some(&wiring), &mut image)?;

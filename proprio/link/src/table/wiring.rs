@@ -109,6 +109,22 @@ mod tests {
     }
 
     #[test]
+    fn an_arm_description_gives_the_board_its_wiring_and_no_bend_map() {
+        let mut description = with_sensors(&[2, 1]);
+        description.segments.iter_mut().for_each(|segment| segment.bend = None);
+        let stored = StoredTable::new(&description, b"").expect("it fits the board");
+        let mut table = BoardTable::<MAX_SEGMENTS>::new();
+        table.read(&stored.image, 100).expect("the image is valid");
+        assert_eq!(table.wiring(), Some(&Wiring::reference(2)));
+        let config = table.config().expect("the table has content");
+        assert!(config.segments.iter().all(|segment| segment.bend.iter().all(Option::is_none)));
+
+        description.segments[0].bend = Some(Vec::new());
+        let error = StoredTable::new(&description, b"").expect_err("one segment is calibrated and one is not");
+        assert!(matches!(error, TableImageError::File(FileError::NotCalibrated(2))), "{error}");
+    }
+
+    #[test]
     fn a_table_of_nine_segments_is_refused() {
         let error = StoredTable::new(&with_sensors(&[0; 9]), b"").expect_err("it must be refused");
         assert_eq!(error.to_string(), "the arm has 9 segments, and the board has room for 8");
