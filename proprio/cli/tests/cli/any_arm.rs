@@ -111,12 +111,3 @@ fn a_csv_has_the_columns_of_the_arm_s_segments_and_comes_back_to_the_bit() {
         assert_eq!(read, sent);
     }
 }
-
-#[test]
-fn a_session_of_more_segments_than_a_board_has_stays_csv() {
-    let names: String = (1..=9).map(|i| format!(",bend{i}a_adc,imu{i}_deg")).collect();
-    let cells = ",2000,0".repeat(9);
-    let folder = Folder::with("long.csv", format!("time_s{names}\n0{cells}\n0.1{cells}\n"));
-    let error = folder.refused(&["convert", "long.csv", "long.mcap"]);
-    assert!(error.contains("has 9 segments, a board and its recordings have 8 at most"), "{error}");
-}

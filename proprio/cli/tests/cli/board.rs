@@ -52,7 +52,10 @@ impl SyntheticBoard {
         let read = self.simulation.next()?;
         let tick = self.tick;
         self.tick += 1;
-        let imu = if tick < IMUS_UP { [None; SEGMENTS] } else { read.quaternions.into_array().expect("six segments") };
+        let mut imu = read.quaternions;
+        if tick < IMUS_UP {
+            imu.fill(None);
+        }
         if self.estimator.needs_first_tare(tick, imu.iter().all(Option::is_some)) {
             self.estimator.tare();
         }
@@ -64,8 +67,8 @@ impl SyntheticBoard {
             tick,
             time_us: u64::from(tick) * 10_000 + 137,
             tare_epoch: self.estimator.tare_epoch(),
-            bend: bend.into_iter().collect(),
-            imu: imu.into_iter().collect(),
+            bend,
+            imu,
         };
         let estimate = self.estimator.update(&sample);
         let contact = self.estimator.contact_event(tick);

@@ -78,7 +78,7 @@ fn a_session_in_place_of_a_profile_or_of_a_camera_s_file_is_named() {
     session.remove("truth");
     let folder = Folder::with("session.csv", session.to_string());
     let driven = refused(&folder, &["drive", "session.csv", "--port", "/dev/no-such-port"]);
-    assert_remedy(driven, "the file is a session", "pressure1_kpa to pressure6_kpa");
+    assert_remedy(driven, "the file is a session", "pressure1_kpa, pressure2_kpa");
     let align = ["align", "session.csv", "--camera", "session.csv", "--arm", arm(), "-o", "aligned.csv"];
     assert_remedy(refused(&folder, &align), "the file is a session", "x, y and heading of each marker");
 }

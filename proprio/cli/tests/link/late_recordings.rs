@@ -46,13 +46,7 @@ impl<'t> Arm<'t> {
             }
             let tare_epoch = u8::from(self.tick >= self.tare);
             let time_us = u64::from(self.tick) * 10_000;
-            let sample = Sample {
-                tick: self.tick,
-                time_us,
-                tare_epoch,
-                bend: read.counts.into_iter().collect(),
-                imu: read.quaternions.into_iter().collect(),
-            };
+            let sample = Sample { tick: self.tick, time_us, tare_epoch, bend: read.counts, imu: read.quaternions };
             let estimate = self.estimator.update_full(&(&sample).into());
             let shape = self.estimator.shape(&estimate, Method::Fusion);
             let mut board = line.board();

@@ -261,13 +261,7 @@ fn drift_and_innovations_of_a_live_board_are_those_of_its_recording() {
     let simulation = Simulation::new(Scenario::Push, 7, 10.0, 100.0).expect("a valid run");
     for (tick, read) in (0..).zip(simulation) {
         let time_us = u64::from(tick) * 10_000;
-        let sample = Sample {
-            tick,
-            time_us,
-            tare_epoch: 0,
-            bend: read.counts.into_iter().collect(),
-            imu: read.quaternions.into_iter().collect(),
-        };
+        let sample = Sample { tick, time_us, tare_epoch: 0, bend: read.counts, imu: read.quaternions };
         line.board().send(&Message::Sample(sample));
     }
     page.wait_for_status(|status| status["recording"]["samples"] == 1000);
