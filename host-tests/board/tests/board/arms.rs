@@ -105,7 +105,7 @@ fn eight_segments_move_by_their_eight_regulators_and_every_estimate_is_the_hosts
     let arm = eight_segments();
     let mut board = running(&arm);
     let layout = rig_twin::Layout::of_file(&arm.file).expect("eight segments");
-    board.swing(&MotionProgram::of(&Setup { layout, ..Setup::new(Scenario::FreeSwing, 3) }), 5);
+    board.swing(&MotionProgram::of(&Setup { layout, ..Setup::new(Scenario::FreeSwing, 3) }), 12);
     assert_replays_of(&arm.file, &board, 0);
     let tip =
         |estimate: &telemetry::Estimate| Q::from_bits(estimate.segments[7].as_ref().expect("known").end[0]).to_f64();

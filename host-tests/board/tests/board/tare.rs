@@ -42,7 +42,7 @@ fn an_arm_at_rest_is_tared_and_the_board_says_how_still_and_how_straight_it_was(
 fn a_moving_arm_is_refused_and_tared_only_by_force() {
     let mut board = ready();
     let program = MotionProgram::new(Scenario::FreeSwing, 5);
-    board.swing(&program, 3);
+    board.swing(&program, 10);
     let before = tares(&board);
     assert_eq!(board.request(Command::Tare(TareMode::IfStill)), RequestOutcome::Nack(Refusal::Moving));
     let (_, [turned, _]) = last_report(&board);
