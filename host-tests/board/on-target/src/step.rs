@@ -137,9 +137,8 @@ pub type TestedEstimator<const N: usize> = Estimator<'static, Q, N, WINDOW>;
 
 /// All steps of one arm.
 #[inline(never)]
-pub fn steps<const N: usize>(table: &'static ArmConfig<'static, Q>) {
-    // Made where it stays: the stack has no room for a copy.
-    run(&mut TestedEstimator::<N>::const_new(table), STEPS, |estimator, sample| {
+pub fn steps<const N: usize>(estimator: &mut TestedEstimator<N>) {
+    run(estimator, STEPS, |estimator, sample| {
         core::hint::black_box(estimator.update(sample));
     });
 }
