@@ -110,6 +110,19 @@ impl ArmFile {
         self.segments.iter().enumerate().map(sensors).collect()
     }
 
+    /// Returns whether it is an arm description: no segment has an entry `bend`, nor has any been calibrated.
+    #[must_use]
+    pub fn is_description(&self) -> bool {
+        self.segments.iter().all(|segment| segment.bend.is_none())
+    }
+
+    /// A table of the arm by its IMUs alone, for a board that is to record the arm's first sweep.
+    #[must_use]
+    pub fn without_bend_maps(&self) -> Self {
+        let segments = self.segments.iter().map(|segment| SegmentToml { bend: Some(Vec::new()), ..segment.clone() });
+        Self { segments: segments.collect(), ..self.clone() }
+    }
+
     pub(crate) fn check(&self) -> Result<(), FileError> {
         let n = self.segments.len();
         ensure((1..=MAX_SEGMENTS).contains(&n), "segment", &n, &format!("1 to {MAX_SEGMENTS} segments"))?;

@@ -32,14 +32,18 @@ pub struct StoredTable {
 }
 
 impl StoredTable {
-    /// The stored form of a table and of its file's text. An arm description is a table without maps: by its wiring the
-    /// board sends the samples that a calibration needs.
+    /// The stored form of a table and of its file's text. An arm description gives the board its wiring, without any bend map:
+    /// the board then sends samples for a first sweep, and no shape.
     ///
     /// # Errors
-    /// [`TableImageError`] on an arm that does not fit the board.
+    /// [`TableImageError`] where some segments are calibrated and others are not, or on an arm that does not fit the board.
     pub fn new(file: &ArmFile, toml: &[u8]) -> Result<Self, TableImageError> {
-        let compiled = without_maps(file).compile::<Q>(TICK_HZ)?;
         let wiring = wiring(file)?;
+        let compiled = if file.is_description() {
+            file.without_bend_maps().compile::<Q>(TICK_HZ)?
+        } else {
+            file.compile::<Q>(TICK_HZ)?
+        };
         let checksum = compiled.checksum();
         let mut image = vec![0; IMAGE_ROOM];
         let length = write_image(&file.arm, checksum, &compiled.config(), Some(&wiring), &mut image)?;
@@ -83,15 +87,6 @@ impl StoredTable {
         store.commit(usize::MAX, u16::MAX)?;
         Ok(flash.0)
     }
-}
-
-/// The file as a table: without maps where it has none.
-fn without_maps(file: &ArmFile) -> ArmFile {
-    let mut table = file.clone();
-    for segment in &mut table.segments {
-        segment.bend.get_or_insert_default();
-    }
-    table
 }
 
 /// Expands a compressed TOML file.

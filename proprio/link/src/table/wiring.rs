@@ -109,13 +109,19 @@ mod tests {
     }
 
     #[test]
-    fn the_board_gets_the_wiring_of_an_arm_description_too() {
-        let imu = Some(ImuToml { channel: 3, address: 0x29 });
-        let mut file = wired(BoardSegmentToml { bend: vec![AnalogPin(5), AnalogPin(6)], imu }, Vec::new());
-        file.segments[0].bend = None;
-        let found = on_board(&file);
-        assert_eq!(found.segments[0].bend, [Some(5), Some(6)]);
-        assert!(found.regulators.is_empty());
+    fn an_arm_description_gives_the_board_its_wiring_and_no_bend_map() {
+        let mut description = with_sensors(&[2, 1]);
+        description.segments.iter_mut().for_each(|segment| segment.bend = None);
+        let stored = StoredTable::new(&description, b"").expect("it fits the board");
+        let mut table = BoardTable::<MAX_SEGMENTS>::new();
+        table.read(&stored.image, 100).expect("the image is valid");
+        assert_eq!(table.wiring(), Some(&Wiring::reference(2)));
+        let config = table.config().expect("the table has content");
+        assert!(config.segments.iter().all(|segment| segment.bend.iter().all(Option::is_none)));
+
+        description.segments[0].bend = Some(Vec::new());
+        let error = StoredTable::new(&description, b"").expect_err("one segment is calibrated and one is not");
+        assert!(matches!(error, TableImageError::File(FileError::NotCalibrated(2))), "{error}");
     }
 
     #[test]
