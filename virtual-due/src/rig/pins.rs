@@ -16,7 +16,7 @@ pub const SDA: Pin = Pin { port: PIOB, line: 12 };
 pub const SCL: Pin = Pin { port: PIOB, line: 13 };
 pub const MUX_RESET: Pin = Pin { port: PIOB, line: 26 };
 
-/// What is wired to the pins, by channel and line.
+/// Channels and lines of the wired pins.
 #[derive(Debug, Clone)]
 pub struct Pins {
     /// ADC channel of each bend sensor, in the order 1a, 1b, 2a, …
