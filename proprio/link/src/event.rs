@@ -19,6 +19,7 @@ pub struct LinkEvent {
 
 /// Kind of an event, and its contents.
 #[derive(Debug, Clone)]
+#[expect(clippy::large_enum_variant, reason = "almost all are messages: a box of each would cost more than it saves")]
 pub enum EventKind {
     /// The line of this name was opened.
     Opened(String),

@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use proprio_session::{Ellipse, is_version_0_1};
 use serde::Serialize;
-use telemetry::{Event, Health, Hello, Message, TICK_HZ, Uncertainty};
+use telemetry::{Event, Health, Hello, Message, SegmentUncertainty, TICK_HZ, Uncertainty};
 
 use crate::{EventKind, Link, LinkError, Mismatch, Subscription};
 
@@ -58,7 +58,7 @@ impl From<&Uncertainty> for KnownShape {
         let deviation_deg = |variance_rad2: f64| variance_rad2.sqrt().to_degrees();
         Self {
             theta_sd_deg: segments.iter().map(|segment| segment.theta_rad2().map(deviation_deg)).collect(),
-            tip: segments.last().and_then(|tip| tip.end_m2()).map(Ellipse::of),
+            tip: segments.last().and_then(SegmentUncertainty::end_m2).map(Ellipse::of),
             touched: segments.iter().map(|segment| segment.in_contact).collect(),
         }
     }

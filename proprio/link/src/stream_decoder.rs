@@ -7,6 +7,7 @@ use super::event::Mismatch;
 
 /// A part of the stream that is complete.
 #[derive(Debug, Clone, PartialEq)]
+#[expect(clippy::large_enum_variant, reason = "almost all are messages: a box of each would cost more than it saves")]
 pub enum Received {
     /// A message.
     Message(Message),

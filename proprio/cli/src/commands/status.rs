@@ -129,3 +129,43 @@ fn sensors(sensors: &[SensorHealth], name: impl Fn(usize) -> String) -> String {
     let others = others.map(|(i, sensor)| format!("{} {} ({} missed)", name(i), sensor.state, sensor.missed));
     [format!("{ok} of {count} ok")].into_iter().chain(others).collect::<Vec<_>>().join(", ")
 }
+
+#[cfg(test)]
+mod tests {
+    use telemetry::{Hello, PROTOCOL_VERSION, ResetCause, SensorHealth, SensorState, Text, protocol_2};
+
+    use super::{sensors, slower, wiring};
+
+    fn hello(segments: u8) -> Hello {
+        Hello {
+            protocol: PROTOCOL_VERSION,
+            schema: 0,
+            firmware: Text::new(),
+            revision: Text::new(),
+            arm: Text::new(),
+            table: 0,
+            segments,
+            bend_sensors: segments,
+            regulators: 6,
+            chip: [0; 16],
+            reset: ResetCause::Pin,
+            boot: 1,
+            last_panic: None,
+        }
+    }
+
+    #[test]
+    fn the_line_has_no_room_for_the_estimates_of_seven_segments_at_100_hz() {
+        assert_eq!(wiring(&hello(7)), "7 segments, 7 bend sensors, 6 regulators");
+        let slow = "; estimates at 50 Hz, as the line has no room for 100";
+        assert_eq!([6, 7, 8].map(|segments| slower(&hello(segments))), ["", slow, slow]);
+        assert_eq!(slower(&Hello { protocol: protocol_2::VERSION, ..hello(7) }), "");
+    }
+
+    #[test]
+    fn sensors_that_are_not_wired_are_not_lost() {
+        let states = [SensorState::Ok, SensorState::NotWired, SensorState::NoResponse, SensorState::NotWired];
+        let health = states.map(|state| SensorHealth { state, missed: 3 });
+        assert_eq!(sensors(&health, |i| i.to_string()), "1 of 2 ok, 2 Off (3 missed)");
+    }
+}

@@ -63,7 +63,7 @@ fn arguments_out_of_range_are_refused() {
 fn a_profile_has_as_many_regulators_as_its_columns() {
     let error = refused("time_s,pressure1_kpa,pressure2_kpa\n0,0,0\n");
     assert!(error.starts_with("/dev/no-such-port: cannot be opened"), "{error}");
-    let nine: String = (1..=9).map(|i| format!(",pressure{i}_kpa")).collect();
+    let nine = (1..=9).map(|i| format!(",pressure{i}_kpa")).collect::<Vec<_>>().concat();
     let error = refused(&format!("time_s{nine}\n0{}\n", ",0".repeat(9)));
     assert_eq!(error, "profile.csv, line 1: has pressures of 9 regulators, a board has 8 at most");
     let error = refused("time_s,pressure_kpa\n0,0\n");

@@ -115,10 +115,6 @@ fn pieces_that_come_twice_are_no_loss_and_hide_none() {
                 (next, in_order) = (place + 1, in_order + 1);
             }
         }
-        let late = messages.iter().filter(|message| decoded.messages.contains(message)).count() - in_order;
-        if late > 0 {
-            eprintln!("DEBUG seed {seed}: {late} late");
-        }
         assert_eq!(decoded.decoder.counts().lost as usize, messages.len() - in_order, "seed {seed}");
     }
 }
