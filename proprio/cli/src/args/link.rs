@@ -48,7 +48,7 @@ pub struct TableArgs {
 pub enum TableCommand {
     /// Store a table on the board, which restarts and uses it
     Push {
-        /// Table to store
+        /// Table to store; or an arm description, by whose wiring the board sends the samples of a calibration
         #[arg(value_name = "TABLE.toml")]
         file: PathBuf,
         #[command(flatten)]
@@ -78,7 +78,7 @@ pub enum TableCommand {
 
 #[derive(Debug, Args)]
 pub struct FlashArgs {
-    /// Table of the arm
+    /// Table of the arm, or its description before the calibration
     #[arg(long, value_name = "TABLE.toml")]
     pub table: PathBuf,
     /// The board's programming port [default: that of the one Due that is plugged in]

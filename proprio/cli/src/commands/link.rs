@@ -61,8 +61,6 @@ fn flash_with(table: Option<&LoadedTable>) -> Result<Flash, Error> {
 
 /// The form in which the board stores a table.
 pub fn stored(table: &LoadedTable) -> Result<StoredTable, Error> {
-    // An arm description is an error of its file.
-    table.required_columns()?;
     StoredTable::new(&table.file, &table.toml()?)
         .map_err(|source| Error::TableImage { name: table.path.display().to_string(), source })
 }

@@ -138,3 +138,20 @@ fn a_session_is_not_checked_without_a_table() {
     let error = folder.refused(&["check", "session.csv"]);
     assert!(error.starts_with("session.csv: ") && error.contains("table"), "{error}");
 }
+
+/// docs/how-to/wiring.md: the command, its wiring table, and the section `[board]` that it writes.
+#[test]
+fn the_first_example_of_the_wiring_page_is_what_new_arm_makes() {
+    let page = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/how-to/wiring.md"));
+    let page = page.expect("the page is committed");
+    let command = page.lines().find_map(|line| line.strip_prefix("    proprio new-arm ")).expect("the command");
+    let folder = Folder::new();
+    let run = folder.done(&["new-arm"].into_iter().chain(command.split(' ')).collect::<Vec<_>>());
+    assert!(page.contains(&format!("```text\n{}```", run.stdout)), "{}", run.stdout);
+    let section = page.split("```toml\n").nth(1).and_then(|rest| rest.split("```").next()).expect("the section");
+    let written = ArmFile::load(&folder.path("arm.toml")).expect("an arm description");
+    let text = folder.read("arm.toml");
+    let (geometry, _) = text.split_once("[board]").expect("the section");
+    let of_page = ArmFile::parse(&format!("{geometry}{section}")).expect("the section is valid");
+    assert_eq!(written.board, of_page.board);
+}

@@ -1,4 +1,5 @@
-//! The section `[board]`: kept by `calibrate` and `tune`, and refused by `table push` where it does not fit the board.
+//! The section `[board]`: kept by `calibrate` and `tune`, stored on a board by `table push`, and refused there where it does
+//! not fit.
 
 use calibration_tables::ArmFile;
 
@@ -9,12 +10,13 @@ use super::tune::{TUNE, load, training};
 fn wired(path: &str) -> ArmFile {
     let file = load(path);
     let pins = [(11, 10), (9, 8), (7, 6), (5, 4), (3, 2), (1, 0)];
-    let mut text = file.to_toml() + "\n[board]\n";
-    for (channel, (a, b)) in pins.iter().enumerate() {
+    let segment = |(channel, (a, b)): (usize, &(u8, u8))| {
         let imu = format!("imu = {{ channel = {}, address = 0x29 }}", 7 - channel);
-        text += &format!("[[board.segment]]\nbend = [\"A{a}\", \"A{b}\"]\n{imu}\n");
-    }
-    text += "[[board.regulator]]\npin = \"D40\"\nfull_scale_kpa = 150\n";
+        format!("[[board.segment]]\nbend = [\"A{a}\", \"A{b}\"]\n{imu}\n")
+    };
+    let segments = pins.iter().enumerate().map(segment).collect::<Vec<_>>().concat();
+    let regulator = "[[board.regulator]]\npin = \"D40\"\nfull_scale_kpa = 150\n";
+    let text = format!("{}\n[board]\n{segments}{regulator}", file.to_toml());
     ArmFile::parse(&text).expect("the wiring is valid")
 }
 
@@ -72,4 +74,12 @@ fn a_table_that_does_not_fit_the_board_is_a_table_for_the_host() {
     file.segments.extend_from_within(3..);
     let read = ArmFile::parse(&file.to_toml()).expect("a valid table");
     assert_eq!(read.bend_sensors().expect("it is a table"), [2; 9]);
+}
+
+/// The board needs the wiring to send the samples of a calibration.
+#[test]
+fn an_arm_description_can_be_pushed() {
+    let folder = Folder::with("arm.toml", wired(arm()).to_toml());
+    let error = folder.refused(&["table", "push", "arm.toml", "--port", "/dev/no-such-port"]);
+    assert!(error.contains("/dev/no-such-port"), "only the port is wrong: {error}");
 }

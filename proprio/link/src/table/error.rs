@@ -8,7 +8,7 @@ use calibration_tables::FileError;
 /// Reason why a table cannot be stored on a board.
 #[derive(Debug, thiserror::Error)]
 pub enum TableImageError {
-    /// The file is an arm description, or no table.
+    /// The file is no table.
     #[error(transparent)]
     File(#[from] FileError),
     /// The arm has more segments than the board has room for.

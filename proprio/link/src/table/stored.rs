@@ -32,12 +32,13 @@ pub struct StoredTable {
 }
 
 impl StoredTable {
-    /// The stored form of a table and of its file's text.
+    /// The stored form of a table and of its file's text. An arm description is a table without maps: by its wiring the
+    /// board sends the samples that a calibration needs.
     ///
     /// # Errors
-    /// [`TableImageError`] on an arm description, or an arm that does not fit the board.
+    /// [`TableImageError`] on an arm that does not fit the board.
     pub fn new(file: &ArmFile, toml: &[u8]) -> Result<Self, TableImageError> {
-        let compiled = file.compile::<Q>(TICK_HZ)?;
+        let compiled = without_maps(file).compile::<Q>(TICK_HZ)?;
         let wiring = wiring(file)?;
         let checksum = compiled.checksum();
         let mut image = vec![0; IMAGE_ROOM];
@@ -82,6 +83,15 @@ impl StoredTable {
         store.commit(usize::MAX, u16::MAX)?;
         Ok(flash.0)
     }
+}
+
+/// The file as a table: without maps where it has none.
+fn without_maps(file: &ArmFile) -> ArmFile {
+    let mut table = file.clone();
+    for segment in &mut table.segments {
+        segment.bend.get_or_insert_default();
+    }
+    table
 }
 
 /// Expands a compressed TOML file.

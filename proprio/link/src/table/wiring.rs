@@ -109,6 +109,16 @@ mod tests {
     }
 
     #[test]
+    fn the_board_gets_the_wiring_of_an_arm_description_too() {
+        let imu = Some(ImuToml { channel: 3, address: 0x29 });
+        let mut file = wired(BoardSegmentToml { bend: vec![AnalogPin(5), AnalogPin(6)], imu }, Vec::new());
+        file.segments[0].bend = None;
+        let found = on_board(&file);
+        assert_eq!(found.segments[0].bend, [Some(5), Some(6)]);
+        assert!(found.regulators.is_empty());
+    }
+
+    #[test]
     fn a_table_of_nine_segments_is_refused() {
         let error = StoredTable::new(&with_sensors(&[0; 9]), b"").expect_err("it must be refused");
         assert_eq!(error.to_string(), "the arm has 9 segments, and the board has room for 8");
