@@ -12,7 +12,7 @@ mod stdio;
 use calibration_tables::FileError;
 use clap::{Parser, Subcommand, ValueEnum};
 use flash_file::FlashFile;
-use rig_twin::{LayoutError, MAX_SEGMENTS, Scenario, Setup};
+use rig_twin::{LayoutError, MAX_SEGMENTS, Scenario};
 use run::Run;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -141,8 +141,7 @@ impl Cli {
     /// [`Error`] if the firmware, the arm's file or the serial port cannot be opened.
     pub fn execute(self) -> Result<ExitCode, Error> {
         let Command::Run(arguments) = self.command;
-        let setup = Setup::new(arguments.scenario, arguments.seed);
-        let rig = arm_file::rig(arguments.arm.as_deref(), setup)?;
+        let rig = arm_file::rig(arguments.arm.as_deref(), arguments.scenario, arguments.seed)?;
         let mut machine = machine(&arguments.firmware, rig)?;
         let flash = arguments.flash.map(|path| {
             let shown = path.display().to_string();
