@@ -7,7 +7,7 @@ use calibration_tables::{ArmFile, BoardSegmentToml, BoardToml, ImuToml, Regulato
 use rig_twin::{Layout, Scenario, Setup};
 use virtual_due::rig::WiredRig;
 
-use super::Error;
+use super::error::Error;
 
 /// The rig in a session of a scenario and a seed: the arm of a file in the file's wiring, or the reference arm in its own.
 pub fn rig(path: Option<&Path>, scenario: Scenario, seed: u64) -> Result<WiredRig, Error> {

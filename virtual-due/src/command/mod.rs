@@ -1,6 +1,7 @@
 //! The command line, and the run that it starts.
 
 mod arm_file;
+mod error;
 #[cfg(unix)]
 mod fault_injection;
 mod flash_file;
@@ -9,14 +10,14 @@ mod pty;
 mod run;
 mod stdio;
 
-use calibration_tables::FileError;
 use clap::{Parser, Subcommand, ValueEnum};
+use error::Error;
 use flash_file::FlashFile;
-use rig_twin::{LayoutError, MAX_SEGMENTS, Scenario};
+use rig_twin::Scenario;
 use run::Run;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use virtual_due::{ImageError, Machine, rig::WiredRig};
+use virtual_due::{Machine, rig::WiredRig};
 
 /// An emulated Arduino Due with the simulated arm on its pins.
 #[derive(Debug, Parser)]
@@ -83,54 +84,6 @@ enum Serial {
     /// input inject faults: `unplug imu3`, `plug imu3`, `unplug bend2a`.
     #[cfg(unix)]
     Pty,
-}
-
-/// Reason why the firmware cannot be run.
-#[derive(Debug, thiserror::Error)]
-pub enum Error {
-    /// The firmware cannot be read.
-    #[error("{path}: {error}; build the firmware first, and give the path of its ELF file")]
-    Firmware {
-        /// The path as it was given.
-        path: String,
-        /// The system's error.
-        error: std::io::Error,
-    },
-    /// It is not a firmware for the Due.
-    #[error("{path}: {error}")]
-    Elf {
-        /// The path as it was given.
-        path: String,
-        /// The reason.
-        error: ImageError,
-    },
-    /// The arm's file is no arm description and no table.
-    #[error("{path}: {error}; --arm takes the arm's description or table")]
-    Arm {
-        /// The path as it was given.
-        path: String,
-        /// The reason.
-        error: FileError,
-    },
-    /// The arm is larger than the board has room for.
-    #[error("{path}: {error}; simulate an arm of 1 to {MAX_SEGMENTS} segments")]
-    Layout {
-        /// The path as it was given.
-        path: String,
-        /// The reason.
-        error: LayoutError,
-    },
-    /// The file of the flash cannot be read or written.
-    #[error("{path}: {error}; --flash takes a file of 512 KiB, or the name of a new one")]
-    Flash {
-        /// The path as it was given.
-        path: String,
-        /// The system's error.
-        error: std::io::Error,
-    },
-    /// The serial port cannot be opened.
-    #[error("serial port: {0}")]
-    Serial(#[from] std::io::Error),
 }
 
 impl Cli {
