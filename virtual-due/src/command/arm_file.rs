@@ -4,18 +4,18 @@ use std::path::Path;
 
 use board_table::{ImuAddress, RegulatorWiring, SegmentWiring, Wiring};
 use calibration_tables::{ArmFile, BoardSegmentToml, BoardToml, ImuToml, RegulatorToml};
-use rig_twin::{Layout, Setup};
+use rig_twin::{Layout, Scenario, Setup};
 use virtual_due::rig::WiredRig;
 
-use super::Error;
+use super::error::Error;
 
-/// The rig in a session: the arm of a file in the file's wiring, or the reference arm in its own.
-pub fn rig(path: Option<&Path>, setup: Setup) -> Result<WiredRig, Error> {
-    let Some(path) = path else { return Ok(WiredRig::of(&setup, &Wiring::reference(setup.layout.segments().len()))) };
+/// The rig in a session of a scenario and a seed: the arm of a file in the file's wiring, or the reference arm in its own.
+pub fn rig(path: Option<&Path>, scenario: Scenario, seed: u64) -> Result<WiredRig, Error> {
+    let Some(path) = path else { return Ok(WiredRig::new(scenario, seed)) };
     let shown = || path.display().to_string();
     let file = ArmFile::load(path).map_err(|error| Error::Arm { path: shown(), error })?;
     let layout = Layout::of_file(&file).map_err(|error| Error::Layout { path: shown(), error })?;
-    Ok(WiredRig::of(&Setup { layout, ..setup }, &wiring(&file)))
+    Ok(WiredRig::of(&Setup { layout, ..Setup::new(scenario, seed) }, &wiring(&file)))
 }
 
 /// The wiring of an arm: that of its section `[board]`, or else the reference wiring for its number of segments.

@@ -1,6 +1,7 @@
 //! The command line, and the run that it starts.
 
 mod arm_file;
+mod error;
 #[cfg(unix)]
 mod fault_injection;
 mod flash_file;
@@ -9,14 +10,14 @@ mod pty;
 mod run;
 mod stdio;
 
-use calibration_tables::FileError;
 use clap::{Parser, Subcommand, ValueEnum};
+use error::Error;
 use flash_file::FlashFile;
-use rig_twin::{LayoutError, MAX_SEGMENTS, Scenario, Setup};
+use rig_twin::Scenario;
 use run::Run;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use virtual_due::{ImageError, Machine, rig::WiredRig};
+use virtual_due::{Machine, rig::WiredRig};
 
 /// An emulated Arduino Due with the simulated arm on its pins.
 #[derive(Debug, Parser)]
@@ -85,54 +86,6 @@ enum Serial {
     Pty,
 }
 
-/// Reason why the firmware cannot be run.
-#[derive(Debug, thiserror::Error)]
-pub enum Error {
-    /// The firmware cannot be read.
-    #[error("{path}: {error}; build the firmware first, and give the path of its ELF file")]
-    Firmware {
-        /// The path as it was given.
-        path: String,
-        /// The system's error.
-        error: std::io::Error,
-    },
-    /// It is not a firmware for the Due.
-    #[error("{path}: {error}")]
-    Elf {
-        /// The path as it was given.
-        path: String,
-        /// The reason.
-        error: ImageError,
-    },
-    /// The arm's file is no arm description and no table.
-    #[error("{path}: {error}; --arm takes the arm's description or table")]
-    Arm {
-        /// The path as it was given.
-        path: String,
-        /// The reason.
-        error: FileError,
-    },
-    /// The arm is larger than the board has room for.
-    #[error("{path}: {error}; simulate an arm of 1 to {MAX_SEGMENTS} segments")]
-    Layout {
-        /// The path as it was given.
-        path: String,
-        /// The reason.
-        error: LayoutError,
-    },
-    /// The file of the flash cannot be read or written.
-    #[error("{path}: {error}; --flash takes a file of 512 KiB, or the name of a new one")]
-    Flash {
-        /// The path as it was given.
-        path: String,
-        /// The system's error.
-        error: std::io::Error,
-    },
-    /// The serial port cannot be opened.
-    #[error("serial port: {0}")]
-    Serial(#[from] std::io::Error),
-}
-
 impl Cli {
     /// Executes the command.
     ///
@@ -141,8 +94,7 @@ impl Cli {
     /// [`Error`] if the firmware, the arm's file or the serial port cannot be opened.
     pub fn execute(self) -> Result<ExitCode, Error> {
         let Command::Run(arguments) = self.command;
-        let setup = Setup::new(arguments.scenario, arguments.seed);
-        let rig = arm_file::rig(arguments.arm.as_deref(), setup)?;
+        let rig = arm_file::rig(arguments.arm.as_deref(), arguments.scenario, arguments.seed)?;
         let mut machine = machine(&arguments.firmware, rig)?;
         let flash = arguments.flash.map(|path| {
             let shown = path.display().to_string();

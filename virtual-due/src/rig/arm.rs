@@ -23,7 +23,7 @@ struct SetPoint {
 }
 
 impl SetPoint {
-    fn new(wired: &RegulatorWiring) -> Self {
+    fn new(wired: RegulatorWiring) -> Self {
         Self { full_scale_pa: f64::from(wired.full_scale_pa), driven: None, pulsed: None }
     }
 
@@ -60,7 +60,7 @@ impl DrivenArm {
             twin: Twin::of(setup),
             program: MotionProgram::of(setup),
             grid_points: 0,
-            set_points: wiring.regulators.iter().map(SetPoint::new).collect(),
+            set_points: wiring.regulators.iter().copied().map(SetPoint::new).collect(),
             on_bench_supply: true,
         }
     }

@@ -21,6 +21,7 @@
 mod arm;
 mod bno055;
 mod faults;
+mod pin_map;
 mod pins;
 mod sensors;
 mod serial;
@@ -30,7 +31,7 @@ mod wires;
 use arm::DrivenArm;
 use board_table::Wiring;
 pub use faults::{Faults, HeldLow, ImuFault, MuxFault, Rail};
-use pins::Pins;
+use pin_map::Pins;
 use rig_twin::{EndPose, Layout, PerRegulator, PerSegment, Scenario, Setup};
 use sam3x_models::model::Cycles;
 use sensors::Sensors;

@@ -1,6 +1,7 @@
 #![expect(clippy::float_cmp, reason = "set-points are exact")]
 
-use super::pins::{MUX_RESET, PIOC, SCL, SDA};
+use super::pin_map::PIOC;
+use super::pins::{MUX_RESET, SCL, SDA};
 use super::{HeldLow, ImuFault, MuxFault, Rail, WiredRig};
 use rig_twin::Scenario;
 use sam3x_models::model::{CYCLES_PER_SECOND, Cycles, I2c, Pin, World};

@@ -2,7 +2,7 @@
 #![expect(clippy::float_cmp, reason = "set-points are exact")]
 
 use super::WiredRig;
-use super::pins::PIOC;
+use super::pin_map::PIOC;
 use board_table::{ImuAddress, RegulatorWiring, SegmentWiring, Wiring};
 use rig_twin::{Layout, Scenario, SegmentLayout, Setup};
 use sam3x_models::model::{CYCLES_PER_SECOND, Cycles, I2c, Pin, World};
