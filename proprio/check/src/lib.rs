@@ -7,6 +7,7 @@
 //! | file | rule |
 //! |---|---|
 //! | `finding.rs` | findings: source, rows, kind, figure |
+//! | `source.rs`, `rows.rs`, `kind.rs`, `text.rs` | the parts of a finding, and its text |
 //! | `frame.rs` | the readings of a row as angles |
 //! | `clock.rs` | unit of the times, equal times, gaps |
 //! | `tare.rs` | a tare that is bent or moves |
@@ -27,13 +28,17 @@ pub mod clock_fit;
 mod finding;
 mod frame;
 mod frozen;
+mod kind;
 mod median;
 mod new_zero;
 mod plugs;
 mod quaternions;
+mod rows;
 mod same_imus;
+mod source;
 mod steps;
 mod tare;
+mod text;
 pub mod truth;
 mod twins;
 mod wiring;
