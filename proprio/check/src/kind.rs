@@ -18,6 +18,8 @@ pub enum Kind {
     Constant,
     /// The last value is repeated while other sensors move; range of the motion, deg.
     Frozen,
+    /// The readings are repeated while the arm moves, and then catch up; share of the rows, %.
+    Held,
     /// Single readings of exactly 0, away from those before and after; number of them.
     Zeros,
     /// Two IMUs give the same readings; share of the changed readings, %.

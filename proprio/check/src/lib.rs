@@ -14,6 +14,7 @@
 //! | `bend_range.rs` | bend readings outside the voltages of the map |
 //! | `plugs.rs` | exchanged plugs of bend sensors, counts of another ADC |
 //! | `frozen.rs` | values that are repeated while other sensors move |
+//! | `held.rs` | readings that are repeated and then catch up |
 //! | `same_imus.rs` | two IMUs with the same readings |
 //! | `new_zero.rs` | IMUs that continue from another zero, or read 0 |
 //! | `steps.rs`, `wiring.rs` | steps of the IMUs against those of the bend sensors |
@@ -28,6 +29,7 @@ pub mod clock_fit;
 mod finding;
 mod frame;
 mod frozen;
+mod held;
 mod kind;
 mod median;
 mod new_zero;
@@ -53,6 +55,7 @@ use self::bend_range::BendRange;
 use self::clock::Clock;
 use self::frame::Decoder;
 use self::frozen::Frozen;
+use self::held::Held;
 use self::new_zero::NewZero;
 use self::plugs::Plugs;
 use self::same_imus::SameImus;
@@ -76,6 +79,7 @@ struct Rules {
     tare: Tare,
     bend_range: BendRange,
     frozen: Frozen,
+    held: Held,
     same_imus: SameImus,
     new_zero: NewZero,
     steps: Steps,
@@ -97,6 +101,7 @@ impl SessionCheck {
             tare: Tare::new(&table.file),
             bend_range: BendRange::new(&table.file),
             frozen: Frozen::new(segments, decoder.has_maps()),
+            held: Held::new(),
             same_imus: SameImus::new(segments),
             new_zero: NewZero::new(),
             steps: Steps::new(segments, Plugs::new(&table.file, &decoder)),
@@ -120,6 +125,7 @@ impl SessionCheck {
         rules.tare.update(frame);
         rules.bend_range.update(frame);
         rules.frozen.update(frame);
+        rules.held.update(frame);
         rules.same_imus.update(frame);
         rules.new_zero.update(frame);
         rules.steps.update(frame);
@@ -147,10 +153,15 @@ impl Rules {
         self.steps.plugs.finish(&mut findings);
         self.bend_range.finish(&mut findings);
         self.steps.finish(&mut findings);
+        self.held.finish(&mut findings);
         self.new_zero.finish(&mut findings);
         self.tare.finish(&mut findings);
         self.twins.finish(&mut findings);
-        findings.extend(self.truth.finish().0.findings);
+        let is_held = findings.iter().any(|finding| finding.kind == Kind::Held);
+        let mut of_truth = self.truth.finish().0.findings;
+        // It is the repeats that are late.
+        of_truth.retain(|finding| !is_held || finding.kind != Kind::TruthLag);
+        findings.append(&mut of_truth);
         findings
     }
 }

@@ -60,8 +60,10 @@ impl NewZero {
     pub fn finish(&self, findings: &mut Vec<Finding>) {
         for (i, jumps) in self.0.iter().enumerate() {
             let sensor = Source::Imu { segment: i + 1 };
+            // Readings that catch up jump.
+            let is_held = findings.iter().any(|finding| finding.sensor == Source::AllSensors);
             // The jumps of an IMU that turns otherwise than the arm are no other zeros, nor are those against wrong bend angles.
-            if is_imu_blamed(findings, i + 1) || is_chain_wrong(findings, i + 1) {
+            if is_held || is_imu_blamed(findings, i + 1) || is_chain_wrong(findings, i + 1) {
                 continue;
             }
             if jumps.new_zero.count > 0 {

@@ -47,6 +47,8 @@ pub enum Source {
     },
     /// All IMUs.
     AllImus,
+    /// All bend sensors and IMUs.
+    AllSensors,
     /// The arm as a whole.
     Arm,
     /// The truth of a segment's end.
@@ -86,6 +88,7 @@ impl fmt::Display for Source {
             Self::Imu { segment } => write!(f, "imu{segment}"),
             Self::TwoImus { segment, other } => write!(f, "imu{segment} and imu{other}"),
             Self::AllImus => f.write_str("all IMUs"),
+            Self::AllSensors => f.write_str("all sensors"),
             Self::Arm => f.write_str("arm"),
             Self::Truth { segment } => write!(f, "truth{segment}"),
             Self::TwoTruths { segment, other } => write!(f, "truth{segment} and truth{other}"),

@@ -37,6 +37,7 @@ impl fmt::Display for Finding {
             Kind::Rail => write!(f, "{figure:.1} % of the readings are at an end of the ADC: open or shorted"),
             Kind::Constant => write!(f, "the reading never changes while the other sensors move by {figure:.0}°"),
             Kind::Frozen => write!(f, "the last value is repeated while the other sensors move by {figure:.0}°"),
+            Kind::Held => write!(f, "the last readings are repeated while the arm moves, in {figure:.1} % of the rows"),
             Kind::Zeros => write!(f, "{figure:.0} readings are exactly 0, away from those before and after"),
             Kind::SameReadings => write!(f, "both give the same value in {figure:.0} % of the changed readings"),
             Kind::Inverted if matches!(sensor, Source::Bend { .. }) => {

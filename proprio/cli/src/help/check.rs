@@ -18,6 +18,12 @@ impl Help for Finding {
             (Kind::Constant | Kind::Frozen, _) => {
                 "restart the sensor or its driver, and check its wires; leave the cells of the repeats empty"
             }
+            (Kind::Held, Source::AllSensors) => {
+                "check the logger for pauses; leave the cells of the repeats empty, or remove their rows"
+            }
+            (Kind::Held, _) => {
+                "check the driver and its bus for failed readings; leave the cells of the repeats empty"
+            }
             (Kind::Zeros, _) => "leave the cell of a failed reading empty",
             (Kind::SameReadings, _) => {
                 "both readings are of one multiplexer channel: check the multiplexer's wires and addresses"
