@@ -21,9 +21,7 @@ impl Help for Finding {
             (Kind::Held, Source::AllSensors) => {
                 "check the logger for pauses; leave the cells of the repeats empty, or remove their rows"
             }
-            (Kind::Held, _) => {
-                "check the driver and its bus for failed readings; leave the cells of the repeats empty"
-            }
+            (Kind::Held, _) => "check the driver and its bus for failed readings; leave the cells of the repeats empty",
             (Kind::Zeros, _) => "leave the cell of a failed reading empty",
             (Kind::SameReadings, _) => {
                 "both readings are of one multiplexer channel: check the multiplexer's wires and addresses"
