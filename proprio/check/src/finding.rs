@@ -66,6 +66,11 @@ pub(super) fn is_exchanged(findings: &[Finding], sensor: Source) -> bool {
     })
 }
 
+/// True where the IMU of a segment, from 1, is exchanged with another one.
+pub(super) fn is_imu_exchanged(findings: &[Finding], number: usize) -> bool {
+    findings.iter().any(|finding| finding.kind == Kind::Exchanged && finding.is_about_imu(number))
+}
+
 /// True where a finding is about the IMU of a segment, from 1.
 pub(super) fn is_imu_blamed(findings: &[Finding], number: usize) -> bool {
     findings.iter().any(|finding| finding.is_about_imu(number))

@@ -17,7 +17,7 @@
 //! | `held.rs` | readings that are repeated and then catch up |
 //! | `same_imus.rs` | two IMUs with the same readings |
 //! | `new_zero.rs` | IMUs that continue from another zero, or read 0 |
-//! | `steps.rs`, `wiring.rs` | steps of the IMUs against those of the bend sensors |
+//! | `steps/` | steps of the IMUs against those of the bend sensors |
 //! | `quaternions.rs` | quaternions in another order, IMUs on their side |
 //! | `truth/` | the truth by itself, against the lengths and against the sensors' clock |
 //! | `clock_fit/` | the camera's clock against the sensors', by their motion |
@@ -43,7 +43,6 @@ mod tare;
 mod text;
 pub mod truth;
 mod twins;
-mod wiring;
 
 use std::path::Path;
 
@@ -130,7 +129,9 @@ impl SessionCheck {
         rules.new_zero.update(frame);
         rules.steps.update(frame);
         rules.twins.update(frame);
-        rules.truth.update(&TruthRow::of(row, frame.row));
+        if row.truth.iter().any(Option::is_some) {
+            rules.truth.update(&TruthRow::new(row, frame.row, &frame.headings));
+        }
     }
 
     /// The findings in the rows so far.

@@ -61,6 +61,10 @@ impl fmt::Display for Finding {
                 f,
                 "the table has tare.seconds = 0, by which headings are absolute; these are up to {figure:.0}° from the bend sensors"
             ),
+            Kind::NewZero if matches!(sensor, Source::TwoImus { .. }) => write!(
+                f,
+                "the headings continue {figure:.0}° off in opposite directions: the plugs were exchanged, or each has another zero"
+            ),
             Kind::NewZero => {
                 write!(f, "the heading continues {figure:.0}° off, which the bend sensors do not show: another zero")
             }

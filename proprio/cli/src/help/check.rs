@@ -48,6 +48,9 @@ impl Help for Finding {
             (Kind::NotAbsolute, _) => {
                 "write the seconds at rest in the reference pose into tare.seconds of the table, or headings from the base's direction into the session"
             }
+            (Kind::NewZero, Source::TwoImus { .. }) => {
+                "exchange the two columns from there on if the plugs were; otherwise check the IMUs' supply, and give these rows another number in column tare, where the arm is straight and at rest"
+            }
             (Kind::NewZero, _) => {
                 "check the IMU's supply and plug; give the rows from there on another number in column tare, where the arm is straight and at rest"
             }
