@@ -46,7 +46,7 @@ mod twins;
 
 use std::path::Path;
 
-use proprio_session::{Error, FileDefects, LoadedTable, Progress, RequiredColumns, Row, SessionReader};
+use proprio_session::{Error, FileDefects, LoadedTable, MissingHistory, Progress, RequiredColumns, Row, SessionReader};
 
 pub use finding::{Finding, Kind, Rows, Source};
 
@@ -172,6 +172,8 @@ impl Rules {
 pub struct CheckedSession {
     /// Number of rows.
     pub samples: u64,
+    /// The rows of a recording that have another tare than on the board.
+    pub missing_history: MissingHistory,
     /// The file's defects, past which it was read.
     pub defects: FileDefects,
     /// The findings.
@@ -191,13 +193,14 @@ pub fn check(session: &Path, table: &LoadedTable, progress: &mut dyn Progress) -
     };
     let mut reader = SessionReader::open(session, &needs)?;
     let work = format!("checking {}", session.display());
-    let mut samples = 0;
+    let mut missing_history = MissingHistory::default();
     while let Some(row) = reader.next_row()? {
         if row.is_recorded() {
             check.update(&row);
-            samples += 1;
+            missing_history.add(&row);
         }
         progress.advance(&work, reader.progress());
     }
-    Ok(CheckedSession { samples, defects: reader.defects(), findings: check.findings() })
+    let (samples, defects) = (missing_history.rows, reader.defects());
+    Ok(CheckedSession { samples, missing_history, defects, findings: check.findings() })
 }

@@ -6,7 +6,7 @@ use proprio_check::{CheckedSession, Finding, check};
 use proprio_session::LoadedTable;
 use serde::Serialize;
 
-use super::warnings::warn_of_defects;
+use super::warnings::{warn_of_defects, warn_of_missing_history};
 use crate::args::CheckArgs;
 use crate::error::Error;
 use crate::help::Help;
@@ -41,8 +41,9 @@ pub fn run(args: &CheckArgs) -> Result<ExitCode, Error> {
     let mut checked = Vec::new();
     let progress = &mut Bar::new();
     for path in &args.sessions {
-        let CheckedSession { samples, defects, findings } = check(path, &table, progress)?;
+        let CheckedSession { samples, missing_history, defects, findings } = check(path, &table, progress)?;
         warn_of_defects(path, &defects);
+        warn_of_missing_history(path, missing_history);
         let findings = findings.into_iter().map(Reported::from).collect();
         checked.push(Checked { path: path.display().to_string(), samples, findings });
     }
