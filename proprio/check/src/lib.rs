@@ -16,6 +16,7 @@
 //! | `frozen.rs` | values that are repeated while other sensors move |
 //! | `held.rs` | readings that are repeated and then catch up |
 //! | `same_imus.rs` | two IMUs with the same readings |
+//! | `common_zero.rs` | all IMUs that return from a gap with one turn |
 //! | `new_zero.rs` | IMUs that continue from another zero, or read 0 |
 //! | `steps/` | steps of the IMUs against those of the bend sensors |
 //! | `quaternions.rs` | quaternions in another order, IMUs on their side |
@@ -26,6 +27,7 @@
 mod bend_range;
 mod clock;
 pub mod clock_fit;
+mod common_zero;
 mod finding;
 mod frame;
 mod frozen;
@@ -52,6 +54,7 @@ pub use finding::{Finding, Kind, Rows, Source};
 
 use self::bend_range::BendRange;
 use self::clock::Clock;
+use self::common_zero::CommonZero;
 use self::frame::Decoder;
 use self::frozen::Frozen;
 use self::held::Held;
@@ -80,6 +83,7 @@ struct Rules {
     frozen: Frozen,
     held: Held,
     same_imus: SameImus,
+    common_zero: CommonZero,
     new_zero: NewZero,
     steps: Steps,
     twins: Twins,
@@ -102,6 +106,7 @@ impl SessionCheck {
             frozen: Frozen::new(segments, decoder.has_maps()),
             held: Held::new(),
             same_imus: SameImus::new(segments),
+            common_zero: CommonZero::new(segments),
             new_zero: NewZero::new(),
             steps: Steps::new(segments, Plugs::new(&table.file, &decoder)),
             twins: Twins::new(&table.file),
@@ -126,6 +131,7 @@ impl SessionCheck {
         rules.frozen.update(frame);
         rules.held.update(frame);
         rules.same_imus.update(frame);
+        rules.common_zero.update(frame);
         rules.new_zero.update(frame);
         rules.steps.update(frame);
         rules.twins.update(frame);
@@ -156,6 +162,7 @@ impl Rules {
         self.steps.finish(&mut findings);
         self.held.finish(&mut findings);
         self.new_zero.finish(&mut findings);
+        self.common_zero.finish(&mut findings);
         self.tare.finish(&mut findings);
         self.twins.finish(&mut findings);
         let is_held = findings.iter().any(|finding| finding.kind == Kind::Held);

@@ -101,8 +101,9 @@ impl Jumps {
         let [step, bend_step] = [wrapped(now[0] - self.last[0]), now[1] - self.last[1]];
         let jump = wrapped(step - bend_step);
         let limit = if is_zero { ZERO_JUMP } else { self.limit };
-        // A step of a bend sensor is no jump of the IMU.
-        let is_jump = jump.abs() > limit && step.abs() > bend_step.abs();
+        // A step of a bend sensor is no jump of the IMU. In a gap the arm may turn back by as much as the heading jumps.
+        let is_after_gap = self.limit < JUMP;
+        let is_jump = jump.abs() > limit && (is_after_gap || step.abs() > bend_step.abs());
         if !is_jump {
             if self.zero.count > 0 {
                 self.zeros.append(&self.zero);
