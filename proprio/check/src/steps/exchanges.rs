@@ -29,6 +29,8 @@ struct Pair {
     /// Share of the misfit that the exchange explains, %, summed over these pieces.
     explained: f64,
     rows: Rows,
+    /// The last piece that was judged has the exchange.
+    is_exchanged: bool,
     /// Rows since the last piece that was judged.
     unknown: Rows,
 }
@@ -77,6 +79,7 @@ impl Exchanges {
             pair.unknown.append(&rows);
             if !segments.is_empty() && most < AGREES {
                 pair.in_order += 1;
+                pair.is_exchanged = false;
                 pair.unknown = Rows::default();
             } else if most > MISFIT {
                 let wiring = pair.wiring();
@@ -85,6 +88,7 @@ impl Exchanges {
                 let explained = 1.0 - exchanged.iter().sum::<f64>() / before;
                 if explained > EXPLAINS && exchanged.iter().all(|misfit| *misfit < EXPLAINED) {
                     pair.exchanged += 1;
+                    pair.is_exchanged = true;
                     pair.explained += 100.0 * explained;
                     pair.rows.append(&std::mem::take(&mut pair.unknown));
                 }
@@ -94,6 +98,9 @@ impl Exchanges {
 
     pub fn finish(&mut self, findings: &mut Vec<Finding>) {
         self.end();
+        for pair in self.pairs.iter_mut().filter(|pair| pair.is_exchanged && pair.unknown.count > 0) {
+            pair.rows.append(&pair.unknown);
+        }
         self.pairs.sort_by(|a, b| b.explained.total_cmp(&a.explained));
         let mut changed: Vec<usize> = Vec::new();
         for pair in self.pairs.iter().filter(|pair| pair.exchanged.min(pair.in_order) >= PIECES) {
@@ -110,7 +117,16 @@ impl Exchanges {
 impl Pair {
     const fn new(segments: [usize; 2], are_imus: bool) -> Self {
         let none = Rows { count: 0, first: 0, last: 0, from_s: 0.0, to_s: 0.0 };
-        Self { segments, are_imus, in_order: 0, exchanged: 0, explained: 0.0, rows: none, unknown: none }
+        Self {
+            segments,
+            are_imus,
+            in_order: 0,
+            exchanged: 0,
+            explained: 0.0,
+            rows: none,
+            is_exchanged: false,
+            unknown: none,
+        }
     }
 
     /// The wiring with the exchange.

@@ -11,6 +11,7 @@ mod calibrate_faults;
 mod calibrate_gaps;
 mod check;
 mod check_elsewhere;
+mod check_parts;
 mod common;
 mod convert;
 mod damaged_recordings;
