@@ -137,7 +137,7 @@ impl Pair {
 
     /// The segments that the exchange changes: one starts at the IMU before it.
     fn changed(&self) -> impl Iterator<Item = usize> + use<> {
-        let next = if self.are_imus { 1 } else { 0 };
+        let next = usize::from(self.are_imus);
         self.segments.into_iter().flat_map(move |i| i..=i + next)
     }
 

@@ -74,7 +74,7 @@ impl Usual {
             let of = |axis: usize| median(residuals.iter().map(|residual| residual[axis]).collect()).unwrap_or(0.0);
             let changes = residuals.windows(2).map(|pair| (pair[1] - pair[0]).norm());
             *found = Link { residual: Vector2::new(of(0), of(1)), change: median(changes.collect()).unwrap_or(0.0) };
-            let misfit = median(residuals.iter().map(|residual| residual.norm()).collect()).unwrap_or(0.0);
+            let misfit = median(residuals.iter().map(Vector2::norm).collect()).unwrap_or(0.0);
             largest = largest.max(misfit / (length * scale));
         }
         (Self { scale, links: found }, largest)

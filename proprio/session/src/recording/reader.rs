@@ -53,8 +53,8 @@ pub struct Reader<R> {
     scanner: Scanner<R>,
     /// Topics of the channels.
     topics: BTreeMap<u16, String>,
-    /// It is a recording of proprio.
-    is_own: bool,
+    /// Topics that a recording of proprio has in any case.
+    own: Vec<(u16, &'static str)>,
     has_messages: bool,
     has_damage: bool,
     at_end: bool,
@@ -72,7 +72,7 @@ impl<R: Read> Reader<R> {
         Self {
             scanner: Scanner::new(source),
             topics,
-            is_own: false,
+            own: Vec::new(),
             has_messages: false,
             has_damage: false,
             at_end: false,
@@ -85,11 +85,9 @@ impl<R: Read> Reader<R> {
                 Part::Record(opcode, body) => (opcode, self.scanner.body(body)),
                 Part::Hole(hole) => {
                     self.has_damage = true;
-                    if self.is_own {
-                        // Their records may be in it.
-                        for (id, (topic, _)) in (1..).zip(OWN_CHANNELS) {
-                            self.topics.entry(id).or_insert_with(|| topic.to_owned());
-                        }
+                    // Their records may be in it.
+                    for (id, topic) in std::mem::take(&mut self.own) {
+                        self.topics.entry(id).or_insert_with(|| topic.to_owned());
                     }
                     return Ok(Some(Item::Hole(hole)));
                 }
@@ -100,7 +98,9 @@ impl<R: Read> Reader<R> {
                 continue;
             }
             match mcap::parse_record(opcode, body) {
-                Ok(Record::Metadata(metadata)) => self.is_own |= are_own(&metadata),
+                Ok(Record::Metadata(metadata)) if are_own(&metadata) => {
+                    self.own = (1..).zip(OWN_CHANNELS.map(|(topic, _)| topic)).collect();
+                }
                 Ok(Record::Channel(channel)) => {
                     self.topics.insert(channel.id, channel.topic);
                 }
