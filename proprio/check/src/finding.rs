@@ -66,6 +66,12 @@ pub(super) fn is_exchanged(findings: &[Finding], sensor: Source) -> bool {
     })
 }
 
+/// True where no finding is about the sensors of a segment, from 0: its bend sensors, and the IMUs at its ends.
+pub(super) fn is_unblamed(findings: &[Finding], i: usize) -> bool {
+    let is_start_blamed = i > 0 && is_imu_blamed(findings, i);
+    !is_imu_blamed(findings, i + 1) && !is_start_blamed && !is_bend_blamed(findings, i + 1)
+}
+
 /// True where the IMU of a segment, from 1, is exchanged with another one.
 pub(super) fn is_imu_exchanged(findings: &[Finding], number: usize) -> bool {
     findings.iter().any(|finding| finding.kind == Kind::Exchanged && finding.is_about_imu(number))

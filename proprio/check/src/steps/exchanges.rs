@@ -5,7 +5,7 @@ use calibration_tables::MAX_SEGMENTS;
 use super::fit::{EXPLAINED, Fit, MISFIT};
 use super::moments::Moments;
 use super::wiring::{Fault, Wiring};
-use crate::finding::{Finding, Kind, Rows, Source, is_bend_blamed, is_imu_blamed};
+use crate::finding::{Finding, Kind, Rows, Source, is_unblamed};
 use crate::frame::Frame;
 
 /// Steps of a piece, in which a segment bends by this angle or more, deg.
@@ -102,10 +102,12 @@ impl Exchanges {
             pair.rows.append(&pair.unknown);
         }
         self.pairs.sort_by(|a, b| b.explained.total_cmp(&a.explained));
+        // A sensor that is wrong otherwise explains nothing.
+        let before = findings.clone();
         let mut changed: Vec<usize> = Vec::new();
         for pair in self.pairs.iter().filter(|pair| pair.exchanged.min(pair.in_order) >= PIECES) {
             // Another exchange may seem to explain the same segments in some of the pieces.
-            if !pair.is_blamed(findings) && !pair.changed().any(|i| changed.contains(&i)) {
+            if pair.changed().all(|i| is_unblamed(&before, i) && !changed.contains(&i)) {
                 changed.extend(pair.changed());
                 let figure = pair.explained / f64::from(pair.exchanged);
                 findings.push(Finding { sensor: pair.sensor(), rows: pair.rows, kind: Kind::Exchanged, figure });
@@ -144,10 +146,5 @@ impl Pair {
     fn sensor(&self) -> Source {
         let [segment, other] = self.segments.map(|i| i + 1);
         if self.are_imus { Source::TwoImus { segment, other } } else { Source::TwoBends { segment, other } }
-    }
-
-    fn is_blamed(&self, findings: &[Finding]) -> bool {
-        let is_blamed = if self.are_imus { is_imu_blamed } else { is_bend_blamed };
-        self.segments.iter().any(|i| is_blamed(findings, i + 1))
     }
 }

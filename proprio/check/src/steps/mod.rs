@@ -18,7 +18,7 @@ use self::exchanges::Exchanges;
 use self::fit::Fit;
 use self::judge::{Facts, Judge};
 use self::moments::Moments;
-use super::finding::{Finding, Rows, is_bend_blamed, is_imu_blamed};
+use super::finding::{Finding, Rows, is_unblamed};
 use super::frame::{Frame, difference};
 use super::plugs::Plugs;
 use super::quaternions::Quaternions;
@@ -124,11 +124,7 @@ impl Steps {
     pub fn finish(&mut self, findings: &mut Vec<Finding>) {
         self.quaternions.finish(self.facts.rows, findings);
         self.exchanges.finish(findings);
-        let is_good = |i: usize| {
-            let is_start_blamed = i > 0 && is_imu_blamed(findings, i);
-            !is_imu_blamed(findings, i + 1) && !is_start_blamed && !is_bend_blamed(findings, i + 1)
-        };
-        let fit = Fit::new(&self.moments, self.facts.segments, is_good);
+        let fit = Fit::new(&self.moments, self.facts.segments, |i| is_unblamed(findings, i));
         Judge { fit, facts: &self.facts }.run(findings);
     }
 }

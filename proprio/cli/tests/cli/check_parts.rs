@@ -146,6 +146,25 @@ fn one_imu_whose_last_reading_is_taken_again_is_found() {
 }
 
 #[test]
+fn failed_readings_of_zero_are_no_repeats() {
+    let zeros = |session: &mut Csv| {
+        for row in (150..2000).step_by(150) {
+            (row..row + 3).for_each(|row| session.set(row, "imu4_deg", "0.0000"));
+        }
+    };
+    found(zeros, "imu4 zeros");
+}
+
+#[test]
+fn an_imu_that_repeats_another_one_is_no_exchange() {
+    let copy = |session: &mut Csv| {
+        let other: Vec<String> = session.rows.iter().map(|row| row[session.column("imu3_deg")].clone()).collect();
+        session.map("imu4_deg", |row, cell| if row < 1000 { cell.to_owned() } else { other[row].clone() });
+    };
+    found(copy, "imu3 and imu4 same_readings");
+}
+
+#[test]
 fn an_arm_at_rest_whose_readings_are_equal_is_no_fault() {
     let mut session = session();
     hold(&mut session, &sensors(), 0, 40);
