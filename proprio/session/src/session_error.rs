@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use board_table::MAX_FULL_SCALE_PA;
 use telemetry::{MAX_REGULATORS, MAX_SEGMENTS};
 
+use crate::foreign_file::ForeignFile;
 use crate::line_limit::LONGEST_LINE;
 use crate::missing_column::MissingColumn;
 use crate::recording::ReadError;
@@ -42,6 +43,9 @@ pub enum SessionProblem {
     /// A line that no session has.
     #[error("the line is longer than {most} kB", most = LONGEST_LINE / 1024)]
     LongLine,
+    /// It is of another kind.
+    #[error("{0}")]
+    Foreign(ForeignFile),
     /// It is not UTF-8 text.
     #[error("is not UTF-8 text")]
     NotText,

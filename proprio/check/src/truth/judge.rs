@@ -43,6 +43,7 @@ struct Suspects {
 pub(super) struct Judge {
     chain: Chain,
     usual: Usual,
+    is_usual_known: bool,
     /// Rows that wait until the usual values are known.
     waiting: Vec<TruthRow>,
     current: Option<TruthRow>,
@@ -62,6 +63,7 @@ impl Judge {
         Self {
             holds: Holds::new(&chain.lengths),
             usual: Usual::new(),
+            is_usual_known: false,
             waiting: Vec::new(),
             current: None,
             residuals: [None; MAX_SEGMENTS],
@@ -75,13 +77,12 @@ impl Judge {
     /// Adds a row. Adds the faults that are found to `faults`, and the earlier rows without their wrong poses to `judged`.
     pub fn update(&mut self, mut row: TruthRow, faults: &mut Vec<Fault>, judged: &mut Vec<TruthRow>) {
         take_zeros(&mut row, self.chain.count(), faults);
-        if self.usual.is_known() {
+        if self.is_usual_known {
             self.advance(&row, faults, judged);
             return;
         }
-        self.usual.add(&row, &self.chain);
         self.waiting.push(row);
-        if self.usual.is_known() {
+        if Usual::is_enough(&self.waiting) {
             self.judge_waiting(faults, judged);
         }
     }
@@ -97,7 +98,8 @@ impl Judge {
 
     fn judge_waiting(&mut self, faults: &mut Vec<Fault>, judged: &mut Vec<TruthRow>) {
         if !self.waiting.is_empty() {
-            self.usual.find();
+            self.usual = Usual::of(&self.waiting, &self.chain);
+            self.is_usual_known = true;
             self.noise = std::array::from_fn(|i| self.usual.change(i));
         }
         for row in &std::mem::take(&mut self.waiting) {
@@ -123,7 +125,7 @@ impl Judge {
         if !suspects.is_empty() {
             self.blame(&mut row, next, &suspects, faults);
         }
-        self.holds.update(&original, self.usual.scale(), faults);
+        self.holds.update(&original, self.usual.scale, faults);
         for i in 0..self.chain.count() {
             self.was_wrong[i] = original.poses[i].is_some() && row.poses[i].is_none();
             self.good[i] = row.poses[i].or(self.good[i]);
@@ -138,12 +140,12 @@ impl Judge {
 
     /// Length of a segment with its connector in the truth's own unit.
     fn length(&self, i: usize) -> f64 {
-        self.chain.lengths[i] * self.usual.scale()
+        self.chain.lengths[i] * self.usual.scale
     }
 
     /// True end less the expected one, in the frame of the segment's start.
     fn residual(&self, i: usize, row: &TruthRow) -> Option<Vector2<f64>> {
-        self.chain.link(i, &row.poses).map(|link| link.end - link.expected * self.usual.scale())
+        self.chain.link(i, &row.poses).map(|link| link.end - link.expected * self.usual.scale)
     }
 
     /// Links of a row that cannot be right.
@@ -173,7 +175,7 @@ impl Judge {
         }
         let link = (first == to).then(|| self.chain.link(to, poses)).flatten();
         link.is_some_and(|link| {
-            let residual = link.end - link.expected * self.usual.scale();
+            let residual = link.end - link.expected * self.usual.scale;
             (residual - usual).norm() > (MISPLACED * length).max(margin)
         })
     }

@@ -7,7 +7,7 @@ use proprio_check::{CheckedSession, Finding, check};
 use proprio_session::LoadedTable;
 use serde::Serialize;
 
-use super::warnings::warn_of_defects;
+use super::warnings::{warn_of_defects, warn_of_missing_history};
 use crate::args::CheckArgs;
 use crate::arm::ArmSummary;
 use crate::error::Error;
@@ -81,8 +81,9 @@ fn check_arm(path: &Path) -> Result<ArmSummary, Error> {
 }
 
 fn check_session(path: &Path, table: &LoadedTable, progress: &mut Bar) -> Result<CheckedFile, Error> {
-    let CheckedSession { samples, defects, findings } = check(path, table, progress)?;
+    let CheckedSession { samples, missing_history, defects, findings } = check(path, table, progress)?;
     warn_of_defects(path, &defects);
+    warn_of_missing_history(path, missing_history);
     let findings = findings.into_iter().map(Reported::from).collect();
     Ok(CheckedFile { path: path.display().to_string(), samples, findings })
 }

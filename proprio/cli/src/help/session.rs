@@ -1,7 +1,7 @@
 //! Remedies of errors of sessions.
 
 use proprio_session::recording::ReadError;
-use proprio_session::{FileContent, MissingColumn, MissingReason, SessionProblem, time_unit_of};
+use proprio_session::{FileContent, ForeignFile, MissingColumn, MissingReason, SessionProblem, time_unit_of};
 
 use super::Help;
 
@@ -21,6 +21,7 @@ impl Help for SessionProblem {
             Self::Directory => "name the .csv file in it",
             Self::NoHeader | Self::NoSamples | Self::NothingWhole => "record the session again, or take another",
             Self::LongLine => "end each row with a line end; is it a CSV? copy the file again, or take another",
+            Self::Foreign(of) => foreign_file(*of),
             Self::NotText => "save it as CSV in UTF-8",
             Self::MissingColumn(missing) => return missing.help(),
             Self::TimeUnit { rate_hz, factor, .. } => return time_unit(*rate_hz, *factor),
@@ -67,6 +68,17 @@ impl Help for SessionProblem {
             Self::PartialTruth => "leave all its cells empty where the camera did not see the segment",
         };
         help.to_owned()
+    }
+}
+
+/// Remedy of a file of another kind.
+fn foreign_file(foreign: ForeignFile) -> &'static str {
+    match foreign {
+        ForeignFile::Packed(_) => "unpack it first",
+        ForeignFile::Spreadsheet => "save it as CSV in UTF-8, with commas between the columns and decimal points",
+        ForeignFile::Data(_) => "write its readings to a CSV: docs/reference/files.md",
+        ForeignFile::Utf16 => "save it as UTF-8",
+        ForeignFile::Recording => "give a CSV; that of a recording's samples is made with `proprio convert`",
     }
 }
 

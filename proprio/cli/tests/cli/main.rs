@@ -12,6 +12,7 @@ mod calibrate_faults;
 mod calibrate_gaps;
 mod check;
 mod check_elsewhere;
+mod check_parts;
 mod common;
 mod convert;
 mod damaged_recordings;

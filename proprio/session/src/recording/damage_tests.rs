@@ -323,3 +323,36 @@ fn a_file_that_is_cut_at_any_byte_has_no_hole_and_loses_its_end() {
         assert_eq!(recovery.has_loss(), end < index, "cut at {end}, the index begins at {index}: {recovery:?}");
     }
 }
+
+/// The channels' records are in the first chunk and in the index alone.
+#[test]
+fn a_cut_file_whose_first_chunk_is_damaged_loses_that_chunk_and_its_end() {
+    let recording = recording();
+    let records = records(&recording);
+    let chunks: Vec<usize> = records.iter().filter(|(opcode, _)| *opcode == op::CHUNK).map(|(_, at)| *at).collect();
+    let last = *chunks.last().expect("chunks");
+    let damaged = flipped(&recording[..last], chunks[0] + 200, 3);
+    let (recovery, copy) = recovered(&damaged).expect("chunks are whole");
+    assert!(recovery.was_cut && recovery.holes.len() == 1 && recovery.lost_messages == 0, "{recovery:?}");
+    let (saved, _) = rows(&copy).expect("the copy is whole");
+    // Nine of ten samples in each of the other chunks: of 200, one chunk at either end is lost.
+    assert!((175..195).contains(&saved.len()), "{}", saved.len());
+    for row in &saved {
+        assert_eq!(u64::from(row.board.expect("a board's").tick) * STEP_US, row.sample.time_us);
+    }
+}
+
+/// Numbers of another program's channels mean other topics.
+#[test]
+fn the_channels_of_another_program_are_not_supposed() {
+    let recording = recording();
+    let records = records(&recording);
+    let metadata = records.iter().find(|(opcode, _)| *opcode == op::METADATA).expect("metadata").1;
+    let chunks: Vec<usize> = records.iter().filter(|(opcode, _)| *opcode == op::CHUNK).map(|(_, at)| *at).collect();
+    let mut foreign = flipped(&recording[..*chunks.last().expect("chunks")], chunks[0] + 200, 3);
+    // The name of its metadata, behind the length of the name.
+    foreign[metadata + HEAD + 4..metadata + HEAD + 11].copy_from_slice(b"another");
+    let (recovery, _) = recovered(&foreign).expect("chunks are whole");
+    assert_eq!(recovery.messages, 0);
+    assert!(recovery.lost_messages > 300, "{recovery:?}");
+}

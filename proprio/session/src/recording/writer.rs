@@ -10,10 +10,9 @@ use mcap::{Attachment, McapError, WriteOptions};
 use telemetry::{Estimate, Hello, Message, SCHEMA, Sample, SetPressures};
 
 use super::messages;
+use super::own_channels::{BYTES, CDR, METADATA, OWN_CHANNELS, ROS2_MESSAGE};
 use super::schema::{self, Schema};
-use super::topics::{
-    CONTACT, DIAGNOSTICS, HISTORY, JOINT_STATES, MARKS, RAW, SAMPLES, SET_POINTS, SHAPE, TRUTH, UNCERTAINTY,
-};
+use super::topics::{CONTACT, HISTORY, MARKS, SET_POINTS, TRUTH};
 use crate::{ClockSync, HostNs, Truth};
 
 /// Longest time before data is written, ns. A file that is cut loses no more than that.
@@ -82,14 +81,22 @@ impl<W: Write> Recorder<W> {
             ("schema", format!("{SCHEMA:08x}")),
         ];
         let metadata = about.into_iter().map(|(key, value)| (key.to_owned(), value)).collect();
-        mcap.write_metadata(&Metadata { name: "proprio".to_owned(), metadata }).map_err(io_error)?;
+        mcap.write_metadata(&Metadata { name: METADATA.to_owned(), metadata }).map_err(io_error)?;
+        let mut ids = [0; OWN_CHANNELS.len()];
+        for (id, (topic, schema)) in ids.iter_mut().zip(OWN_CHANNELS) {
+            *id = match schema {
+                Some(schema) => channel(&mut mcap, topic, schema)?,
+                None => mcap.add_channel(0, topic, BYTES, &BTreeMap::new()).map_err(io_error)?,
+            };
+        }
+        let [raw, samples, joint_states, shape, diagnostics, uncertainty] = ids;
         let channels = Channels {
-            raw: mcap.add_channel(0, RAW, "application/octet-stream", &BTreeMap::new()).map_err(io_error)?,
-            samples: channel(&mut mcap, SAMPLES, &schema::SAMPLE)?,
-            joint_states: channel(&mut mcap, JOINT_STATES, &schema::JOINT_STATE)?,
-            shape: channel(&mut mcap, SHAPE, &schema::POSE_ARRAY)?,
-            diagnostics: channel(&mut mcap, DIAGNOSTICS, &schema::DIAGNOSTIC_ARRAY)?,
-            uncertainty: channel(&mut mcap, UNCERTAINTY, &schema::UNCERTAINTY)?,
+            raw,
+            samples,
+            joint_states,
+            shape,
+            diagnostics,
+            uncertainty,
             history: None,
             contact: None,
             set_points: None,
@@ -151,7 +158,7 @@ impl<W: Write> Recorder<W> {
         let channel = if let Some(channel) = self.channels.history {
             channel
         } else {
-            let id = self.mcap.add_channel(0, HISTORY, "application/octet-stream", &BTreeMap::new());
+            let id = self.mcap.add_channel(0, HISTORY, BYTES, &BTreeMap::new());
             *self.channels.history.insert(id.map_err(io_error)?)
         };
         self.raw_messages = self.raw_messages.wrapping_add(1);
@@ -285,8 +292,8 @@ impl<W: Write> Recorder<W> {
 }
 
 fn channel<W: Write>(mcap: &mut mcap::Writer<NoSeek<W>>, topic: &str, schema: &Schema) -> io::Result<u16> {
-    let id = mcap.add_schema(schema.name, "ros2msg", schema.text().as_bytes()).map_err(io_error)?;
-    mcap.add_channel(id, topic, "cdr", &BTreeMap::new()).map_err(io_error)
+    let id = mcap.add_schema(schema.name, ROS2_MESSAGE, schema.text().as_bytes()).map_err(io_error)?;
+    mcap.add_channel(id, topic, CDR, &BTreeMap::new()).map_err(io_error)
 }
 
 /// A channel that is added with its first message.
