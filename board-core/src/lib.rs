@@ -11,7 +11,6 @@
 //! | [`bno055`], [`tca9548a`] | drivers of an IMU and of the multiplexer before it |
 //! | [`BendSensorMonitor`] | rail detection and debounced states of the bend sensors |
 //! | [`RestMonitor`] | range of the headings before a tare |
-//! | [`BoardEstimator`] | the estimator, its tares and its results as messages |
 //! | [`CommandServer`] | idempotent requests and their rate limit |
 //! | [`TableServer`] | requests about the table in the flash |
 //! | [`Schedule`] | periods of the messages |
@@ -25,7 +24,6 @@
 mod actuation;
 mod bend_sensors;
 pub mod bno055;
-mod board_estimator;
 mod boot_counter;
 mod command_server;
 pub mod imus;
@@ -37,7 +35,6 @@ pub mod tca9548a;
 
 pub use actuation::{Actuator, HOLD_MS, Pressures, VALID_MS_MAX, VENTED_MS};
 pub use bend_sensors::{BendSensorMonitor, LOSS_TICKS, RAIL_COUNTS, RETURN_TICKS, Scan};
-pub use board_estimator::{BoardEstimator, TARE_TICKS, WINDOW};
 pub use boot_counter::{BootCounter, CRASHES, RETAINED_WORDS, UPTIME_WORD, WINDOW_TICKS};
 pub use command_server::{BUCKET_SIZE, CommandServer, Execution, REFILL_PER_TICK, SESSION_TIMEOUT_TICKS};
 pub use rest_monitor::{REST_RANGE, RestMonitor};

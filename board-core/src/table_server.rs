@@ -3,12 +3,11 @@
 //! A page of the flash takes some milliseconds to write, so the server runs in a task of its own, of the lowest priority,
 //! and one request at a time.
 
+use board_estimator::WINDOW;
 use board_table::{Announcement, BoardTable, MAX_REGULATORS, MAX_SEGMENTS, TableError, TableStore};
 use embedded_storage::Storage;
 use heapless::Vec;
 use telemetry::{Command, Message, Refusal, TABLE_CHUNK_BYTES, TableChunk, TableState, TableStatus};
-
-use crate::board_estimator::WINDOW;
 
 /// Table and messages have room for the same arms.
 const _: () = assert!(MAX_SEGMENTS == telemetry::MAX_SEGMENTS && MAX_REGULATORS == telemetry::MAX_REGULATORS);

@@ -4,7 +4,8 @@ use core::mem::MaybeUninit;
 
 use atsam3x8e_hal::tc::prelude::*;
 use board_core::imus::Imus;
-use board_core::{Actuator, BendSensorMonitor, BoardEstimator, DueMessages, Pressures, RestMonitor, Task};
+use board_core::{Actuator, BendSensorMonitor, DueMessages, Pressures, RestMonitor, Task};
+use board_estimator::BoardEstimator;
 use estimator_core::{ArmConfig, Q};
 use rtic::Mutex;
 use telemetry::{Actuation, Estimate, Event, Health, Hello, Message, Sample, SensorState, TableState};

@@ -46,7 +46,8 @@ mod app {
     use atsam3x8e_hal::tc::{Mono, prelude::*};
     use atsam3x8e_hal::{reset, twi};
     use board_core::imus::Imus;
-    use board_core::{Actuator, BendSensorMonitor, BoardEstimator, RestMonitor, Schedule};
+    use board_core::{Actuator, BendSensorMonitor, RestMonitor, Schedule};
+    use board_estimator::BoardEstimator;
     use board_table::{BoardTable, MAX_SEGMENTS, Wiring};
     use estimator_core::{ArmConfig, Q};
     use rtic_sync::channel::Receiver;

@@ -1,6 +1,6 @@
 //! A synthetic board: the firmware's estimator and frames, over the readings of the twin's sensors.
 
-use board_core::BoardEstimator;
+use board_estimator::BoardEstimator;
 use calibration_tables::ArmFile;
 use estimator_core::Q;
 use proprio_simulation::Simulation;

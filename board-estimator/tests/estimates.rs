@@ -1,6 +1,6 @@
 //! Tares of the estimator, contact events and uncertainties.
 
-use board_core::{BoardEstimator, TARE_TICKS};
+use board_estimator::{BoardEstimator, TARE_TICKS};
 use estimator_core::{
     ArmConfig, BendMap, BendSensorConfig, ContactConfig, Q, QuadraticMap, SegmentConfig, Turns, UncertaintyConfig,
     VARIANCE_SCALE,

@@ -1,4 +1,7 @@
 //! The estimator between sensors and telemetry: samples in, estimates out; the first tare and each later restart.
+//!
+//! It is a crate of its own, as the firmware builds it for speed and the rest of the board's work for size.
+#![no_std]
 
 use estimator_core::{ArmConfig, Estimator, Q};
 use telemetry::{Estimate, Event, MAX_SEGMENTS, Sample, Uncertainty};
@@ -24,6 +27,8 @@ pub struct BoardEstimator {
 
 impl BoardEstimator {
     /// An estimator that is not started and estimates nothing. Without segments in `table` it never estimates.
+    // Inlined, so that the firmware initialises it in a few loops, built for size.
+    #[inline]
     pub const fn new(table: &'static ArmConfig<'static, Q>) -> Self {
         Self {
             estimator: Estimator::const_new(table),
