@@ -1,5 +1,6 @@
 //! An arm description or a table: the keys of the TOML file.
 
+use board_table::{MAX_SEGMENTS as MAX_BOARD_SEGMENTS, Wiring};
 use serde::{Deserialize, Serialize};
 
 use crate::board::BoardToml;
@@ -108,6 +109,14 @@ impl ArmFile {
             segment.bend.as_ref().map(Vec::len).ok_or(FileError::NotCalibrated(i + 1))
         };
         self.segments.iter().enumerate().map(sensors).collect()
+    }
+
+    /// The wiring to the board: that of the section `[board]`, or else the reference wiring. `None` for more segments than the
+    /// board has room for.
+    #[must_use]
+    pub fn wiring(&self) -> Option<Wiring> {
+        let n = self.segments.len();
+        self.board.as_ref().map_or_else(|| (n <= MAX_BOARD_SEGMENTS).then(|| Wiring::reference(n)), BoardToml::wiring)
     }
 
     /// Returns whether it is an arm description: no segment has an entry `bend`, nor has any been calibrated.

@@ -2,25 +2,17 @@
 
 use std::fmt;
 
+use board_table::{
+    ANALOG_PINS, IMU_ADDRESSES, IMU_CHANNELS, ImuAddress, MAX_FULL_SCALE_PA, MAX_SEGMENTS, REGULATOR_PINS,
+    RegulatorWiring, SegmentWiring, Wiring,
+};
 use serde::{Deserialize, Serialize};
 
 use crate::error::{FileError, ensure, within};
 use crate::segment::SegmentToml;
 
-/// Analog pins of the board, A0 to A11.
-const ANALOG_PINS: u8 = 12;
-
-/// Digital pins of the board with a PWM channel of their own.
-const PWM_PINS: [u8; 8] = [6, 7, 8, 9, 34, 36, 38, 40];
-
-/// Channels of the IMUs' multiplexer.
-const IMU_CHANNELS: u8 = 8;
-
-/// I²C addresses of an IMU.
-const IMU_ADDRESSES: [u8; 2] = [0x28, 0x29];
-
 /// Largest full scale of a regulator, kPa.
-const MAX_FULL_SCALE_KPA: f64 = 1000.0;
+const MAX_FULL_SCALE_KPA: f64 = MAX_FULL_SCALE_PA as f64 / 1000.0;
 
 /// `[board]`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -77,6 +69,14 @@ pub struct AnalogPin(pub u8);
 pub struct DigitalPin(pub u8);
 
 impl BoardToml {
+    /// The wiring, as the board has it; `None` for more segments than the board has room for.
+    pub(crate) fn wiring(&self) -> Option<Wiring> {
+        (self.segments.len() <= MAX_SEGMENTS).then(|| Wiring {
+            segments: self.segments.iter().map(BoardSegmentToml::wiring).collect(),
+            regulators: self.regulators.iter().take(REGULATOR_PINS.len()).map(RegulatorToml::wiring).collect(),
+        })
+    }
+
     pub(crate) fn check(&self, segments: &[SegmentToml]) -> Result<(), FileError> {
         let (found, n) = (self.segments.len(), segments.len());
         ensure(found == n, "board.segment", &format!("{found} segments"), &format!("{n}, one for each [[segment]]"))?;
@@ -88,7 +88,7 @@ impl BoardToml {
             wired.check_imu(&format!("{key}.imu"), &mut imus)?;
         }
         let count = self.regulators.len();
-        let most = PWM_PINS.len();
+        let most = REGULATOR_PINS.len();
         ensure(count <= most, "board.regulator", &format!("{count} regulators"), &format!("at most {most}"))?;
         let mut outputs = Places::default();
         for (i, regulator) in self.regulators.iter().enumerate() {
@@ -99,6 +99,14 @@ impl BoardToml {
 }
 
 impl BoardSegmentToml {
+    fn wiring(&self) -> SegmentWiring {
+        let mut pins = self.bend.iter().map(|pin| pin.0);
+        SegmentWiring {
+            bend: [pins.next(), pins.next()],
+            imu: self.imu.map(|ImuToml { channel, address }| ImuAddress { channel, address }),
+        }
+    }
+
     fn check_bend(&self, key: &str, segment: &SegmentToml, used: &mut Places) -> Result<(), FileError> {
         let (pins, maps) = (self.bend.len(), segment.bend.as_ref().map_or(0, Vec::len));
         ensure(pins <= 2, key, &format!("{pins} pins"), "at most two, of sensors a and b")?;
@@ -123,10 +131,14 @@ impl BoardSegmentToml {
 }
 
 impl RegulatorToml {
+    fn wiring(&self) -> RegulatorWiring {
+        RegulatorWiring { pin: self.pin.0, full_scale_pa: (self.full_scale_kpa * 1000.0).round() as u32 }
+    }
+
     fn check(&self, key: &str, used: &mut Places) -> Result<(), FileError> {
         let key_of_pin = format!("{key}.pin");
-        let known = PWM_PINS.map(|pin| DigitalPin(pin).to_string()).join(", ");
-        ensure(PWM_PINS.contains(&self.pin.0), &key_of_pin, &self.pin, &format!("one of {known}"))?;
+        let known = REGULATOR_PINS.map(|pin| DigitalPin(pin).to_string()).join(", ");
+        ensure(REGULATOR_PINS.contains(&self.pin.0), &key_of_pin, &self.pin, &format!("one of {known}"))?;
         used.occupy(&key_of_pin, self.pin.to_string(), "a pin")?;
         within(&format!("{key}.full_scale_kpa"), self.full_scale_kpa, 0.001..=MAX_FULL_SCALE_KPA)
     }

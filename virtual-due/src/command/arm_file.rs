@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use board_table::{ImuAddress, RegulatorWiring, SegmentWiring, Wiring};
-use calibration_tables::{ArmFile, BoardSegmentToml, BoardToml, ImuToml, RegulatorToml};
+use board_table::Wiring;
+use calibration_tables::ArmFile;
 use rig_twin::{Layout, Scenario, Setup};
 use virtual_due::rig::WiredRig;
 
@@ -15,23 +15,7 @@ pub fn rig(path: Option<&Path>, scenario: Scenario, seed: u64) -> Result<WiredRi
     let shown = || path.display().to_string();
     let file = ArmFile::load(path).map_err(|error| Error::Arm { path: shown(), error })?;
     let layout = Layout::of_file(&file).map_err(|error| Error::Layout { path: shown(), error })?;
-    Ok(WiredRig::of(&Setup { layout, ..Setup::new(scenario, seed) }, &wiring(&file)))
-}
-
-/// The wiring of an arm: that of its section `[board]`, or else the reference wiring for its number of segments.
-fn wiring(file: &ArmFile) -> Wiring {
-    let Some(BoardToml { segments, regulators }) = &file.board else { return Wiring::reference(file.segments.len()) };
-    Wiring { segments: segments.iter().map(segment).collect(), regulators: regulators.iter().map(regulator).collect() }
-}
-
-fn segment(segment: &BoardSegmentToml) -> SegmentWiring {
-    let mut pins = segment.bend.iter().map(|pin| pin.0);
-    SegmentWiring {
-        bend: [pins.next(), pins.next()],
-        imu: segment.imu.map(|ImuToml { channel, address }| ImuAddress { channel, address }),
-    }
-}
-
-fn regulator(regulator: &RegulatorToml) -> RegulatorWiring {
-    RegulatorWiring { pin: regulator.pin.0, full_scale_pa: (regulator.full_scale_kpa * 1000.0).round() as u32 }
+    // The twin has room for no longer arm than the board.
+    let wiring = file.wiring().unwrap_or_else(|| Wiring::reference(layout.segments().len()));
+    Ok(WiredRig::of(&Setup { layout, ..Setup::new(scenario, seed) }, &wiring))
 }

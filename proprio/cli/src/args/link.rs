@@ -32,6 +32,9 @@ pub struct LinkArgs {
     /// Seed of the simulated arm's motion and noise
     #[arg(long, value_name = "K", requires = "emulated", default_value_t = 1)]
     pub seed: u64,
+    /// Arm description or table of the simulated arm [default: that of --table, or the reference arm]
+    #[arg(long, value_name = "ARM.toml", requires = "emulated")]
+    pub arm: Option<PathBuf>,
     /// Table that the board should have
     #[arg(long, value_name = "TABLE.toml")]
     pub table: Option<PathBuf>,

@@ -1,18 +1,7 @@
 //! Load of the serial line by the messages of an arm, by protocol 3.
 
 use serde::Serialize;
-
-/// Bytes a second at 250 000 Bd, ten bits a byte.
-pub const LINE_BYTES_PER_S: u32 = 25_000;
-
-/// Bytes a second that the stream may take: four fifths, the rest is for replies, events and a slow host.
-pub const STREAM_BYTES_PER_S: u32 = LINE_BYTES_PER_S / 5 * 4;
-
-/// Ticks a second.
-const TICKS_PER_S: u32 = 100;
-
-/// Bytes of a frame beside its body: version, topic, sequence, CRC, COBS and zero.
-const OVERHEAD: u32 = 10;
+use telemetry::{FrameLengths, HELLO_TICKS, Rates, TICK_HZ};
 
 /// Bytes a second of an arm's messages, at worst.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -33,19 +22,15 @@ pub struct LineBudget {
 
 impl LineBudget {
     /// The budget of an arm of so many segments and regulators.
-    pub const fn of(segments: u32, regulators: u32) -> Self {
-        let whole = Self {
-            samples: TICKS_PER_S * (OVERHEAD + 15 + 12 * segments),
-            estimates: TICKS_PER_S * (OVERHEAD + 6 + 12 * segments),
-            uncertainties: 4 * (OVERHEAD + 8 + 17 * segments),
-            health: 5 * (OVERHEAD + 52 + 12 * segments + 5 * regulators),
-            hello: OVERHEAD + 189,
-            estimate_hz: TICKS_PER_S,
-        };
-        if whole.total() <= STREAM_BYTES_PER_S {
-            whole
-        } else {
-            Self { estimates: whole.estimates / 2, estimate_hz: TICKS_PER_S / 2, ..whole }
+    pub fn of(segments: usize, regulators: usize) -> Self {
+        let (lengths, rates) = (FrameLengths::of(segments, regulators), Rates::of_arm(segments, regulators));
+        Self {
+            samples: lengths.sample * per_second(rates.sample),
+            estimates: lengths.estimate * per_second(rates.estimate),
+            uncertainties: lengths.uncertainty * per_second(rates.uncertainty),
+            health: lengths.health * per_second(rates.health),
+            hello: lengths.hello * per_second(HELLO_TICKS),
+            estimate_hz: per_second(rates.estimate),
         }
     }
 
@@ -56,12 +41,19 @@ impl LineBudget {
 
     /// True where the estimates' rate is halved.
     pub const fn is_halved(&self) -> bool {
-        self.estimate_hz < TICKS_PER_S
+        self.estimate_hz < TICK_HZ as u32
     }
+}
+
+/// Messages a second, one in so many ticks.
+fn per_second(ticks: u16) -> u32 {
+    TICK_HZ as u32 / u32::from(ticks)
 }
 
 #[cfg(test)]
 mod tests {
+    use telemetry::STREAM_BYTES_PER_SECOND;
+
     use super::*;
 
     /// docs/reference/protocol.md has this sum.
@@ -75,7 +67,7 @@ mod tests {
     fn seven_and_eight_segments_get_an_estimate_every_second_tick() {
         for segments in [7, 8] {
             let budget = LineBudget::of(segments, 8);
-            assert!(budget.is_halved() && budget.total() <= STREAM_BYTES_PER_S, "{budget:?}");
+            assert!(budget.is_halved() && budget.total() <= STREAM_BYTES_PER_SECOND, "{budget:?}");
         }
         // 100 · (10 + 15 + 96) bytes of samples and 50 · (10 + 6 + 96) of estimates.
         let budget = LineBudget::of(8, 8);

@@ -6,8 +6,9 @@ use board_table::Wiring;
 use calibration_tables::ArmFile;
 use proprio_link::table::{TableImageError, wiring};
 use serde::Serialize;
+use telemetry::{LINE_BYTES_PER_SECOND, STREAM_BYTES_PER_SECOND};
 
-use super::line_budget::{LINE_BYTES_PER_S, LineBudget, STREAM_BYTES_PER_S};
+use super::line_budget::LineBudget;
 use crate::text_tables::{table, text};
 
 /// An arm on its board.
@@ -37,7 +38,7 @@ impl ArmSummary {
             bend_sensors: wiring.segments.iter().flat_map(|segment| segment.bend).flatten().count(),
             imus: wiring.segments.iter().filter(|segment| segment.imu.is_some()).count(),
             regulators,
-            line_bytes_per_s: LineBudget::of(segments as u32, regulators as u32),
+            line_bytes_per_s: LineBudget::of(segments, regulators),
             wiring,
         })
     }
@@ -97,7 +98,7 @@ fn line(budget: &LineBudget) -> String {
         "the estimates have their whole rate"
     };
     let text = text(&mut table);
-    format!("{text}\nof the line's {LINE_BYTES_PER_S} bytes/s these may take {STREAM_BYTES_PER_S}; {rate}\n")
+    format!("{text}\nof the line's {LINE_BYTES_PER_SECOND} bytes/s these may take {STREAM_BYTES_PER_SECOND}; {rate}\n")
 }
 
 /// A number and its noun.

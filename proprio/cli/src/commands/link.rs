@@ -32,7 +32,8 @@ fn open_by(args: &LinkArgs, start: Start) -> Result<(Option<LoadedTable<'_>>, Li
     let checksum = table.as_ref().map(|table| Ok::<_, Error>(table.compile::<Q>(TICK_HZ)?.checksum())).transpose()?;
     let source: Box<dyn Source> = if args.emulated {
         let flash = args.flash.clone().map_or_else(|| flash_with(table.as_ref()), |path| Ok(Flash::File(path)))?;
-        Box::new(VirtualDue { firmware: args.firmware.clone(), scenario: args.scenario, seed: args.seed, flash })
+        let arm = args.arm.clone().or_else(|| args.table.clone());
+        Box::new(VirtualDue { firmware: args.firmware.clone(), scenario: args.scenario, seed: args.seed, arm, flash })
     } else {
         Box::new(PortSource::new(args.port.clone(), args.baud))
     };

@@ -1,7 +1,7 @@
 //! The board's wiring from an arm description or a table.
 
-use board_table::{ImuAddress, MAX_SEGMENTS, RegulatorWiring, SegmentWiring, Wiring};
-use calibration_tables::{ArmFile, BoardSegmentToml, ImuToml, RegulatorToml};
+use board_table::{ANALOG_PINS, Wiring};
+use calibration_tables::ArmFile;
 
 use super::error::TableImageError;
 
@@ -11,50 +11,38 @@ use super::error::TableImageError;
 /// [`TableImageError::Segments`], [`TableImageError::BendSensors`] or [`TableImageError::ReferencePins`] for an arm that is
 /// larger than the board.
 pub fn wiring(file: &ArmFile) -> Result<Wiring, TableImageError> {
-    let segments = file.segments.len();
-    if segments > MAX_SEGMENTS {
-        return Err(TableImageError::Segments(segments));
+    let wiring = file.wiring().ok_or(TableImageError::Segments(file.segments.len()))?;
+    if file.board.is_none() {
+        check_pins(file, &wiring)?;
     }
-    let Some(board) = &file.board else { return reference(file) };
-    Ok(Wiring {
-        segments: board.segments.iter().map(segment).collect(),
-        regulators: board.regulators.iter().map(regulator).collect(),
-    })
+    Ok(wiring)
 }
 
-/// The reference wiring, if it has a pin for each bend sensor of a table.
-fn reference(file: &ArmFile) -> Result<Wiring, TableImageError> {
-    let wiring = Wiring::reference(file.segments.len());
+/// Checks that the reference wiring has a pin for each bend sensor of a table.
+fn check_pins(file: &ArmFile, reference: &Wiring) -> Result<(), TableImageError> {
     let sensors: Vec<usize> = file.segments.iter().map(|segment| segment.bend.as_ref().map_or(0, Vec::len)).collect();
     let total = sensors.iter().sum();
-    if total > usize::from(board_table::ANALOG_PINS) {
+    if total > usize::from(ANALOG_PINS) {
         return Err(TableImageError::BendSensors(total));
     }
-    for (segment, (wired, sensors)) in (1..).zip(wiring.segments.iter().zip(sensors)) {
+    for (segment, (wired, sensors)) in (1..).zip(reference.segments.iter().zip(sensors)) {
         let pins = wired.bend.iter().flatten().count();
         if sensors > pins {
             return Err(TableImageError::ReferencePins { segment, sensors, pins });
         }
     }
-    Ok(wiring)
-}
-
-fn segment(segment: &BoardSegmentToml) -> SegmentWiring {
-    let mut pins = segment.bend.iter().map(|pin| pin.0);
-    SegmentWiring {
-        bend: [pins.next(), pins.next()],
-        imu: segment.imu.map(|ImuToml { channel, address }| ImuAddress { channel, address }),
-    }
-}
-
-fn regulator(regulator: &RegulatorToml) -> RegulatorWiring {
-    RegulatorWiring { pin: regulator.pin.0, full_scale_pa: (regulator.full_scale_kpa * 1000.0).round() as u32 }
+    Ok(())
 }
 
 #[cfg(test)]
 mod tests {
-    use board_table::{BoardTable, IMU_ADDRESSES, REGULATOR_PINS, TableError, WiringError};
-    use calibration_tables::{AnalogPin, BoardToml, DigitalPin, FileError, PLANAR_6_TABLE};
+    use board_table::{
+        BoardTable, IMU_ADDRESSES, ImuAddress, MAX_SEGMENTS, REGULATOR_PINS, RegulatorWiring, SegmentWiring,
+        TableError, WiringError,
+    };
+    use calibration_tables::{
+        AnalogPin, BoardSegmentToml, BoardToml, DigitalPin, FileError, ImuToml, PLANAR_6_TABLE, RegulatorToml,
+    };
 
     use super::super::stored::StoredTable;
     use super::*;
