@@ -338,7 +338,7 @@ fn a_cut_file_whose_first_chunk_is_damaged_loses_that_chunk_and_its_end() {
     // Nine of ten samples in each of the other chunks: of 200, one chunk at either end is lost.
     assert!((175..195).contains(&saved.len()), "{}", saved.len());
     for row in &saved {
-        assert_eq!(u64::from(row.board.expect("a board's").tick) * STEP_US, row.sample.time_us);
+        assert_eq!(u64::from(row.board.as_ref().expect("a board's").tick) * STEP_US, row.sample.time_us);
     }
 }
 
