@@ -7,7 +7,7 @@
 //! | file | contents |
 //! |---|---|
 //! | `constants.rs` | [`PROTOCOL_VERSION`], [`MAX_FRAME`], the largest arm's numbers |
-//! | `message.rs`, `table_message.rs` | messages and requests |
+//! | `message.rs`, `request.rs`, `table_message.rs` | messages, requests and replies |
 //! | `wire.rs`, `wire_conversions.rs` | fixed-width forms of the messages of every tick |
 //! | `topic.rs`, `payload.rs`, `body.rs` | topics and bodies |
 //! | `protocol_2.rs` | the version before, which a host still reads |
@@ -56,6 +56,7 @@ mod line;
 mod message;
 mod payload;
 pub mod protocol_2;
+mod request;
 mod schema;
 mod table_message;
 pub mod topic;
@@ -72,6 +73,7 @@ pub use frame::{EncodeError, Encoder};
 pub use line::{FrameLengths, HELLO_TICKS, LINE_BYTES_PER_SECOND, STREAM_BYTES_PER_SECOND};
 pub use message::*;
 pub use payload::Payload;
+pub use request::*;
 pub use schema::{EARLIER_SCHEMAS, SCHEMA, is_same_layout};
 pub use table_message::{TableAnnouncement, TableChunk, TableState, TableStatus};
 

@@ -1,6 +1,6 @@
 //! Budget of the line: the lengths of the frames of an arm, and the rates at which they fit.
 
-use crate::message::Rates;
+use crate::request::Rates;
 
 /// Bytes a second at 250 000 Bd; a byte takes ten bits with its start and stop bit.
 pub const LINE_BYTES_PER_SECOND: u32 = 25_000;

@@ -3,8 +3,9 @@
 use crate::body::{read, write};
 use crate::constants::PROTOCOL_VERSION;
 use crate::decode_error::DecodeError;
-use crate::message::{Message, Request};
+use crate::message::Message;
 use crate::protocol_2;
+use crate::request::Request;
 use crate::topic;
 
 /// Payload of one direction: the board's [`Message`], the host's [`Request`].

@@ -5,9 +5,10 @@ use serde::Deserialize;
 
 use crate::body::{read, write};
 use crate::message::{
-    Actuation, Command, Estimate, Event, Health, Hello, Message, Request, ResetCause, Sample, SensorHealth,
-    SensorState, Text, Uncertainty, text,
+    Actuation, Estimate, Event, Health, Hello, Message, ResetCause, Sample, SensorHealth, SensorState, Text,
+    Uncertainty, text,
 };
+use crate::request::{Command, Request};
 use crate::topic;
 use crate::wire::{EstimateWire, SampleWire, UncertaintyWire};
 

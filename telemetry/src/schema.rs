@@ -3,7 +3,8 @@
 use postcard_schema::Schema;
 use postcard_schema::schema::{DataModelType, DataModelVariant, NamedType, NamedValue};
 
-use crate::message::{Message, Request};
+use crate::message::Message;
+use crate::request::Request;
 
 /// Hash of the layout of all messages: the types of their fields, and of their variants' fields, in the order on the line.
 ///
