@@ -19,6 +19,9 @@ pub struct WiredArm {
 
 impl WiredArm {
     /// The arm of this wiring. Its bend maps are those of the reference arm, so that its shape is not accurate.
+    ///
+    /// # Panics
+    /// Never: the reference arm is calibrated.
     #[must_use]
     pub fn new(wiring: Wiring) -> Self {
         let reference = table();
