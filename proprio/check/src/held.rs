@@ -98,6 +98,8 @@ impl Held {
         let figure = |rows: &Rows| 100.0 * rows.count as f64 / self.rows as f64;
         let held = self.logger.held;
         if held.count >= LEAST {
+            // Steps that catch up are those of no other sensor.
+            findings.retain(|finding| finding.kind != Kind::Unrelated);
             findings.push(Finding { sensor: Source::AllSensors, rows: held, kind, figure: figure(&held) });
             return;
         }
@@ -110,8 +112,11 @@ impl Held {
         // Those near the base turn too little for some of their repeats.
         if held.len() > 1 && 2 * held.len() >= read {
             let rows = held.iter().map(|(_, rows)| *rows).max_by_key(|rows| rows.count).unwrap_or_default();
-            // All at once are not each its own driver's.
-            findings.retain(|finding| finding.kind != Kind::Frozen || !matches!(finding.sensor, Source::Imu { .. }));
+            // All at once are not each its own driver's, and steps that catch up are not those of the bend sensors.
+            let is_same = |finding: &Finding| {
+                matches!(finding.kind, Kind::Frozen | Kind::Unrelated) && matches!(finding.sensor, Source::Imu { .. })
+            };
+            findings.retain(|finding| !is_same(finding));
             findings.push(Finding { sensor: Source::AllImus, rows, kind, figure: figure(&rows) });
             return;
         }
