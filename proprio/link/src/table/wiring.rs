@@ -145,7 +145,7 @@ mod tests {
     fn the_file_accepts_what_the_board_has() {
         let read = |file: &ArmFile| ArmFile::parse(&file.to_toml());
         let mut files = Vec::new();
-        for pin in 0..=board_table::ANALOG_PINS {
+        for pin in 0..=ANALOG_PINS {
             files.push(wired(BoardSegmentToml { bend: vec![AnalogPin(pin)], imu: None }, Vec::new()));
         }
         for channel in 0..=board_table::IMU_CHANNELS {
