@@ -27,8 +27,6 @@ pub struct BoardEstimator {
 
 impl BoardEstimator {
     /// An estimator that is not started and estimates nothing. Without segments in `table` it never estimates.
-    // Inlined, so that the firmware initialises it in a few loops, built for size.
-    #[inline]
     pub const fn new(table: &'static ArmConfig<'static, Q>) -> Self {
         Self {
             estimator: Estimator::const_new(table),
