@@ -33,6 +33,8 @@ pub struct Control {
     pub tare_requested: bool,
     /// Pose of the arm in the last tick.
     pub pose: Pose,
+    /// Report on a request to tare, to be sent.
+    pub tare_report: Option<TareReport>,
     /// A `Hello` was requested.
     pub hello_requested: bool,
     /// Frames since boot that were received damaged.
@@ -41,6 +43,14 @@ pub struct Control {
     pub has_table: bool,
     /// Reply of the table task, already sent.
     pub completed: Option<Reply>,
+}
+
+impl Control {
+    /// Lets the pose at the request of this number be reported.
+    fn report_pose(&mut self, id: u32) {
+        let Pose { turned, bent } = self.pose;
+        self.tare_report = Some(TareReport { id, turned, bent });
+    }
 }
 
 /// State of the command task.
@@ -83,9 +93,7 @@ impl CommandTask {
                             .map(|()| Execution::Done)
                     };
                     if matches!(command, Command::Tare(_)) {
-                        let Pose { turned, bent } = control.lock(|control| control.pose);
-                        let report = TareReport { id: request.id, turned, bent };
-                        sender.lock(|sender| sender.send(&Message::Tare(report)));
+                        control.lock(|control| control.report_pose(request.id));
                     }
                     log(&request, result);
                     result

@@ -123,10 +123,10 @@ impl EstimationTask {
             (actuator.state(), actuator.pressures_pa().clone())
         });
         let pose = Pose { turned: self.sensors.rest.most_turned(), bent: self.estimator.most_bent() };
-        let (mut due, requested, damaged_frames) = control.lock(|control| {
+        let (mut due, requested, damaged_frames, tare_report) = control.lock(|control| {
             control.pose = pose;
             let requested = core::mem::take(&mut control.hello_requested);
-            (control.schedule.due(tick.number), requested, control.damaged_frames)
+            (control.schedule.due(tick.number), requested, control.damaged_frames, control.tare_report.take())
         });
         let introduce = requested || self.last_tick.is_none();
         due.hello |= introduce;
@@ -138,6 +138,9 @@ impl EstimationTask {
         let uncertainty = due.uncertainty.then(|| self.estimator.uncertainty(tick.number));
         sender.lock(|sender| {
             self.send(sender, &result, due, introduce);
+            if let Some(report) = tare_report {
+                sender.send(&Message::Tare(report));
+            }
             if let Some(uncertainty) = uncertainty {
                 sender.send(&Message::Uncertainty(uncertainty));
             }

@@ -122,6 +122,7 @@ mod app {
             schedule: Schedule::of_arm(wiring.segments.len(), wiring.regulators.len()),
             tare_requested: false,
             pose: Pose::default(),
+            tare_report: None,
             hello_requested: false,
             damaged_frames: 0,
             has_table,
