@@ -9,6 +9,6 @@ use on_target_tests::step::{BIAS_FILTER_TABLES, TestedEstimator, alone, steps_wi
 
 #[cortex_m_rt::entry]
 fn main() -> ! {
-    static mut SIX: TestedEstimator<6> = TestedEstimator::const_new(&BIAS_FILTER_TABLES[0]);
-    alone(|| steps_with_uncertainty(SIX))
+    let [six, _] = &BIAS_FILTER_TABLES;
+    alone(|| steps_with_uncertainty(&mut TestedEstimator::<6>::const_new(six)))
 }
