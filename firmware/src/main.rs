@@ -13,8 +13,9 @@
 //! | `table` | 1 | a request about the table | | | pages of the flash |
 //! | `idle` | 0 | | | | sleep |
 //!
-//! Times are those of the reference arm, from a task's interrupt to its end, preemption included, and for `estimation` from the tick. `cargo xtask bench`
-//! measures them on the emulated board, in a run with faults and floods of requests, and checks them against the bounds.
+//! Times are those of the reference arm, from a task's interrupt to its end, preemption included, and for `estimation` from
+//! the tick. `cargo xtask bench` measures them on the emulated board, in a run with faults and floods of requests, and checks
+//! them against the bounds.
 //!
 //! The watchdog is fed in `tick`, and only while all tasks meet their deadlines. Every panic and fault vents the arm first.
 #![no_std]
