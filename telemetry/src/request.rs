@@ -21,7 +21,7 @@ pub struct Request {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, Schema)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Command {
-    /// Reply, then send a [`Hello`].
+    /// Reply, then send a [`Hello`](crate::Hello).
     Ping,
     /// Restart the estimator: the arm is in its reference pose. The reply is followed by a [`TareReport`].
     Tare(TareMode),
@@ -35,13 +35,13 @@ pub enum Command {
     SetPressures(SetPressures),
     /// Vent and restart.
     Reboot,
-    /// Begin the transfer of a table to the board's flash, or resume it; the reply is followed by a [`TableState`].
+    /// Begin the transfer of a table to the board's flash, or resume it; the reply is followed by a [`TableState`](crate::TableState).
     TableBegin(TableAnnouncement),
     /// Store the next piece of the table.
     TableWrite(TableChunk),
     /// End the transfer: check the table, make it the board's, and restart.
     TableCommit,
-    /// Send the piece of the table, image first, that begins at this offset, as [`Message::TableData`].
+    /// Send the piece of the table, image first, that begins at this offset, as [`Message::TableData`](crate::Message::TableData).
     TableRead(u32),
     /// Erase the board's table, and restart.
     TableErase,
