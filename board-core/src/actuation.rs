@@ -1,4 +1,4 @@
-//! The six pressures: arming, set-points with a deadline, and venting after it.
+//! The pressures: arming, set-points with a deadline, and venting after it.
 //!
 //! Pressures move only while armed, and only while set-points are received. Accepted set-points are a lease of the
 //! pressures: they are valid until their deadline `valid_ms`. Time from the last accepted set-points:
@@ -18,10 +18,12 @@
 //! armed and has received no set-points has no deadline; it is vented and stays armed. Arming it again while it is not
 //! disarmed changes nothing, so that arming cannot extend a deadline.
 
-use telemetry::{Actuation, Event, REGULATORS, Refusal, SetPressures};
+use board_table::Wiring;
+use heapless::Vec;
+use telemetry::{Actuation, Event, MAX_REGULATORS, Refusal, SetPressures};
 
-/// Pressure of a regulator at full duty, Pa: the supply's.
-pub const FULL_SCALE_PA: u32 = 280_000;
+/// A pressure of each regulator, Pa.
+pub type Pressures = Vec<u32, MAX_REGULATORS>;
 
 /// Longest deadline of set-points, ms.
 pub const VALID_MS_MAX: u16 = 1000;
@@ -40,71 +42,71 @@ const _: () = assert!(VALID_MS_MAX + HOLD_MS < VENTED_MS);
 /// It has no clock: the time since boot in µs, which never decreases, is an argument.
 ///
 /// ```
-/// use board_core::{Actuator, FULL_SCALE_PA};
-/// use telemetry::{Actuation, REGULATORS, SetPressures};
+/// use board_core::Actuator;
+/// use board_table::Wiring;
+/// use telemetry::{Actuation, SetPressures};
 ///
-/// let mut actuator = Actuator::new([FULL_SCALE_PA; REGULATORS]);
+/// // Six regulators of 280 kPa.
+/// let mut actuator = Actuator::new(&Wiring::reference(6));
 /// actuator.arm();
-/// let half = SetPressures { pressures_pa: [FULL_SCALE_PA / 2; REGULATORS], valid_ms: 100 };
+/// let half = SetPressures { pressures_pa: [140_000; 6].into_iter().collect(), valid_ms: 100 };
 /// actuator.set(&half, 0)?;
-/// assert_eq!(actuator.duties(4200), [2100; REGULATORS]);
+/// assert_eq!(actuator.duties(4200), [2100; 6]);
 ///
 /// actuator.advance(250_000);
-/// assert_eq!((actuator.state(), actuator.pressures_pa()), (Actuation::Holding, half.pressures_pa));
+/// assert_eq!((actuator.state(), actuator.pressures_pa()), (Actuation::Holding, &half.pressures_pa));
 /// actuator.advance(1_400_000);
-/// assert_eq!((actuator.state(), actuator.duties(4200)), (Actuation::Disarmed, [0; REGULATORS]));
+/// assert_eq!((actuator.state(), actuator.duties(4200)), (Actuation::Disarmed, [0; 6].into_iter().collect()));
 /// # Ok::<(), telemetry::Refusal>(())
 /// ```
 #[derive(Debug)]
 pub struct Actuator {
-    limits_pa: [u32; REGULATORS],
+    /// Pressure of each regulator at full duty.
+    full_scale_pa: Pressures,
     state: Actuation,
     /// The state that was reported last.
     reported: Actuation,
-    pressures_pa: [u32; REGULATORS],
+    pressures_pa: Pressures,
     /// The accepted set-points and their deadline.
     lease: Option<SetpointLease>,
     degraded: bool,
 }
 
 /// Set-points from their acceptance to the vented arm.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 struct SetpointLease {
-    pressures_pa: [u32; REGULATORS],
+    pressures_pa: Pressures,
     accepted_us: u64,
     valid_ms: u16,
 }
 
 impl SetpointLease {
-    /// State and pressures, Pa, at a time.
-    fn at(&self, now_us: u64) -> (Actuation, [u32; REGULATORS]) {
+    /// State at a time, and the numerator and denominator of the pressures' share of the set-points.
+    fn at(&self, now_us: u64) -> (Actuation, [u64; 2]) {
         let age_us = now_us.saturating_sub(self.accepted_us);
         let hold_from_us = us(self.valid_ms);
         let ramp_from_us = hold_from_us + us(HOLD_MS);
         if age_us <= hold_from_us {
-            return (Actuation::Armed, self.pressures_pa);
+            return (Actuation::Armed, [1, 1]);
         }
         if age_us <= ramp_from_us {
-            return (Actuation::Holding, self.pressures_pa);
+            return (Actuation::Holding, [1, 1]);
         }
         let left_us = us(VENTED_MS).saturating_sub(age_us);
-        if left_us == 0 {
-            return (Actuation::Disarmed, [0; REGULATORS]);
-        }
         let ramp_us = us(VENTED_MS) - ramp_from_us;
-        (Actuation::Ramping, self.pressures_pa.map(|pressure| share(pressure, left_us, ramp_us)))
+        (if left_us == 0 { Actuation::Disarmed } else { Actuation::Ramping }, [left_us, ramp_us])
     }
 }
 
 impl Actuator {
-    /// Vented and disarmed. `limits_pa` are the highest set-points that each regulator accepts; [`FULL_SCALE_PA`] at
-    /// most.
-    pub fn new(limits_pa: [u32; REGULATORS]) -> Self {
+    /// The regulators that are wired, vented and disarmed. None accepts a set-point over its full scale.
+    pub fn new(wiring: &Wiring) -> Self {
+        let full_scale_pa: Pressures = wiring.regulators.iter().map(|regulator| regulator.full_scale_pa).collect();
         Self {
-            limits_pa: limits_pa.map(|limit| limit.min(FULL_SCALE_PA)),
+            pressures_pa: full_scale_pa.iter().map(|_| 0).collect(),
+            full_scale_pa,
             state: Actuation::Disarmed,
             reported: Actuation::Disarmed,
-            pressures_pa: [0; REGULATORS],
             lease: None,
             degraded: false,
         }
@@ -120,7 +122,7 @@ impl Actuator {
     /// Vents at once, and lets nothing move the pressures until armed again.
     pub fn disarm(&mut self) {
         self.state = Actuation::Disarmed;
-        self.pressures_pa = [0; REGULATORS];
+        self.pressures_pa.fill(0);
         self.lease = None;
     }
 
@@ -135,23 +137,26 @@ impl Actuator {
     /// Accepts new set-points.
     ///
     /// # Errors
-    /// [`Refusal::Disarmed`] if it is not armed, [`Refusal::OverRange`] if a pressure is over its regulator's limit,
-    /// [`Refusal::Deadline`] if `valid_ms` is not 1 to [`VALID_MS_MAX`]. The previous set-points are then unchanged.
+    /// [`Refusal::Disarmed`] if it is not armed, [`Refusal::Regulators`] if it has another number of set-points than there are
+    /// regulators, [`Refusal::OverRange`] if a pressure is over its regulator's full scale, [`Refusal::Deadline`] if `valid_ms` is not 1 to [`VALID_MS_MAX`]. The previous set-points are then unchanged.
     pub fn set(&mut self, request: &SetPressures, now_us: u64) -> Result<(), Refusal> {
         self.advance(now_us);
         if self.state == Actuation::Disarmed {
             return Err(Refusal::Disarmed);
         }
-        if request.pressures_pa.iter().zip(&self.limits_pa).any(|(pressure, limit)| pressure > limit) {
+        if request.pressures_pa.len() != self.full_scale_pa.len() {
+            return Err(Refusal::Regulators);
+        }
+        if request.pressures_pa.iter().zip(&self.full_scale_pa).any(|(pressure, limit)| pressure > limit) {
             return Err(Refusal::OverRange);
         }
         if !(1..=VALID_MS_MAX).contains(&request.valid_ms) {
             return Err(Refusal::Deadline);
         }
-        let mut pressures_pa = request.pressures_pa;
+        let mut pressures_pa = request.pressures_pa.clone();
         if self.degraded {
-            for (pressure, now) in pressures_pa.iter_mut().zip(self.pressures_pa) {
-                *pressure = now.min(*pressure);
+            for (pressure, now) in pressures_pa.iter_mut().zip(&self.pressures_pa) {
+                *pressure = (*now).min(*pressure);
             }
         }
         self.lease = Some(SetpointLease { pressures_pa, accepted_us: now_us, valid_ms: request.valid_ms });
@@ -162,7 +167,11 @@ impl Actuator {
     /// Advances state and pressures to this time; called every tick.
     pub fn advance(&mut self, now_us: u64) {
         let Some(lease) = &self.lease else { return };
-        (self.state, self.pressures_pa) = lease.at(now_us);
+        let (state, [part, of]) = lease.at(now_us);
+        self.state = state;
+        for (pressure, set_point) in self.pressures_pa.iter_mut().zip(&lease.pressures_pa) {
+            *pressure = share(*set_point, part, of);
+        }
         if self.state == Actuation::Disarmed {
             self.lease = None;
         }
@@ -174,14 +183,16 @@ impl Actuator {
     }
 
     /// Set-points of the regulators, Pa, at the time of the last call with a time.
-    pub fn pressures_pa(&self) -> [u32; REGULATORS] {
-        self.pressures_pa
+    pub fn pressures_pa(&self) -> &Pressures {
+        &self.pressures_pa
     }
 
-    /// The set-points as PWM duties, counts: 0 at 0 Pa, the whole period at [`FULL_SCALE_PA`].
-    pub fn duties(&self, period_counts: u16) -> [u16; REGULATORS] {
-        let full = u64::from(FULL_SCALE_PA);
-        self.pressures_pa.map(|pressure| share(u32::from(period_counts), u64::from(pressure), full) as u16)
+    /// The set-points as PWM duties, counts: 0 at 0 Pa, the whole period at full scale.
+    pub fn duties(&self, period_counts: u16) -> Vec<u16, MAX_REGULATORS> {
+        let pressures = self.pressures_pa.iter().zip(&self.full_scale_pa);
+        pressures
+            .map(|(pressure, full)| share(period_counts.into(), (*pressure).into(), (*full).into()) as u16)
+            .collect()
     }
 
     /// Returns the state once after each change.
@@ -196,7 +207,7 @@ fn us(ms: u16) -> u64 {
     u64::from(ms) * 1000
 }
 
-/// `whole · part / of`, rounded down; `part` is `of` at most.
+/// `whole · part / of`, rounded down; `part` is `of` at most. 0 of nothing.
 fn share(whole: u32, part: u64, of: u64) -> u32 {
-    (u64::from(whole) * part / of) as u32
+    (u64::from(whole) * part).checked_div(of).unwrap_or(0) as u32
 }

@@ -1,4 +1,4 @@
-//! Monitor of the twelve bend sensors: rail detection in the raw counts, and a debounced state of each sensor.
+//! Monitor of the bend sensors: rail detection in the raw counts, and a debounced state of each sensor.
 //!
 //! A bend sensor is a strip of 25 kΩ to 100 kΩ to ground and a fixed 47 kΩ to the converter's reference, so that it
 //! reads 1400 to 2800 of 4095 counts. An open strip reads the reference, a short or an open resistor reads ground. The
@@ -12,7 +12,9 @@
 //!
 //! A scan that was late or out of order counts as not read, for all sensors. Sensors start as ok.
 
-use telemetry::{BEND_SENSORS, Event, SensorHealth, SensorState};
+use board_table::{ANALOG_PINS, Wiring};
+use heapless::Vec;
+use telemetry::{BEND_PER_SEGMENT, Event, MAX_BEND_SENSORS, SensorHealth, SensorState};
 
 /// Width of the bands at both ends of the converter's range, counts.
 pub const RAIL_COUNTS: u16 = 32;
@@ -23,18 +25,22 @@ pub const LOSS_TICKS: u8 = 3;
 /// Debounce time of a return: ticks of 10 ms in a row with a good reading.
 pub const RETURN_TICKS: u8 = 50;
 
-/// Bend sensors of a segment.
-const PER_SEGMENT: usize = BEND_SENSORS / telemetry::SEGMENTS;
+/// Counts of a scan of all analog pins, A0 to A11.
+pub type Scan = [u16; ANALOG_PINS as usize];
+
+/// Health of a sensor that the arm does not have.
+pub(crate) const NOT_WIRED: SensorHealth = SensorHealth { state: SensorState::NotWired, missed: 0 };
 
 /// Largest count of the converter: 12 bits, below the 4 of the channel's tag (datasheet 43.6.11).
 const MAX_COUNTS: u16 = 4095;
 
-/// Monitor of the twelve bend sensors, in the order 1a, 1b, 2a … 6b.
+/// Monitor of the arm's bend sensors, two places for each segment: 1a, 1b, 2a, …
 ///
 /// ```
 /// use board_core::BendSensorMonitor;
+/// use board_table::Wiring;
 ///
-/// let mut monitor = BendSensorMonitor::new();
+/// let mut monitor = BendSensorMonitor::new(&Wiring::reference(6));
 /// let mut scan = [2000; 12];
 /// scan[4] = 4095; // 3a is open
 /// let counts = monitor.step(Some(&scan), |_| {});
@@ -42,54 +48,49 @@ const MAX_COUNTS: u16 = 4095;
 /// ```
 #[derive(Debug)]
 pub struct BendSensorMonitor {
-    sensors: [Sensor; BEND_SENSORS],
+    sensors: Vec<Option<Sensor>, MAX_BEND_SENSORS>,
 }
 
 impl BendSensorMonitor {
-    /// A monitor whose sensors are all ok.
-    pub const fn new() -> Self {
+    /// A monitor of the sensors that are wired, all ok.
+    pub fn new(wiring: &Wiring) -> Self {
         let ok = SensorHealth { state: SensorState::Ok, missed: 0 };
-        Self { sensors: [Sensor { health: ok, debounce: 0 }; BEND_SENSORS] }
+        let pins = wiring.segments.iter().flat_map(|segment| segment.bend);
+        Self { sensors: pins.map(|pin| pin.map(|pin| Sensor { pin, health: ok, debounce: 0 })).collect() }
     }
 
     /// Checks the scan of a tick, `None` if it was late or out of order. Returns the valid counts and reports each change
     /// of a sensor's state.
-    pub fn step(
-        &mut self,
-        scan: Option<&[u16; BEND_SENSORS]>,
-        mut report: impl FnMut(Event),
-    ) -> [Option<u16>; BEND_SENSORS] {
-        let mut counts = scan.map_or([None; BEND_SENSORS], |scan| scan.map(Some));
-        for ((index, sensor), counts) in (0..).zip(&mut self.sensors).zip(&mut counts) {
+    pub fn step(&mut self, scan: Option<&Scan>, mut report: impl FnMut(Event)) -> Vec<Option<u16>, MAX_BEND_SENSORS> {
+        let sensors = self.sensors.iter_mut().zip(0..);
+        let counts = sensors.map(|(sensor, index)| {
+            let sensor = sensor.as_mut()?;
             let before = sensor.health.state;
-            *counts = sensor.step(*counts);
+            let counts = sensor.step(scan.and_then(|scan| scan.get(usize::from(sensor.pin)).copied()));
             if sensor.health.state != before {
                 report(Event::Bend(index, sensor.health.state));
             }
-        }
-        counts
+            counts
+        });
+        counts.collect()
     }
 
     /// State of each sensor, and its ticks without a valid reading.
-    pub fn health(&self) -> [SensorHealth; BEND_SENSORS] {
-        self.sensors.map(|sensor| sensor.health)
+    pub fn health(&self) -> Vec<SensorHealth, MAX_BEND_SENSORS> {
+        self.sensors.iter().map(|sensor| sensor.as_ref().map_or(NOT_WIRED, |sensor| sensor.health)).collect()
     }
 
-    /// Returns whether no bend sensor of a segment, counted from 0 at the base, responds.
+    /// Returns whether a segment, counted from 0 at the base, has bend sensors, and none of them responds.
     pub fn segment_is_lost(&self, segment: usize) -> bool {
-        let mut sensors = self.sensors.iter().skip(segment * PER_SEGMENT).take(PER_SEGMENT);
-        sensors.all(|sensor| sensor.health.state == SensorState::NoResponse)
-    }
-}
-
-impl Default for BendSensorMonitor {
-    fn default() -> Self {
-        Self::new()
+        let sensors = || self.sensors.iter().skip(segment * BEND_PER_SEGMENT).take(BEND_PER_SEGMENT).flatten();
+        sensors().next().is_some() && sensors().all(|sensor| sensor.health.state == SensorState::NoResponse)
     }
 }
 
 #[derive(Debug, Clone, Copy)]
 struct Sensor {
+    /// Analog pin.
+    pin: u8,
     health: SensorHealth,
     /// Debounce counter: ticks in a row whose reading contradicts the state.
     debounce: u8,

@@ -33,11 +33,11 @@ pub const REFILL_PER_TICK: u8 = 2;
 ///
 /// ```
 /// use board_core::{CommandServer, Execution};
-/// use telemetry::{Command, RequestOutcome, Reply, Request};
+/// use telemetry::{Command, RequestOutcome, Reply, Request, TareMode};
 ///
 /// let mut server = CommandServer::new();
 /// let mut tares = 0;
-/// let request = Request { id: 7, command: Command::Tare };
+/// let request = Request { id: 7, command: Command::Tare(TareMode::Force) };
 /// for tick in 0..2 {
 ///     // The first reply was lost, and the host repeats the request.
 ///     let reply = server.answer(&request, tick, |_| {

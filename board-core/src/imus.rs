@@ -7,8 +7,8 @@
 //!
 //! An IMU that runs costs three transactions, and a fourth in every fourth tick: six take 2.2 to 2.4 ms on the wire at
 //! 400 kHz, and 3.3 ms if all of them must be checked. A missing IMU does not delay the others: after three NACKs it is
-//! polled only every 25 ticks (250 ms), and each poll costs the selection of its channel and one address. A tick has at
-//! most 36 transactions and one recovery of the bus.
+//! polled only every 25 ticks (250 ms), and each poll costs the selection of its channel and one address. Eight
+//! take a third more. A tick has at most six transactions for each IMU and one recovery of the bus.
 //!
 //! # Faults
 //!
@@ -29,58 +29,69 @@ mod bus;
 mod channel;
 mod stuck;
 
-use crate::bno055;
-use crate::tca9548a::{Channel, Tca9548a};
+use crate::bend_sensors::NOT_WIRED;
+use crate::tca9548a::Tca9548a;
+use board_table::Wiring;
 use bus::Bus;
 pub use bus::{BusRecovery, BusStuck};
 use channel::ImuChannel;
 use embedded_hal::digital::OutputPin;
 use embedded_hal_async::i2c::I2c;
 use heapless::Vec;
-use telemetry::{Event, SEGMENTS, SensorHealth};
+use telemetry::{Event, MAX_SEGMENTS, SensorHealth};
 
 /// Most events of a tick: each IMU's state, and one recovery of the bus.
-pub const EVENTS: usize = SEGMENTS + 1;
+pub const EVENTS: usize = MAX_SEGMENTS + 1;
 
 /// Valid readings and events of one tick.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ImuReadings {
-    /// Raw quaternion w, x, y, z of each IMU, in units of 2⁻¹⁴; `None`: not read, or not valid.
-    pub imu: [Option<[i16; 4]>; SEGMENTS],
+    /// Raw quaternion w, x, y, z of each segment's IMU, in units of 2⁻¹⁴; `None`: not read, not valid, or no IMU there.
+    pub imu: Vec<Option<[i16; 4]>, MAX_SEGMENTS>,
     /// Changes of state.
     pub events: Vec<Event, EVENTS>,
 }
 
-/// The IMUs of the arm, from the base: IMU k is on channel k of the multiplexer, both counted from 0.
+impl ImuReadings {
+    /// Returns whether every IMU of the arm was read.
+    pub fn all_are_read(&self, health: &[SensorHealth]) -> bool {
+        self.imu.iter().zip(health).all(|(imu, health)| imu.is_some() || *health == NOT_WIRED)
+    }
+}
+
+/// The IMUs of the arm, from the base, each on its channel of the multiplexer and at its address.
 ///
 /// ```
-/// use board_core::imus::{BusRecovery, Imus};
+/// use board_core::imus::{BusRecovery, ImuReadings, Imus};
 /// use embedded_hal::digital::OutputPin;
 /// use embedded_hal_async::i2c::I2c;
 ///
 /// /// Called every 10 ms; an application bounds the time of `read`.
-/// async fn tick<I: I2c + BusRecovery, R: OutputPin>(imus: &mut Imus<I, R>, tick: u32) -> [Option<[i16; 4]>; 6] {
+/// async fn tick<I: I2c + BusRecovery, R: OutputPin>(imus: &mut Imus<I, R>, tick: u32) -> ImuReadings {
 ///     imus.read(tick).await;
-///     imus.validate().imu
+///     imus.validate()
 /// }
 /// ```
 #[derive(Debug)]
 pub struct Imus<I, R> {
     bus: Bus<I, R>,
-    channels: [ImuChannel; SEGMENTS],
+    /// Each segment's; `None`: it has none.
+    imus: Vec<Option<ImuChannel>, MAX_SEGMENTS>,
 }
 
 impl<I: I2c + BusRecovery, R: OutputPin> Imus<I, R> {
-    /// All IMUs, at their default address and not read yet. Makes no transaction.
-    pub fn new(i2c: I, mux: Tca9548a<R>) -> Self {
-        Self { bus: Bus::new(i2c, mux), channels: core::array::from_fn(|_| ImuChannel::new(bno055::ADDRESS)) }
+    /// The IMUs that are wired, not read yet. Makes no transaction.
+    pub fn new(i2c: I, mux: Tca9548a<R>, wiring: &Wiring) -> Self {
+        let imus = wiring.segments.iter().map(|segment| segment.imu.and_then(ImuChannel::new));
+        Self { bus: Bus::new(i2c, mux), imus: imus.collect() }
     }
 
     /// Reads each IMU that is due in tick number `tick`, once a tick. The future may be dropped at any await; readings
     /// until then count, and the next call recovers the bus first.
     pub async fn read(&mut self, tick: u32) {
         let mut may_recover = true;
-        for (k, (imu, channel)) in (0..).zip(self.channels.iter_mut().zip(Channel::ALL)) {
+        for (k, imu) in (0..).zip(&mut self.imus) {
+            let Some(imu) = imu else { continue };
             // The tick is shifted by one for each IMU, so that they are checked in different ticks.
             let tick = tick.wrapping_add(k);
             if !imu.is_due(tick) {
@@ -92,32 +103,39 @@ impl<I: I2c + BusRecovery, R: OutputPin> Imus<I, R> {
                 }
                 may_recover = false;
             }
-            imu.read(&mut self.bus, channel, tick).await;
+            imu.read(&mut self.bus, tick).await;
         }
     }
 
     /// Validates the readings of the last [`read`](Self::read); once a tick, also if that was cut off.
     pub fn validate(&mut self) -> ImuReadings {
-        let quaternions = self.channels.each_ref().map(ImuChannel::quaternion);
-        let mut readings = ImuReadings { imu: [None; SEGMENTS], events: Vec::new() };
+        let mut quaternions = [None; MAX_SEGMENTS];
+        for (quaternion, imu) in quaternions.iter_mut().zip(&self.imus) {
+            *quaternion = imu.as_ref().and_then(ImuChannel::quaternion);
+        }
+        let mut events = Vec::new();
         // There is room for an event of each IMU and one of the bus: no push can fail.
         if self.bus.take_recovery() {
-            let _ = readings.events.push(Event::BusRecovery);
+            let _ = events.push(Event::BusRecovery);
         }
-        for (k, (channel, imu)) in (0..).zip(self.channels.iter_mut().zip(&mut readings.imu)) {
-            let before = channel.health().state;
-            *imu = channel.validate(&quaternions);
-            let state = channel.health().state;
+        let imus = self.imus.iter_mut().zip(0..);
+        let readings = imus.map(|(imu, k)| {
+            let imu = imu.as_mut()?;
+            let before = imu.health().state;
+            let valid = imu.validate(&quaternions);
+            let state = imu.health().state;
             if state != before {
-                let _ = readings.events.push(Event::Imu(k, state));
+                let _ = events.push(Event::Imu(k, state));
             }
-        }
-        readings
+            valid
+        });
+        let imu = readings.collect();
+        ImuReadings { imu, events }
     }
 
     /// State of each IMU, and its ticks without a valid reading.
-    pub fn health(&self) -> [SensorHealth; SEGMENTS] {
-        self.channels.each_ref().map(ImuChannel::health)
+    pub fn health(&self) -> Vec<SensorHealth, MAX_SEGMENTS> {
+        self.imus.iter().map(|imu| imu.as_ref().map_or(NOT_WIRED, ImuChannel::health)).collect()
     }
 
     /// Recoveries of a stuck bus since boot; saturates.

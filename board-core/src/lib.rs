@@ -10,7 +10,7 @@
 //! | [`imus`] | polling and validation of the IMUs |
 //! | [`bno055`], [`tca9548a`] | drivers of an IMU and of the multiplexer before it |
 //! | [`BendSensorMonitor`] | rail detection and debounced states of the bend sensors |
-//! | [`BoardEstimator`] | the estimator, its tares and its results as messages |
+//! | [`RestMonitor`] | range of the headings before a tare |
 //! | [`CommandServer`] | idempotent requests and their rate limit |
 //! | [`TableServer`] | requests about the table in the flash |
 //! | [`Schedule`] | periods of the messages |
@@ -24,20 +24,20 @@
 mod actuation;
 mod bend_sensors;
 pub mod bno055;
-mod board_estimator;
 mod boot_counter;
 mod command_server;
 pub mod imus;
+mod rest_monitor;
 mod schedule;
 mod supervisor;
 mod table_server;
 pub mod tca9548a;
 
-pub use actuation::{Actuator, FULL_SCALE_PA, HOLD_MS, VALID_MS_MAX, VENTED_MS};
-pub use bend_sensors::{BendSensorMonitor, LOSS_TICKS, RAIL_COUNTS, RETURN_TICKS};
-pub use board_estimator::{BoardEstimator, TARE_TICKS, WINDOW};
+pub use actuation::{Actuator, HOLD_MS, Pressures, VALID_MS_MAX, VENTED_MS};
+pub use bend_sensors::{BendSensorMonitor, LOSS_TICKS, RAIL_COUNTS, RETURN_TICKS, Scan};
 pub use boot_counter::{BootCounter, CRASHES, RETAINED_WORDS, UPTIME_WORD, WINDOW_TICKS};
 pub use command_server::{BUCKET_SIZE, CommandServer, Execution, REFILL_PER_TICK, SESSION_TIMEOUT_TICKS};
-pub use schedule::{DEFAULT_RATES, DueMessages, HELLO_TICKS, Schedule};
+pub use rest_monitor::{REST_RANGE, RestMonitor};
+pub use schedule::{DueMessages, Schedule};
 pub use supervisor::{DeadlineMissed, STARTUP_TICKS, Supervisor, Task};
 pub use table_server::{TableAnswer, TableServer};

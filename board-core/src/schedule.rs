@@ -1,13 +1,6 @@
 //! Schedule of the periodic messages.
 
-use telemetry::Rates;
-
-/// Rates until the host sets others: samples and estimates every tick, health at 5 Hz, uncertainty at 4 Hz, which just fit
-/// the line.
-pub const DEFAULT_RATES: Rates = Rates { sample: 1, estimate: 1, health: 20, uncertainty: 25 };
-
-/// Ticks of 10 ms from one hello to the next: once a second at any rates.
-pub const HELLO_TICKS: u16 = 100;
+use telemetry::{HELLO_TICKS, Rates};
 
 /// Periods of the messages.
 ///
@@ -18,13 +11,16 @@ pub const HELLO_TICKS: u16 = 100;
 /// use board_core::Schedule;
 /// use telemetry::Rates;
 ///
-/// let schedule = Schedule::new(Rates { sample: 2, estimate: 1, health: 0, uncertainty: 0 });
+/// let mut schedule = Schedule::of_arm(6, 6);
+/// schedule.set(Rates { sample: 2, estimate: 1, health: 0, uncertainty: 0 });
 /// let due = schedule.due(3);
 /// assert!(!due.sample && due.estimate && !due.health && !due.uncertainty && !due.hello);
 /// ```
 #[derive(Debug, Clone, Copy)]
 pub struct Schedule {
     rates: Rates,
+    /// Shortest period of the estimates for which the line has room.
+    shortest_estimate: u16,
 }
 
 /// Messages that are due in one tick.
@@ -44,9 +40,16 @@ pub struct DueMessages {
 }
 
 impl Schedule {
-    /// A schedule of these rates.
-    pub const fn new(rates: Rates) -> Self {
-        Self { rates }
+    /// The schedule of an arm of so many segments and regulators until the host sets other rates.
+    pub const fn of_arm(segments: usize, regulators: usize) -> Self {
+        let rates = Rates::of_arm(segments, regulators);
+        Self { rates, shortest_estimate: rates.estimate }
+    }
+
+    /// Sets the rates; estimates are not sent more often than the line has room for.
+    pub fn set(&mut self, rates: Rates) {
+        let estimate = if rates.estimate == 0 { 0 } else { rates.estimate.max(self.shortest_estimate) };
+        self.rates = Rates { estimate, ..rates };
     }
 
     /// Messages that are due in this tick.
@@ -59,11 +62,5 @@ impl Schedule {
             uncertainty: every(self.rates.uncertainty),
             hello: every(HELLO_TICKS),
         }
-    }
-}
-
-impl Default for Schedule {
-    fn default() -> Self {
-        Self::new(DEFAULT_RATES)
     }
 }

@@ -3,12 +3,14 @@
 //! A page of the flash takes some milliseconds to write, so the server runs in a task of its own, of the lowest priority,
 //! and one request at a time.
 
-use board_table::{Announcement, BoardTable, TableError, TableStore};
+use board_estimator::WINDOW;
+use board_table::{Announcement, BoardTable, MAX_REGULATORS, MAX_SEGMENTS, TableError, TableStore};
 use embedded_storage::Storage;
 use heapless::Vec;
-use telemetry::{Command, Message, Refusal, SEGMENTS, TABLE_CHUNK_BYTES, TableChunk, TableState, TableStatus};
+use telemetry::{Command, Message, Refusal, TABLE_CHUNK_BYTES, TableChunk, TableState, TableStatus};
 
-use crate::board_estimator::WINDOW;
+/// Table and messages have room for the same arms.
+const _: () = assert!(MAX_SEGMENTS == telemetry::MAX_SEGMENTS && MAX_REGULATORS == telemetry::MAX_REGULATORS);
 
 /// Result of a request that was executed.
 #[derive(Debug, Clone, PartialEq)]
@@ -33,7 +35,7 @@ impl<F: Storage + AsRef<[u8]>> TableServer<F> {
 
     /// Reads the table into `table`, which is empty if there is no usable one. Returns its state.
     #[inline(never)]
-    pub fn load(&self, table: &mut BoardTable<SEGMENTS>) -> TableState {
+    pub fn load(&self, table: &mut BoardTable<MAX_SEGMENTS>) -> TableState {
         let is_usable = self.store.active().is_none_or(|stored| table.read(stored.image, WINDOW as u16).is_ok());
         let state = self.state();
         if is_usable { state } else { TableState { status: TableStatus::Unusable, ..state } }
@@ -58,7 +60,7 @@ impl<F: Storage + AsRef<[u8]>> TableServer<F> {
                 return Ok(TableAnswer { message: None, restart: false });
             }
             Command::TableCommit => {
-                self.store.commit(SEGMENTS, WINDOW as u16).map_err(refusal)?;
+                self.store.commit(MAX_SEGMENTS, WINDOW as u16).map_err(refusal)?;
             }
             Command::TableErase => self.store.erase().map_err(refusal)?,
             Command::TableRead(offset) => return self.read(*offset),
@@ -99,6 +101,7 @@ fn refusal(error: TableError) -> Refusal {
     match error {
         TableError::TooLong => Refusal::TableTooLong,
         TableError::Image => Refusal::TableImage,
+        TableError::Wiring(_) => Refusal::TableWiring,
         TableError::Segments | TableError::Window => Refusal::TableCapacity,
         TableError::NotBegun | TableError::Order | TableError::Incomplete => Refusal::TableOrder,
         TableError::Checksum => Refusal::TableChecksum,

@@ -2,7 +2,7 @@
 
 use board_core::{BUCKET_SIZE, CommandServer, Execution, REFILL_PER_TICK, SESSION_TIMEOUT_TICKS};
 use proptest::prelude::*;
-use telemetry::{Command, Refusal, Reply, Request, RequestOutcome};
+use telemetry::{Command, Refusal, Reply, Request, RequestOutcome, TareMode};
 
 const LATE: Option<RequestOutcome> = Some(RequestOutcome::Nack(Refusal::Late));
 const BUSY: Option<RequestOutcome> = Some(RequestOutcome::Nack(Refusal::Busy));
@@ -42,9 +42,9 @@ fn the_first_request_may_have_any_number() {
 fn a_repeated_request_gets_its_reply_again_and_is_executed_once() {
     let mut board = Board::default();
     for tick in [0, 0, 5, 100_000] {
-        assert_eq!(board.send(1, Command::Tare, tick), ACK);
+        assert_eq!(board.send(1, Command::Tare(TareMode::Force), tick), ACK);
     }
-    assert_eq!(board.done, [(1, Command::Tare)]);
+    assert_eq!(board.done, [(1, Command::Tare(TareMode::Force))]);
 }
 
 #[test]
@@ -160,9 +160,9 @@ fn a_request_refused_as_busy_may_be_sent_again_under_the_same_number() {
     for id in 0..u32::from(BUCKET_SIZE) {
         board.send(id, Command::Ping, 0);
     }
-    assert_eq!(board.send(100, Command::Tare, 0), BUSY);
-    assert_eq!(board.send(100, Command::Tare, 1), ACK);
-    assert_eq!(board.done.last(), Some(&(100, Command::Tare)));
+    assert_eq!(board.send(100, Command::Tare(TareMode::Force), 0), BUSY);
+    assert_eq!(board.send(100, Command::Tare(TareMode::Force), 1), ACK);
+    assert_eq!(board.done.last(), Some(&(100, Command::Tare(TareMode::Force))));
 }
 
 #[test]
@@ -223,7 +223,7 @@ proptest! {
         first in 20_u32..1000,
     ) {
         // Of one host, each number belongs to one command.
-        let command = |id: u32| [Command::Ping, Command::Arm, Command::Disarm, Command::Tare][id as usize % 4].clone();
+        let command = |id: u32| [Command::Ping, Command::Arm, Command::Disarm, Command::Tare(TareMode::Force)][id as usize % 4].clone();
         let mut board = Board::default();
         let mut newest = first;
         board.send(first, command(first), 0);

@@ -19,8 +19,9 @@ use crc::{CRC_32_ISO_HDLC, Crc, Table};
 /// First bytes of a slot in use.
 pub const MAGIC: [u8; 4] = *b"PTab";
 
-/// Version of the image's format. It changes with every change of the estimator's configuration types.
-pub const FORMAT: u16 = 1;
+/// Version of the image's format. It changes with every change of the estimator's configuration types
+/// and of the wiring's rows.
+pub const FORMAT: u16 = 2;
 
 /// Size of a slot, bytes.
 pub const SLOT_BYTES: usize = 32 * 1024;

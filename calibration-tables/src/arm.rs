@@ -1,7 +1,9 @@
 //! An arm description or a table: the keys of the TOML file.
 
+use board_table::{MAX_SEGMENTS as MAX_BOARD_SEGMENTS, Wiring};
 use serde::{Deserialize, Serialize};
 
+use crate::board::BoardToml;
 use crate::contact::ContactToml;
 use crate::drift::{DriftKind, DriftToml};
 use crate::error::{FileError, ensure, within};
@@ -45,6 +47,9 @@ pub struct ArmFile {
     /// The segments from the base to the tip.
     #[serde(rename = "segment")]
     pub segments: Vec<SegmentToml>,
+    /// Wiring to the board; `None`: the reference wiring of docs/how-to/wiring.md.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub board: Option<BoardToml>,
 }
 
 /// `[tare]`: the arm rests in its reference pose for the first `seconds`.
@@ -106,6 +111,27 @@ impl ArmFile {
         self.segments.iter().enumerate().map(sensors).collect()
     }
 
+    /// The wiring to the board: that of the section `[board]`, or else the reference wiring. `None` for more segments than the
+    /// board has room for.
+    #[must_use]
+    pub fn wiring(&self) -> Option<Wiring> {
+        let n = self.segments.len();
+        self.board.as_ref().map_or_else(|| (n <= MAX_BOARD_SEGMENTS).then(|| Wiring::reference(n)), BoardToml::wiring)
+    }
+
+    /// Returns whether it is an arm description: no segment has an entry `bend`, nor has any been calibrated.
+    #[must_use]
+    pub fn is_description(&self) -> bool {
+        self.segments.iter().all(|segment| segment.bend.is_none())
+    }
+
+    /// A table of the arm by its IMUs alone, for a board that is to record the arm's first sweep.
+    #[must_use]
+    pub fn without_bend_maps(&self) -> Self {
+        let segments = self.segments.iter().map(|segment| SegmentToml { bend: Some(Vec::new()), ..segment.clone() });
+        Self { segments: segments.collect(), ..self.clone() }
+    }
+
     pub(crate) fn check(&self) -> Result<(), FileError> {
         let n = self.segments.len();
         ensure((1..=MAX_SEGMENTS).contains(&n), "segment", &n, &format!("1 to {MAX_SEGMENTS} segments"))?;
@@ -131,6 +157,7 @@ impl ArmFile {
                 .map_or(Ok(()), |coupled| coupled.check(&format!("segment[{}].coupled_to", i + 1), i + 1))?;
             segment.contact.map_or(Ok(()), |limit| limit.check(&format!("segment[{}].contact", i + 1)))?;
         }
+        self.board.as_ref().map_or(Ok(()), |board| board.check(&self.segments))?;
         let length = self.length_mm();
         ensure(length <= MAX_ARM_MM, "segment", &format!("{length} mm of arm"), &format!("at most {MAX_ARM_MM} mm"))
     }

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
-use toml_edit::Item;
+use toml_edit::{DocumentMut, Item, Value};
 
 use crate::arm::ArmFile;
 use crate::error::{FORMAT, FileError, MAX_BYTES};
@@ -49,14 +49,38 @@ impl ArmFile {
     #[must_use]
     pub fn to_toml(&self) -> String {
         let mut document = toml_edit::ser::to_document(self).expect("every value of the format has a form in TOML");
-        // Tables for the outermost keys, one line for each sensor and filter in them.
+        // Tables for the outermost keys and those of `[board]`, one line for each sensor and filter in them.
         for (_, item) in document.iter_mut() {
-            *item = match std::mem::take(item).into_array_of_tables() {
-                Ok(tables) => Item::ArrayOfTables(tables),
-                Err(other) => other.into_table().map_or_else(std::convert::identity, Item::Table),
-            };
+            unfold(item);
         }
+        unfold_board(&mut document);
         document.to_string()
+    }
+}
+
+/// Makes a table of an inline table, or of each in a list of them.
+fn unfold(item: &mut Item) {
+    *item = match std::mem::take(item).into_array_of_tables() {
+        Ok(tables) => Item::ArrayOfTables(tables),
+        Err(other) => other.into_table().map_or_else(std::convert::identity, Item::Table),
+    };
+}
+
+/// Gives `[board]` a table for each segment and regulator, and the addresses their hexadecimal form.
+fn unfold_board(document: &mut DocumentMut) {
+    let Some(board) = document.get_mut("board").and_then(Item::as_table_mut) else { return };
+    for (_, item) in board.iter_mut() {
+        unfold(item);
+    }
+    let segments = board.get_mut("segment").and_then(Item::as_array_of_tables_mut);
+    for segment in segments.into_iter().flat_map(|segments| segments.iter_mut()) {
+        let address = segment.get_mut("imu").and_then(|imu| imu.get_mut("address"));
+        if let Some(Item::Value(value)) = address
+            && let Some(hexadecimal) =
+                value.as_integer().and_then(|address| format!("{address:#04x}").parse::<Value>().ok())
+        {
+            *value = hexadecimal.decorated(" ", " ");
+        }
     }
 }
 

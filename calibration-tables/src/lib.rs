@@ -76,6 +76,7 @@
 mod arm;
 mod bend;
 mod bend_error;
+mod board;
 mod codegen;
 mod compile;
 mod contact;
@@ -95,6 +96,7 @@ pub use estimator_core;
 pub use arm::{AnchorToml, ArmFile, MAX_SEGMENTS, MAX_WINDOW, TareToml};
 pub use bend::{BendToml, CURVE_POINTS, CurveToml, MemoryToml};
 pub use bend_error::BendErrorToml;
+pub use board::{AnalogPin, BoardSegmentToml, BoardToml, DigitalPin, ImuToml, RegulatorToml};
 pub use compile::CompiledTable;
 pub use contact::{ChangeToml, ContactToml, CoupledToml, RATIO_RANGE};
 pub use drift::{DriftKind, DriftToml};

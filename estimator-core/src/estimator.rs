@@ -264,6 +264,11 @@ impl<'t, S: FusedOps, const N: usize, const W: usize, T: BiasTrace<Q>> Estimator
         contact.update(self.config, thresholds, self.decimator, sensed.decimated, &corrected.measured, condition);
     }
 
+    /// θ_bend of each segment in the newest sample, from the base to the tip, rad; `None`: no bend sensor was read.
+    pub fn bend_angles(&self) -> impl Iterator<Item = Option<S>> {
+        self.sensed.bend.iter().take(self.segments.len()).map(|bend| bend.mean)
+    }
+
     /// Contact of each segment, from the base to the tip; empty where the configuration disables detection.
     #[must_use]
     pub fn contacts(&self) -> Contacts<N> {

@@ -10,26 +10,26 @@ use atsam3x8e_hal::twi::Twi;
 use atsam3x8e_hal::uart::{self, Rx, Tx};
 use atsam3x8e_hal::watchdog::{self, Watchdog};
 use atsam3x8e_hal::{clock, crash, eefc, gpio, reset};
-use board_core::imus::Imus;
 use board_core::tca9548a::{self, Tca9548a};
-use board_core::{BootCounter, TableServer};
+use board_core::{BootCounter, Scan, TableServer};
+use board_table::{ANALOG_PINS, MAX_REGULATORS};
 use embedded_hal::digital::PinState;
-use telemetry::{BEND_SENSORS, Hello, REGULATORS};
+use telemetry::Hello;
 
 use crate::imu_bus::ImuBus;
 use crate::panic::outputs_safe;
 use crate::parameters::{
-    BAUD, BEND_CHANNELS, PWM_COUNTS, RECEIVE_BYTES, SCAN_US, STORAGE, TICK_HZ, TRANSMIT_BYTES, WATCHDOG_MS,
+    ANALOG_CHANNELS, BAUD, PWM_COUNTS, RECEIVE_BYTES, SCAN_US, STORAGE, TICK_HZ, TRANSMIT_BYTES, WATCHDOG_MS,
 };
 use crate::{device_info, retained};
 
 /// The multiplexer's RESET, on D22.
-type MuxReset = gpio::Pin<'B', 26, gpio::Output>;
+pub type MuxReset = gpio::Pin<'B', 26, gpio::Output>;
 
 /// DMA buffers of the peripherals.
 pub struct Buffers {
     /// One scan of the ADC.
-    pub scan: [u16; BEND_SENSORS],
+    pub scan: Scan,
     /// Frames to send.
     pub transmit: [u8; TRANSMIT_BYTES],
     /// Received bytes.
@@ -39,7 +39,7 @@ pub struct Buffers {
 impl Buffers {
     /// Empty buffers.
     pub const fn new() -> Self {
-        Self { scan: [0; BEND_SENSORS], transmit: [0; TRANSMIT_BYTES], receive: [0; RECEIVE_BYTES] }
+        Self { scan: [0; ANALOG_PINS as usize], transmit: [0; TRANSMIT_BYTES], receive: [0; RECEIVE_BYTES] }
     }
 }
 
@@ -48,9 +48,12 @@ pub struct Board {
     pub watchdog: Watchdog,
     /// For the trigger of the ticks.
     pub tick_channel: tc::Channel0,
-    pub adc: Adc<BEND_SENSORS>,
-    pub regulators: Pwm<REGULATORS>,
-    pub imus: Imus<ImuBus, MuxReset>,
+    pub adc: Adc<{ ANALOG_PINS as usize }>,
+    /// One output for each of [`REGULATOR_PINS`](board_table::REGULATOR_PINS).
+    pub regulators: Pwm<MAX_REGULATORS>,
+    pub imu_bus: ImuBus,
+    /// Multiplexer of the IMUs.
+    pub mux: Tca9548a<MuxReset>,
     pub tx: Tx,
     pub rx: Rx,
     pub backup: Backup,
@@ -95,6 +98,7 @@ pub fn set_up(device: Peripherals, buffers: &'static mut Buffers) -> Result<Boar
     let clocks = clock::configure(device.PMC, &device.EFC0, &device.EFC1)?;
     let (a, b, c) = (device.PIOA.split(clocks), device.PIOB.split(clocks), device.PIOC.split(clocks));
 
+    // In the order of REGULATOR_PINS: D6 to D9, D34, D36, D38, D40.
     let regulators = [
         Output::from(c.pc24),
         Output::from(c.pc23),
@@ -102,6 +106,8 @@ pub fn set_up(device: Peripherals, buffers: &'static mut Buffers) -> Result<Boar
         Output::from(c.pc21),
         Output::from(c.pc2),
         Output::from(c.pc4),
+        Output::from(c.pc6),
+        Output::from(c.pc8),
     ];
     let period = Period { prescaler: Prescaler::Div1, counts: PWM_COUNTS };
     let regulators = Pwm::new(device.PWM, regulators, period, Polarity::ActiveHigh, clocks)?;
@@ -119,14 +125,13 @@ pub fn set_up(device: Peripherals, buffers: &'static mut Buffers) -> Result<Boar
     let uart = uart::new(device.UART, rx, tx, BAUD, &mut buffers.transmit, &mut buffers.receive, clocks);
     let (tx, rx) = uart?;
 
-    let twi = Twi::new(device.TWI1, b.pb12.into_peripheral_a(), b.pb13.into_peripheral_a(), Mono, clocks);
+    let imu_bus = ImuBus(Twi::new(device.TWI1, b.pb12.into_peripheral_a(), b.pb13.into_peripheral_a(), Mono, clocks));
     let mux = Tca9548a::new(tca9548a::ADDRESS, Some(b.pb26.into_output(PinState::High)));
-    let imus = Imus::new(ImuBus(twi), mux);
 
     let channels = tc::split(device.TC0, clocks);
     Mono::start(channels.channel1);
-    let adc = Adc::new(device.ADC, BEND_CHANNELS, adc::Trigger::Tc0Channel0, &mut buffers.scan, clocks);
+    let adc = Adc::new(device.ADC, ANALOG_CHANNELS, adc::Trigger::Tc0Channel0, &mut buffers.scan, clocks);
     let adc = adc?;
     let tick_channel = channels.channel0;
-    Ok(Board { watchdog, tick_channel, adc, regulators, imus, tx, rx, backup, boots, hello, tables })
+    Ok(Board { watchdog, tick_channel, adc, regulators, imu_bus, mux, tx, rx, backup, boots, hello, tables })
 }

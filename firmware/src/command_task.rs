@@ -2,10 +2,12 @@
 
 use atsam3x8e_hal::tc::Mono;
 use atsam3x8e_hal::uart::Rx;
-use board_core::{Actuator, CommandServer, Execution, Schedule, Task};
+use board_core::{Actuator, CommandServer, Execution, REST_RANGE, Schedule, Task};
 use rtic::Mutex;
 use rtic_sync::channel::Sender;
-use telemetry::{Actuation, Command, DecodeError, Decoder, Message, Refusal, Reply, Request, RequestOutcome};
+use telemetry::{
+    Actuation, Command, DecodeError, Decoder, Message, Refusal, Reply, Request, RequestOutcome, TareMode, TareReport,
+};
 
 use crate::downlink::TelemetrySender;
 use crate::parameters::RECEIVE_BYTES;
@@ -14,12 +16,25 @@ use crate::supervision::SUPERVISOR;
 /// Requests that wait for the table task. A host sends pieces of a table ahead, so that the line is never idle.
 pub const TABLE_REQUESTS: usize = 4;
 
+/// Pose of the arm, as a request to tare reports it.
+#[derive(Clone, Copy, Default)]
+pub struct Pose {
+    /// Segment whose heading turned most, and its range in units of 2⁻²⁶ rad.
+    pub turned: Option<(u8, i32)>,
+    /// Segment that is bent most by its bend sensors, and its angle in units of 2⁻²⁶ rad.
+    pub bent: Option<(u8, i32)>,
+}
+
 /// State that requests set for the other tasks.
 pub struct Control {
     /// Periods of the messages.
     pub schedule: Schedule,
     /// A tare was requested.
     pub tare_requested: bool,
+    /// Pose of the arm in the last tick.
+    pub pose: Pose,
+    /// Report on a request to tare, to be sent.
+    pub tare_report: Option<TareReport>,
     /// A `Hello` was requested.
     pub hello_requested: bool,
     /// Frames since boot that were received damaged.
@@ -28,6 +43,14 @@ pub struct Control {
     pub has_table: bool,
     /// Reply of the table task, already sent.
     pub completed: Option<Reply>,
+}
+
+impl Control {
+    /// Lets the pose at the request of this number be reported.
+    fn report_pose(&mut self, id: u32) {
+        let Pose { turned, bent } = self.pose;
+        self.tare_report = Some(TareReport { id, turned, bent });
+    }
 }
 
 /// State of the command task.
@@ -69,6 +92,9 @@ impl CommandTask {
                             .lock(|control| actuator.lock(|actuator| execute(command, actuator, control, &mut reboot)))
                             .map(|()| Execution::Done)
                     };
+                    if matches!(command, Command::Tare(_)) {
+                        control.lock(|control| control.report_pose(request.id));
+                    }
                     log(&request, result);
                     result
                 }),
@@ -120,8 +146,11 @@ fn execute(
 ) -> Result<(), Refusal> {
     match command {
         Command::Ping => control.hello_requested = true,
-        Command::Tare => control.tare_requested = true,
-        Command::Rates(rates) => control.schedule = Schedule::new(*rates),
+        Command::Tare(TareMode::IfStill) if control.pose.turned.is_some_and(|(_, range)| range > REST_RANGE) => {
+            return Err(Refusal::Moving);
+        }
+        Command::Tare(_) => control.tare_requested = true,
+        Command::Rates(rates) => control.schedule.set(*rates),
         Command::Arm if !control.has_table => return Err(Refusal::NoTable),
         Command::Arm => actuator.arm(),
         Command::Disarm => actuator.disarm(),

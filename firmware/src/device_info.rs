@@ -2,8 +2,8 @@
 
 use atsam3x8e_hal::crash;
 use atsam3x8e_hal::reset::Cause;
-use board_table::BoardTable;
-use telemetry::{Hello, PROTOCOL_VERSION, ResetCause, SCHEMA, SEGMENTS, Text};
+use board_table::{BoardTable, MAX_SEGMENTS, Wiring};
+use telemetry::{Hello, PROTOCOL_VERSION, ResetCause, SCHEMA, Text, text};
 
 /// The board's `Hello`, of a board without a table.
 pub fn hello(chip: [u8; 16], reset: ResetCause, boot: u32, last_panic: Option<&crash::Text>) -> Hello {
@@ -14,6 +14,9 @@ pub fn hello(chip: [u8; 16], reset: ResetCause, boot: u32, last_panic: Option<&c
         revision: text(env!("REVISION")),
         arm: Text::new(),
         table: 0,
+        segments: 0,
+        bend_sensors: 0,
+        regulators: 0,
         chip,
         reset,
         boot,
@@ -21,21 +24,13 @@ pub fn hello(chip: [u8; 16], reset: ResetCause, boot: u32, last_panic: Option<&c
     }
 }
 
-/// Enters the board's table in its `Hello`.
-pub fn enter_table(hello: &mut Hello, table: &BoardTable<SEGMENTS>) {
+/// Enters the board's table and its arm's wiring in its `Hello`.
+pub fn enter_arm(hello: &mut Hello, table: &BoardTable<MAX_SEGMENTS>, wiring: &Wiring) {
     hello.arm = text(table.arm());
     hello.table = table.checksum();
-}
-
-/// Cuts a text at N bytes.
-fn text<const N: usize>(whole: &str) -> Text<N> {
-    let mut text = Text::new();
-    for character in whole.chars() {
-        if text.push(character).is_err() {
-            break;
-        }
-    }
-    text
+    hello.segments = wiring.segments.len() as u8;
+    hello.bend_sensors = wiring.segments.iter().flat_map(|segment| segment.bend).flatten().count() as u8;
+    hello.regulators = wiring.regulators.len() as u8;
 }
 
 /// Converts the HAL's cause of the reset to the protocol's.

@@ -2,17 +2,16 @@
 
 use core::mem::MaybeUninit;
 
-use atsam3x8e_hal::gpio::{Output, Pin};
 use atsam3x8e_hal::tc::prelude::*;
 use board_core::imus::Imus;
-use board_core::{Actuator, BendSensorMonitor, BoardEstimator, DueMessages, Task};
+use board_core::{Actuator, BendSensorMonitor, DueMessages, Pressures, RestMonitor, Task};
+use board_estimator::BoardEstimator;
 use estimator_core::{ArmConfig, Q};
 use rtic::Mutex;
-use telemetry::{
-    Actuation, Estimate, Event, Health, Hello, Message, REGULATORS, SEGMENTS, Sample, SensorState, TableState,
-};
+use telemetry::{Actuation, Estimate, Event, Health, Hello, Message, Sample, SensorState, TableState};
 
-use crate::command_task::Control;
+use crate::board::MuxReset;
+use crate::command_task::{Control, Pose};
 use crate::cpu_load::CpuLoad;
 use crate::downlink::TelemetrySender;
 use crate::imu_bus::ImuBus;
@@ -23,10 +22,16 @@ use crate::tick::Tick;
 /// Maximum events sent per tick; further ones are discarded.
 const EVENTS: usize = 16;
 
+/// The arm's sensors.
+pub struct Sensors {
+    pub imus: Imus<ImuBus, MuxReset>,
+    pub bend: BendSensorMonitor,
+    pub rest: RestMonitor,
+}
+
 /// State of the estimation task.
 pub struct EstimationTask {
-    imus: Imus<ImuBus, Pin<'B', 26, Output>>,
-    bend_sensors: BendSensorMonitor,
+    sensors: Sensors,
     estimator: &'static mut BoardEstimator,
     /// Without segments: the board has no table, and sends no estimates.
     config: &'static ArmConfig<'static, Q>,
@@ -68,7 +73,7 @@ pub fn place_estimator(
 impl EstimationTask {
     /// Starts the estimator.
     pub fn new(
-        imus: Imus<ImuBus, Pin<'B', 26, Output>>,
+        sensors: Sensors,
         estimator: &'static mut BoardEstimator,
         config: &'static ArmConfig<'static, Q>,
         hello: Hello,
@@ -77,8 +82,7 @@ impl EstimationTask {
     ) -> Self {
         estimator.start();
         Self {
-            imus,
-            bend_sensors: BendSensorMonitor::new(),
+            sensors,
             estimator,
             config,
             hello,
@@ -101,7 +105,7 @@ impl EstimationTask {
         self.count_overruns(tick.number);
         let deadline = instant(tick.time_us + IMUS_US);
         // A poll that takes longer is cut off; the readings until then count.
-        let _ = Mono::timeout_at(deadline, self.imus.read(tick.number)).await;
+        let _ = Mono::timeout_at(deadline, self.sensors.imus.read(tick.number)).await;
         self.counters.longest_imu_read_us = self.counters.longest_imu_read_us.max(since(tick.time_us));
         SUPERVISOR.report(Task::Imus, tick.number);
 
@@ -116,11 +120,13 @@ impl EstimationTask {
             while let Some(event) = actuator.event() {
                 let _ = result.events.push(event);
             }
-            (actuator.state(), actuator.pressures_pa())
+            (actuator.state(), actuator.pressures_pa().clone())
         });
-        let (mut due, requested, damaged_frames) = control.lock(|control| {
+        let pose = Pose { turned: self.sensors.rest.most_turned(), bent: self.estimator.most_bent() };
+        let (mut due, requested, damaged_frames, tare_report) = control.lock(|control| {
+            control.pose = pose;
             let requested = core::mem::take(&mut control.hello_requested);
-            (control.schedule.due(tick.number), requested, control.damaged_frames)
+            (control.schedule.due(tick.number), requested, control.damaged_frames, control.tare_report.take())
         });
         let introduce = requested || self.last_tick.is_none();
         due.hello |= introduce;
@@ -132,6 +138,9 @@ impl EstimationTask {
         let uncertainty = due.uncertainty.then(|| self.estimator.uncertainty(tick.number));
         sender.lock(|sender| {
             self.send(sender, &result, due, introduce);
+            if let Some(report) = tare_report {
+                sender.send(&Message::Tare(report));
+            }
             if let Some(uncertainty) = uncertainty {
                 sender.send(&Message::Uncertainty(uncertainty));
             }
@@ -150,7 +159,9 @@ impl EstimationTask {
 
     /// Validates the readings and updates the estimator.
     fn run_cycle(&mut self, tick: &Tick, tare: bool) -> CycleResult {
-        let readings = self.imus.validate();
+        let readings = self.sensors.imus.validate();
+        let all_imus_read = readings.all_are_read(&self.sensors.imus.health());
+        self.sensors.rest.step(&readings.imu);
         let mut events = heapless::Vec::new();
         for event in readings.events {
             let _ = events.push(event);
@@ -158,10 +169,10 @@ impl EstimationTask {
         if tick.scan.is_none() {
             self.counters.stale_scans = self.counters.stale_scans.saturating_add(1);
         }
-        let bend = self.bend_sensors.step(tick.scan.as_ref(), |event| {
+        let bend = self.sensors.bend.step(tick.scan.as_ref(), |event| {
             let _ = events.push(event);
         });
-        if tare || self.estimator.needs_first_tare(tick.number, readings.imu.iter().all(Option::is_some)) {
+        if tare || self.estimator.needs_first_tare(tick.number, all_imus_read) {
             self.estimator.tare();
             let _ = events.push(Event::Tare(tick.number));
         }
@@ -189,10 +200,10 @@ impl EstimationTask {
         }
         // Samples first: a replay needs them.
         if due.sample {
-            sender.send(&Message::Sample(result.sample));
+            sender.send(&Message::Sample(result.sample.clone()));
         }
         if due.estimate {
-            sender.send(&Message::Estimate(result.estimate));
+            sender.send(&Message::Estimate(result.estimate.clone()));
         }
         for event in &result.events {
             sender.send(&Message::Event(*event));
@@ -202,10 +213,11 @@ impl EstimationTask {
     /// Returns whether the estimate is too poor to let the pressures rise: no IMU at all, or a segment whose bend sensors
     /// are all lost.
     fn is_degraded(&self) -> bool {
-        let no_imu = self.imus.health().iter().all(|imu| imu.state != SensorState::Ok);
-        let has_sensors =
-            |segment: usize| self.config.segments.get(segment).is_some_and(|s| s.bend.iter().any(Option::is_some));
-        no_imu || (0..SEGMENTS).any(|segment| has_sensors(segment) && self.bend_sensors.segment_is_lost(segment))
+        let no_imu = self.sensors.imus.health().iter().all(|imu| imu.state != SensorState::Ok);
+        let mut segments = self.config.segments.iter().enumerate();
+        no_imu
+            || segments
+                .any(|(i, segment)| segment.bend.iter().any(Option::is_some) && self.sensors.bend.segment_is_lost(i))
     }
 
     fn health(
@@ -214,13 +226,13 @@ impl EstimationTask {
         dropped_frames: u32,
         damaged_frames: u32,
         actuation: Actuation,
-        pressures_pa: [u32; REGULATORS],
+        pressures_pa: Pressures,
     ) -> Health {
         let counters = &mut self.counters;
         Health {
             tick,
-            bend: self.bend_sensors.health(),
-            imu: self.imus.health(),
+            bend: self.sensors.bend.health(),
+            imu: self.sensors.imus.health(),
             max_estimate_latency_us: core::mem::take(&mut counters.max_estimate_latency_us),
             longest_imu_read_us: core::mem::take(&mut counters.longest_imu_read_us),
             load_permille: self.load.permille(),
@@ -228,7 +240,7 @@ impl EstimationTask {
             stale_scans: counters.stale_scans,
             dropped_frames,
             damaged_frames,
-            bus_recoveries: self.imus.bus_recoveries(),
+            bus_recoveries: self.sensors.imus.bus_recoveries(),
             saturations: estimator_core::saturations(),
             actuation,
             pressures_pa,

@@ -1,19 +1,21 @@
 //! The arm's firmware for the Arduino Due.
 //!
-//! A timer triggers the ADC 100 times a second, by hardware and without jitter. 200 µs later, when the scan of the twelve
-//! bend sensors is in memory, its interrupt is the tick, which starts everything else.
+//! A timer triggers the ADC 100 times a second, by hardware and without jitter. 200 µs later, when the scan of the
+//! twelve analog pins is in memory, its interrupt is the tick, which starts everything else.
 //!
 //! | task | priority | period | bound, µs | longest measured, µs | work |
 //! |---|---|---|---|---|---|
-//! | `twi1` | 4 | a byte on the I²C bus | 5 | 1.5 | the IMUs' bus |
-//! | `time` | 4 | a timer's alarm | 5 | 2.4 | delays and deadlines |
-//! | `tick` | 3 | 10 ms | 100 | 53 | scan, pressures, watchdog |
-//! | `commands` | 2 | 10 ms | 1000 | 385 | requests of the host |
-//! | `estimation` | 1 | 10 ms | 6000 | 4471 | IMUs (4 ms at most), estimator, messages |
+//! | `twi1` | 5 | a byte on the I²C bus | 5 | 1.4 | the IMUs' bus |
+//! | `time` | 5 | a timer's alarm | 5 | 2.3 | delays and deadlines |
+//! | `tick` | 4 | 10 ms | 100 | 46 | scan, pressures, watchdog |
+//! | `commands` | 3 | 10 ms | 1000 | 973 | requests of the host |
+//! | `estimation` | 2 | 10 ms | 6000 | 4574 | IMUs (5 ms at most), estimator, messages |
+//! | `table` | 1 | a request about the table | | | pages of the flash |
 //! | `idle` | 0 | | | | sleep |
 //!
-//! Times are from a task's interrupt to its end, preemption included, and for `estimation` from the tick. `cargo xtask bench`
-//! measures them on the emulated board, in a run with faults and floods of requests, and checks them against the bounds.
+//! Times are those of the reference arm, from a task's interrupt to its end, preemption included, and for `estimation` from
+//! the tick. `cargo xtask bench` measures them on the emulated board, in a run with faults and floods of requests, and checks
+//! them against the bounds.
 //!
 //! The watchdog is fed in `tick`, and only while all tasks meet their deadlines. Every panic and fault vents the arm first.
 #![no_std]
@@ -45,21 +47,23 @@ mod app {
     use atsam3x8e_hal::pac::TWI1;
     use atsam3x8e_hal::tc::{Mono, prelude::*};
     use atsam3x8e_hal::{reset, twi};
-    use board_core::{Actuator, BoardEstimator, Schedule};
-    use board_table::BoardTable;
+    use board_core::imus::Imus;
+    use board_core::{Actuator, BendSensorMonitor, RestMonitor, Schedule};
+    use board_estimator::BoardEstimator;
+    use board_table::{BoardTable, MAX_SEGMENTS, Wiring};
     use estimator_core::{ArmConfig, Q};
     use rtic_sync::channel::Receiver;
     use rtic_sync::make_channel;
     use rtic_sync::signal::{Signal, SignalReader};
-    use telemetry::{Request, SEGMENTS, TableStatus};
+    use telemetry::{Request, TableStatus};
 
     use crate::board::{self, Buffers};
-    use crate::command_task::{CommandTask, Control, TABLE_REQUESTS};
+    use crate::command_task::{CommandTask, Control, Pose, TABLE_REQUESTS};
     use crate::downlink::TelemetrySender;
-    use crate::estimation::{EstimationTask, place_estimator};
-    use crate::parameters::LIMITS_PA;
+    use crate::estimation::{EstimationTask, Sensors, place_estimator};
+    use crate::parameters::SEGMENTS_WITHOUT_TABLE;
     use crate::table_task::TableTask;
-    use crate::tick::{Tick, Ticker};
+    use crate::tick::{Tick, Ticker, regulator_outputs};
     use crate::{cpu_load, device_info};
 
     #[shared]
@@ -84,7 +88,7 @@ mod app {
         buffers: Buffers = Buffers::new(),
         for_commands: Signal<Tick> = Signal::new(),
         for_estimation: Signal<Tick> = Signal::new(),
-        table: BoardTable<SEGMENTS> = BoardTable::new(),
+        table: MaybeUninit<BoardTable<MAX_SEGMENTS>> = MaybeUninit::uninit(),
         config: MaybeUninit<ArmConfig<'static, Q>> = MaybeUninit::uninit(),
         estimator: MaybeUninit<BoardEstimator> = MaybeUninit::uninit(),
     ])]
@@ -94,23 +98,33 @@ mod app {
             Err(error) => panic!("the board does not come up: {error}"),
         };
         let safe_mode = board.boots.safe_mode();
-        let table_state = board.tables.load(cx.local.table);
-        device_info::enter_table(&mut board.hello, cx.local.table);
+        let table = cx.local.table.write(BoardTable::new());
+        let table_state = board.tables.load(table);
+        let reference = Wiring::reference(SEGMENTS_WITHOUT_TABLE);
+        let wiring = table.wiring().unwrap_or(&reference);
+        device_info::enter_arm(&mut board.hello, table, wiring);
         log_boot(&board.hello, &table_state, safe_mode);
         let (to_commands, command_ticks) = cx.local.for_commands.split();
         let (to_estimation, estimation_ticks) = cx.local.for_estimation.split();
         let (to_table, table_requests) = make_channel!(Request, TABLE_REQUESTS);
         let has_table = table_state.status == TableStatus::InUse;
-        let config = cx.local.config.write(cx.local.table.config().unwrap_or(ArmConfig::uncalibrated(&[])));
+        let config = cx.local.config.write(table.config().unwrap_or(ArmConfig::uncalibrated(&[])));
         let estimator = place_estimator(cx.local.estimator, config);
-        let estimation_task = EstimationTask::new(board.imus, estimator, config, board.hello, table_state, safe_mode);
+        let sensors = Sensors {
+            imus: Imus::new(board.imu_bus, board.mux, wiring),
+            bend: BendSensorMonitor::new(wiring),
+            rest: RestMonitor::new(),
+        };
+        let estimation_task = EstimationTask::new(sensors, estimator, config, board.hello, table_state, safe_mode);
         // Each is spawned once and never ends, so that there is room for it.
         let _ = commands::spawn();
         let _ = estimation::spawn();
         let _ = table::spawn();
         let control = Control {
-            schedule: Schedule::default(),
+            schedule: Schedule::of_arm(wiring.segments.len(), wiring.regulators.len()),
             tare_requested: false,
+            pose: Pose::default(),
+            tare_report: None,
             hello_requested: false,
             damaged_frames: 0,
             has_table,
@@ -125,6 +139,7 @@ mod app {
             start_us,
             adc: board.adc,
             regulators: board.regulators,
+            outputs: regulator_outputs(wiring),
             watchdog: board.watchdog,
             backup: board.backup,
             boots: board.boots,
@@ -132,7 +147,7 @@ mod app {
             missed_deadline: None,
         };
         (
-            Shared { actuator: Actuator::new(LIMITS_PA), control, sender: TelemetrySender::new(board.tx) },
+            Shared { actuator: Actuator::new(wiring), control, sender: TelemetrySender::new(board.tx) },
             Local {
                 ticker,
                 command_task: CommandTask::new(board.rx, to_table),

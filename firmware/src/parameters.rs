@@ -1,10 +1,9 @@
-//! Parameters of this rig.
+//! Parameters of the board; those of the arm are in its table.
 
 use core::ops::Range;
 
-use board_core::FULL_SCALE_PA;
-use board_table::STORE_BYTES;
-use telemetry::{BEND_SENSORS, REGULATORS, TICK_US};
+use board_table::{ANALOG_PINS, STORE_BYTES};
+use telemetry::TICK_US;
 
 /// Ticks a second: the rate of the ADC's trigger and of all tasks.
 pub const TICK_HZ: u32 = (1_000_000 / TICK_US) as u32;
@@ -13,19 +12,19 @@ pub const TICK_HZ: u32 = (1_000_000 / TICK_US) as u32;
 pub const SCAN_US: u32 = 200;
 
 /// Deadline of the IMUs' poll after a tick's trigger, µs. An IMU that has not answered by then counts as not read.
-pub const IMUS_US: u64 = 4_000;
+pub const IMUS_US: u64 = 5_000;
 
-/// ADC channels of the bend sensors: A0 … A7 are channels 7 … 0, A8 … A11 are 10 … 13.
-pub const BEND_CHANNELS: u16 = 0x3CFF;
+/// ADC channels of the analog pins: A0 … A7 are channels 7 … 0, A8 … A11 are 10 … 13.
+pub const ANALOG_CHANNELS: u16 = 0x3CFF;
 
-/// Positions of the bend sensors 1a, 1b, … 6b, on A0 … A11, in a scan, which is in the order of the channels.
-pub const BEND_POSITIONS: [usize; BEND_SENSORS] = [7, 6, 5, 4, 3, 2, 1, 0, 8, 9, 10, 11];
+/// Positions of A0 … A11 in a scan, which is in the order of the channels.
+pub const ANALOG_POSITIONS: [usize; ANALOG_PINS as usize] = [7, 6, 5, 4, 3, 2, 1, 0, 8, 9, 10, 11];
+
+/// Segments of the arm of a board without a table, which has the reference wiring.
+pub const SEGMENTS_WITHOUT_TABLE: usize = 6;
 
 /// Counts of the regulators' PWM period: 84 MHz / 4200 = 20 kHz, which their filters smooth to a set-point.
 pub const PWM_COUNTS: u16 = 4_200;
-
-/// Highest set-point of each regulator, Pa.
-pub const LIMITS_PA: [u32; REGULATORS] = [FULL_SCALE_PA; REGULATORS];
 
 /// Speed of the serial line, Bd: exact on both of the board's chips, where 115 200 is off by 3 %.
 pub const BAUD: u32 = 250_000;

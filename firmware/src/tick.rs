@@ -5,12 +5,14 @@ use atsam3x8e_hal::backup::Backup;
 use atsam3x8e_hal::pwm::Pwm;
 use atsam3x8e_hal::tc::{Mono, Trigger};
 use atsam3x8e_hal::watchdog::Watchdog;
-use board_core::{Actuator, BootCounter, DeadlineMissed, Task};
+use board_core::{Actuator, BootCounter, DeadlineMissed, Scan, Task};
+use board_table::{ANALOG_PINS, MAX_REGULATORS, REGULATOR_PINS, RegulatorWiring, Wiring};
+use heapless::Vec;
 use rtic::Mutex;
 use rtic_sync::signal::SignalWriter;
-use telemetry::{BEND_SENSORS, REGULATORS, TICK_US};
+use telemetry::TICK_US;
 
-use crate::parameters::BEND_POSITIONS;
+use crate::parameters::ANALOG_POSITIONS;
 use crate::retained;
 use crate::supervision::SUPERVISOR;
 
@@ -21,8 +23,8 @@ pub struct Tick {
     pub number: u32,
     /// Time of the ADC's trigger, µs.
     pub time_us: u64,
-    /// Counts of the bend sensors 1a, 1b, … 6b; `None`: the scan is incomplete.
-    pub scan: Option<[u16; BEND_SENSORS]>,
+    /// Counts of A0 to A11; `None`: the scan is incomplete.
+    pub scan: Option<Scan>,
 }
 
 /// State of the tick.
@@ -30,8 +32,10 @@ pub struct Ticker {
     pub trigger: Trigger,
     /// Time of the trigger's first edge, µs.
     pub start_us: u64,
-    pub adc: Adc<BEND_SENSORS>,
-    pub regulators: Pwm<REGULATORS>,
+    pub adc: Adc<{ ANALOG_PINS as usize }>,
+    pub regulators: Pwm<MAX_REGULATORS>,
+    /// Output of each of the arm's regulators.
+    pub outputs: Vec<usize, MAX_REGULATORS>,
     pub watchdog: Watchdog,
     pub backup: Backup,
     pub boots: BootCounter,
@@ -59,7 +63,7 @@ impl Ticker {
             actuator.duties(period)
         });
         // The only error is a duty over the period, which `duties` does not give.
-        let _ = self.regulators.set_duties(duties);
+        let _ = self.regulators.set_duties(self.by_output(&duties));
 
         for subscriber in &mut self.subscribers {
             subscriber.write(Tick { number, time_us, scan });
@@ -67,6 +71,17 @@ impl Ticker {
         retained::write_uptime(&mut self.backup, self.boots.uptime(number));
         SUPERVISOR.report(Task::Tick, number);
         self.supervise(number);
+    }
+
+    /// The regulators' duties in the order of the outputs, of which the others stay at zero.
+    fn by_output(&self, duties: &[u16]) -> [u16; MAX_REGULATORS] {
+        let mut by_output = [0; MAX_REGULATORS];
+        for (duty, output) in duties.iter().zip(&self.outputs) {
+            if let Some(of_output) = by_output.get_mut(*output) {
+                *of_output = *duty;
+            }
+        }
+        by_output
     }
 
     fn supervise(&mut self, tick: u32) {
@@ -85,7 +100,14 @@ impl Ticker {
     }
 }
 
-/// Sorts a scan in the order of the sensors.
-fn in_order(scan: [u16; BEND_SENSORS]) -> [u16; BEND_SENSORS] {
-    BEND_POSITIONS.map(|position| scan[position])
+/// Sorts a scan in the order of the pins.
+fn in_order(scan: Scan) -> Scan {
+    ANALOG_POSITIONS.map(|position| scan[position])
+}
+
+/// Places of the arm's regulators among the outputs, which are in the order of [`REGULATOR_PINS`].
+pub fn regulator_outputs(wiring: &Wiring) -> Vec<usize, MAX_REGULATORS> {
+    let place = |regulator: &RegulatorWiring| REGULATOR_PINS.iter().position(|pin| *pin == regulator.pin);
+    // The wiring was checked when it was read: each pin is there.
+    wiring.regulators.iter().filter_map(place).collect()
 }

@@ -5,7 +5,7 @@ use std::ops::AddAssign;
 
 use calibration_tables::ArmFile;
 use proprio_analysis::Outcome;
-use rig_twin::{Push, SEGMENTS, Scenario, Setup};
+use rig_twin::{PerSegment, Push, SEGMENTS, Scenario, Setup};
 
 use crate::twin::TwinSession;
 
@@ -21,7 +21,7 @@ pub struct ContactSession {
     /// True if the estimator reports contact of the segment.
     pub detected: Vec<[bool; SEGMENTS]>,
     /// Bend angle that contact adds to the segment, rad.
-    pub bends_rad: Vec<[f64; SEGMENTS]>,
+    pub bends_rad: Vec<PerSegment<f64>>,
     pushes: Vec<Push>,
 }
 
@@ -93,7 +93,7 @@ impl ContactSession {
     /// half a second.
     #[must_use]
     pub fn encounters(&self) -> Found {
-        let is_strong = |bends: &[f64; SEGMENTS]| bends.iter().any(|bend| bend.abs() > STRONG_RAD);
+        let is_strong = |bends: &[f64]| bends.iter().any(|bend| bend.abs() > STRONG_RAD);
         let begins =
             (1..self.detected.len()).filter(|k| is_strong(&self.bends_rad[*k]) && !is_strong(&self.bends_rad[k - 1]));
         let soon = (SOON_S * RATE_HZ) as usize;

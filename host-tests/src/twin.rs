@@ -8,7 +8,7 @@ use proprio_analysis::smooth::{ForwardPass, SmoothingPass};
 use proprio_analysis::{HostEstimator, Outcome};
 use proprio_session::{Row, Truth};
 use proprio_simulation::{Recorded, Simulation, SimulationError};
-use rig_twin::{Push, SEGMENTS, Setup};
+use rig_twin::{PerSegment, Push, Setup};
 
 /// A session of the twin.
 #[derive(Debug, Clone)]
@@ -18,7 +18,7 @@ pub struct TwinSession {
     /// Readings and truth.
     pub samples: Vec<Recorded>,
     /// Bend angle that contact adds to each segment, rad; one value a sample.
-    pub contact_bends_rad: Vec<[f64; SEGMENTS]>,
+    pub contact_bends_rad: Vec<PerSegment<f64>>,
     /// Pushes of scenario II.
     pub pushes: Vec<Push>,
 }
@@ -67,13 +67,13 @@ impl TwinSession {
 pub fn row(recorded: &Recorded, starts: bool) -> Row {
     let mut sample = Sample::missing(recorded.time_us);
     let mut truth = [None; MAX_SEGMENTS];
-    for (i, counts) in recorded.counts.into_iter().enumerate() {
+    for (i, counts) in recorded.counts.iter().copied().enumerate() {
         sample.bend[i / 2][i % 2] = counts;
     }
-    for (imu, quaternion) in sample.imu.iter_mut().zip(recorded.quaternions) {
+    for (imu, quaternion) in sample.imu.iter_mut().zip(&recorded.quaternions) {
         *imu = quaternion.map(ImuReading::from_bno055);
     }
-    for (truth, end) in truth.iter_mut().zip(recorded.truth) {
+    for (truth, end) in truth.iter_mut().zip(&recorded.truth) {
         *truth = Some(Truth { x_m: end.x_m, y_m: end.y_m, heading_rad: Some(end.heading_rad) });
     }
     Row { sample, truth, starts, board: None }

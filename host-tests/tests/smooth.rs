@@ -9,21 +9,23 @@ use proprio_analysis::metrics::ErrorMetrics;
 use proprio_calibration::calibrate::{CalibrationOptions, calibrate};
 use proprio_session::{Existing, LoadedTable, NoProgress, OutputFile};
 use proprio_simulation::{ImuColumns, SessionWriter, Simulation};
-use rig_twin::{Motion, Scenario, Setup};
+use rig_twin::{Scenario, Setup};
 
 const ARMS: [u64; 6] = [1, 2, 3, 4, 5, 6];
 const SCENARIOS: [Scenario; 3] = [Scenario::FreeSwing, Scenario::Push, Scenario::Obstacle];
 
 fn setup(arm_seed: u64, scenario: Scenario, seed: u64) -> Setup {
-    Setup { arm_seed, scenario, motion: Motion::Swings, seed: 100 * arm_seed + seed }
+    Setup { arm_seed, ..Setup::new(scenario, 100 * arm_seed + seed) }
 }
 
 /// The table of an arm's own sweep.
 fn table(arm_seed: u64, folder: &Path) -> ArmFile {
     let sweep = folder.join(format!("sweep-{arm_seed}.csv"));
     let file = OutputFile::create(&sweep, &[], Existing::Keep).expect("a temporary folder can be written to");
-    let mut writer = SessionWriter::new(file, ImuColumns::Quaternion).expect("a temporary file can be written");
-    let samples = Simulation::of(&setup(arm_seed, Scenario::Sweep, 0), 900.0, 10.0).expect("a rate and a duration");
+    let setup = setup(arm_seed, Scenario::Sweep, 0);
+    let writer = SessionWriter::new(file, &setup.layout, ImuColumns::Quaternion);
+    let mut writer = writer.expect("a temporary file can be written");
+    let samples = Simulation::of(&setup, 900.0, 10.0).expect("a rate and a duration");
     samples.for_each(|sample| writer.write(&sample).expect("a temporary file can be written"));
     writer.into_inner().finish().expect("a temporary file can be renamed");
     let arm = Path::new(env!("CARGO_MANIFEST_DIR")).join("../calibration-tables/arms/planar-6.toml");

@@ -86,13 +86,14 @@ mod tests {
     use super::{Actuator, Regulator};
     use crate::arm::ArmParameters;
     use crate::constants::{DEGREE_RAD, FULL_BEND_RAD, FULL_SCALE_PA};
+    use crate::layout::Layout;
 
     fn regulator() -> Regulator {
-        Regulator::vented(ArmParameters::new(0).regulators[0])
+        Regulator::vented(ArmParameters::new(0, &Layout::default()).regulators[0])
     }
 
     fn actuator() -> Actuator {
-        Actuator::new(ArmParameters::new(0).actuators[0])
+        Actuator::new(ArmParameters::new(0, &Layout::default()).actuators[0])
     }
 
     #[test]

@@ -2,21 +2,22 @@
 
 use crate::constants::{
     CAMERA_BASE, CAMERA_CLOCK_AHEAD_S, CAMERA_CLOCK_FAST, CAMERA_DROPPED_SHARE, CAMERA_FRAMES_PER_S,
-    CAMERA_HEADING_NOISE_RAD, CAMERA_HIDDEN_SHARE, CAMERA_PLACE_NOISE_M, CAMERA_STAMP_NOISE_S, GRID_S, SEGMENTS,
+    CAMERA_HEADING_NOISE_RAD, CAMERA_HIDDEN_SHARE, CAMERA_PLACE_NOISE_M, CAMERA_STAMP_NOISE_S, GRID_S,
 };
+use crate::layout::PerSegment;
 use crate::noise::{Noise, Seeds, Source};
 use crate::pose::EndPose;
 use core::f64::consts::TAU;
 
 /// One picture in the camera's frame: x to the right and y up, headings clockwise from y, within ±π.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Frame {
     /// Time by the camera's clock, s.
     pub time_s: f64,
     /// Pose of the base: the origin and the y axis of {W}.
     pub base: Option<EndPose>,
     /// Pose of each segment's end; `None`: the marker was not found.
-    pub ends: [Option<EndPose>; SEGMENTS],
+    pub ends: PerSegment<Option<EndPose>>,
 }
 
 /// The camera. Its clock starts elsewhere than the rig's and runs at another rate.
@@ -38,14 +39,14 @@ impl Camera {
     }
 
     /// Takes the next frame of the arm; `None`: the frame was dropped.
-    pub fn take(&mut self, truth: [EndPose; SEGMENTS]) -> Option<Frame> {
+    pub fn take(&mut self, truth: &[EndPose]) -> Option<Frame> {
         let taken_s = self.next_s();
         self.frames += 1;
         let stamp_s = taken_s + CAMERA_STAMP_NOISE_S * self.noise.gaussian();
         let time_s = CAMERA_CLOCK_AHEAD_S + stamp_s * (1.0 + CAMERA_CLOCK_FAST);
         let dropped = self.noise.uniform() < CAMERA_DROPPED_SHARE;
         let base = self.find(EndPose::default());
-        let ends = truth.map(|pose| self.find(pose));
+        let ends = truth.iter().map(|pose| self.find(*pose)).collect();
         (!dropped).then_some(Frame { time_s, base, ends })
     }
 

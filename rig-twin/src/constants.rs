@@ -11,14 +11,23 @@ use crate::pose::EndPose;
 /// One degree in radians.
 pub(crate) const DEGREE_RAD: f64 = PI / 180.0;
 
+/// Segments of the longest arm (assumed: what one board has pins for).
+pub const MAX_SEGMENTS: usize = 8;
+/// Segments of a module, which share a regulator to the right and one to the left (the reference rig's wiring).
+pub(crate) const SEGMENTS_PER_MODULE: usize = 2;
+/// Places of bend sensors on a segment, a and b (paper).
+pub(crate) const SENSORS_PER_SEGMENT: usize = 2;
+/// Modules of the longest arm.
+pub(crate) const MAX_MODULES: usize = MAX_SEGMENTS / SEGMENTS_PER_MODULE;
+/// Pressure regulators of the longest arm, two a module.
+pub const MAX_REGULATORS: usize = 2 * MAX_MODULES;
+
 /// Segments of the reference arm: three modules of two (paper).
 pub const SEGMENTS: usize = 6;
-/// Bend sensors, two a segment (paper).
-pub const BEND_SENSORS: usize = 2 * SEGMENTS;
-/// Modules, each with a regulator to its right and one to its left (the reference rig's wiring).
-pub(crate) const MODULES: usize = 3;
-/// Pressure regulators, two a module (the reference rig's wiring).
-pub const REGULATORS: usize = 2 * MODULES;
+/// Bend sensors of the reference arm, two a segment (paper).
+pub const BEND_SENSORS: usize = SENSORS_PER_SEGMENT * SEGMENTS;
+/// Pressure regulators of the reference arm, two a module (the reference rig's wiring).
+pub const REGULATORS: usize = SEGMENTS;
 
 // Random numbers.
 
@@ -159,8 +168,9 @@ pub(crate) const PUSH_NEIGHBOUR_SHARE: f64 = 0.35;
 
 /// Range of the obstacle's distance from the base's axis, across (assumed).
 pub(crate) const OBSTACLE_X_M: (f64, f64) = (0.03, 0.07);
-/// Segment that meets the obstacle, counted from 0: the arm's fourth.
-pub(crate) const OBSTACLE_SEGMENT: usize = 3;
+/// Length of the reference arm below the obstacle, three segments. Distance and lever scale with the length that an arm
+/// has there.
+pub(crate) const OBSTACLE_BELOW_M: f64 = 3.0 * (CURVE_LENGTH_M + CONNECTOR_LENGTH_M);
 /// Lever from the bending base to the contact (assumed: half the arm below it).
 pub(crate) const OBSTACLE_LEVER_M: f64 = 0.16;
 /// Most that the obstacle turns the arm back (assumed: then it slides).
@@ -231,14 +241,17 @@ pub(crate) const ADC_NOISE_COUNTS: f64 = 2.0;
 
 // IMUs.
 
-/// Drift of each unit's heading. The worst turns 45° in 900 s (paper); the others are assumed.
-pub(crate) const DRIFT_RAD_PER_S: [f64; SEGMENTS] = [
+/// Drift of each unit's heading; the reference arm has the first six. The worst turns 45° in 900 s (paper); the others
+/// are assumed.
+pub(crate) const DRIFT_RAD_PER_S: [f64; MAX_SEGMENTS] = [
     0.010 * DEGREE_RAD,
     -0.008 * DEGREE_RAD,
     0.014 * DEGREE_RAD,
     0.011 * DEGREE_RAD,
     -0.011 * DEGREE_RAD,
     0.050 * DEGREE_RAD,
+    0.009 * DEGREE_RAD,
+    -0.013 * DEGREE_RAD,
 ];
 /// Spread of a unit's drift between sessions, one sigma, a share (assumed).
 pub(crate) const DRIFT_SESSION_SIGMA: f64 = 0.02;

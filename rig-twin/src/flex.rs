@@ -135,6 +135,7 @@ mod tests {
     use super::{BendSensor, Curve, Noise, PairError, Source};
     use crate::arm::ArmParameters;
     use crate::constants::{BEND_SENSORS, DEGREE_RAD};
+    use crate::layout::Layout;
     use crate::noise::Seeds;
 
     /// Mean of 100 conversions.
@@ -144,10 +145,10 @@ mod tests {
 
     /// Mean counts along stairs of 3° from −69° to 69°, each held for 10 s.
     fn stairs(arm_seed: u64, index: usize) -> Vec<f64> {
-        let arm = ArmParameters::new(arm_seed);
+        let arm = ArmParameters::new(arm_seed, &Layout::default());
         let seeds = Seeds { arm: arm_seed, session: 1 };
         let mut noise = Noise::of_session(seeds, Source::Converter, 0);
-        let mut sensor = BendSensor::new(arm.strips[index], index, seeds);
+        let mut sensor = BendSensor::new(arm.strips[index].expect("it has all sensors"), index, seeds);
         let mut curve = Curve::new(arm.curves[index / 2]);
         let mut settled_at = |degrees: i32| {
             curve.free_rad = f64::from(degrees) * DEGREE_RAD;
@@ -170,12 +171,12 @@ mod tests {
     }
     /// Shift of the counts of the strips of segment 1 by a pair error and a temperature, on the straight arm.
     fn shift_counts(pair: PairError, temperature_k: f64) -> [f64; 2] {
-        let arm = ArmParameters::new(5);
+        let arm = ArmParameters::new(5, &Layout::default());
         let seeds = Seeds { arm: 5, session: 1 };
         let mut noise = Noise::of_session(seeds, Source::Converter, 0);
         let curve = Curve::new(arm.curves[0]);
         [0, 1].map(|index| {
-            let mut sensor = BendSensor::new(arm.strips[index], index, seeds);
+            let mut sensor = BendSensor::new(arm.strips[index].expect("it has all sensors"), index, seeds);
             sensor.step(&curve, PairError::default(), 0.0);
             let before = mean_counts(&sensor, &mut noise);
             sensor.step(&curve, pair, temperature_k);

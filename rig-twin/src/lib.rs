@@ -1,7 +1,8 @@
 //! Soft arms and their sensors, simulated: the reference arm, and a family of others.
 //!
-//! Three modules of two segments bend in a plane under six pressure regulators. Twelve bend sensors and six BNO055
-//! units measure them with the flaws of real sensors. The same seed results in the same bits on every platform: all
+//! An arm of 1 to 8 segments bends in a plane: two segments are a module, under a pressure regulator to the right and
+//! one to the left. Up to two bend sensors and a BNO055 unit on each segment measure it with the flaws of real sensors.
+//! The reference arm has six segments, twelve bend sensors and six units. The same seed results in the same bits on every platform: all
 //! random numbers come from `ChaCha` streams, all transcendental functions from `libm`, and time is a fixed grid.
 //!
 //! Angles are rad, clockwise positive (towards +x); lengths are m; y is along the base's tangent.
@@ -10,6 +11,7 @@
 //!
 //! [`Setup::arm_seed`] selects the arm. 0 is the reference arm; any other seed draws an arm of its own: lengths and
 //! curvature, regulators and actuators, strips, IMUs. `flaws.rs` has the size of every flaw with its source.
+//! [`Setup::layout`] selects the segments, their nominal lengths and their sensors.
 //! [`Setup::seed`] draws the properties of a session (turn-on biases, temperature, stored creep, offsets of the strips,
 //! noise). [`Motion`] selects the motion: swings as in the paper, or rests, leans, one module alone, slow, fast, starts
 //! that are bent or moving. [`HeadingDrift`] adds the drift of a real IMU.
@@ -41,15 +43,16 @@
 //! let program = MotionProgram::new(scenario, seed);
 //! let mut rig = Rig::new(scenario, seed);
 //! for _ in 0..2000 {
-//!     rig.step(0.01, program.duties(rig.time_s()));
+//!     rig.step(0.01, &program.duties(rig.time_s()));
 //! }
 //! let tip = rig.truth()[rig_twin::SEGMENTS - 1];
 //! assert!(tip.x_m.hypot(tip.y_m) < 0.6, "the arm is 0.582 m long");
-//! assert!(rig.adc_counts().iter().all(|&counts| counts > 0 && counts < 4095));
+//! assert!(rig.adc_counts().into_iter().flatten().all(|counts| counts > 0 && counts < 4095));
 //! ```
 
 mod actuator;
 mod arm;
+mod arm_file;
 mod bno055;
 mod camera;
 mod constants;
@@ -58,6 +61,7 @@ mod flaws;
 mod flex;
 mod gauss_markov;
 mod heading_drift;
+mod layout;
 mod motion;
 mod noise;
 mod pose;
@@ -70,9 +74,10 @@ mod smooth_step;
 mod temperature;
 
 pub use camera::{Camera, Frame};
-pub use constants::{BEND_SENSORS, REGULATORS, SEGMENTS};
+pub use constants::{BEND_SENSORS, MAX_REGULATORS, MAX_SEGMENTS, REGULATORS, SEGMENTS};
 pub use contact::Push;
 pub use heading_drift::HeadingDrift;
+pub use layout::{Layout, LayoutError, PerBendSensor, PerRegulator, PerSegment, SegmentLayout};
 pub use motion::Motion;
 pub use pose::EndPose;
 pub use program::MotionProgram;

@@ -1,9 +1,10 @@
 //! Motions: changes, pace and interruptions of a scenario's swings.
 
 use crate::constants::{
-    FAST_PERIODS, LEAN_DRIVE, LEAN_PAUSE_LOG_S, LEAN_SPELL_S, LEAN_SWING_SHARE, MODULES, PAUSE_BLEND_S, PAUSES,
-    REST_DRIVE, REST_PAUSE_LOG_S, REST_SPELL_S, REST_VENTED_SHARE, SLOW_PERIODS,
+    FAST_PERIODS, LEAN_DRIVE, LEAN_PAUSE_LOG_S, LEAN_SPELL_S, LEAN_SWING_SHARE, PAUSE_BLEND_S, PAUSES, REST_DRIVE,
+    REST_PAUSE_LOG_S, REST_SPELL_S, REST_VENTED_SHARE, SLOW_PERIODS,
 };
+use crate::layout::PerModule;
 use crate::noise::Noise;
 use crate::smooth_step::smooth_step;
 
@@ -51,7 +52,7 @@ struct Pause {
     start_s: f64,
     end_s: f64,
     /// Drive of each module meanwhile, a share of full pressure.
-    pose: [f64; MODULES],
+    pose: PerModule<f64>,
 }
 
 /// A round of interruptions, repeated without end.
@@ -63,9 +64,9 @@ pub(crate) struct Pauses {
 }
 
 impl Pauses {
-    /// Pauses of a motion; `None` for most motions. `side` is the one to which the lower modules lean; 0: a random
-    /// side.
-    pub(crate) fn new(motion: Motion, side: f64, noise: &mut Noise) -> Option<Self> {
+    /// Pauses of a motion of `modules` modules; `None` for most motions. `side` is the one to which the lower modules
+    /// lean; 0: a random side.
+    pub(crate) fn new(motion: Motion, modules: usize, side: f64, noise: &mut Noise) -> Option<Self> {
         let (spell_s, pause_log_s, swing_share) = match motion {
             Motion::Rests => (REST_SPELL_S, REST_PAUSE_LOG_S, 0.0),
             Motion::Lean => (LEAN_SPELL_S, LEAN_PAUSE_LOG_S, LEAN_SWING_SHARE),
@@ -77,32 +78,39 @@ impl Pauses {
             round_s = start_s + libm::exp(noise.between(pause_log_s));
             let vented = motion == Motion::Rests && noise.uniform() < REST_VENTED_SHARE;
             let range = if motion == Motion::Rests { REST_DRIVE } else { LEAN_DRIVE };
-            let pose = if vented { [0.0; MODULES] } else { leaning_pose(range, side, noise) };
+            let pose = if vented { still(modules) } else { leaning_pose(modules, range, side, noise) };
             Pause { start_s, end_s: round_s, pose }
         });
         Some(Self { round: round.collect(), round_s, swing_share })
     }
 
     /// Drives at `t_s` after the first rest; `swings` are the drives without a pause.
-    pub(crate) fn interrupt(&self, t_s: f64, swings: [f64; MODULES]) -> [f64; MODULES] {
+    pub(crate) fn interrupt(&self, t_s: f64, swings: PerModule<f64>) -> PerModule<f64> {
         let in_round_s = t_s % self.round_s;
         let next = self.round.partition_point(|pause| pause.end_s <= in_round_s);
         let Some(pause) = self.round.get(next) else { return swings };
         let begun = smooth_step((in_round_s - pause.start_s) / PAUSE_BLEND_S);
         let blend = begun * smooth_step((pause.end_s - in_round_s) / PAUSE_BLEND_S);
-        core::array::from_fn(|module| {
-            let paused = pause.pose[module] + self.swing_share * swings[module];
-            swings[module] + blend * (paused - swings[module])
-        })
+        let of_module = |(pose, swing): (&f64, f64)| {
+            let paused = pose + self.swing_share * swing;
+            swing + blend * (paused - swing)
+        };
+        pause.pose.iter().zip(swings).map(of_module).collect()
     }
 }
 
-/// Drives of all modules at which the arm leans by a size within `range`: the lower ones to `side`, the others, or all
+/// Drives of modules that are vented.
+pub(crate) fn still(modules: usize) -> PerModule<f64> {
+    (0..modules).map(|_| 0.0).collect()
+}
+
+/// Drives of all modules at which the arm leans by a size within `range`: the lower ones to `side`, the last, or all
 /// where `side` is 0, to a side each.
-pub(crate) fn leaning_pose(range: (f64, f64), side: f64, noise: &mut Noise) -> [f64; MODULES] {
-    core::array::from_fn(|module| {
+pub(crate) fn leaning_pose(modules: usize, range: (f64, f64), side: f64, noise: &mut Noise) -> PerModule<f64> {
+    let of_module = |module| {
         let drawn = noise.sign();
-        let free = side.abs() < 0.5 || module + 1 == MODULES;
+        let free = side.abs() < 0.5 || module + 1 == modules;
         noise.between(range) * if free { drawn } else { side }
-    })
+    };
+    (0..modules).map(of_module).collect()
 }

@@ -2,11 +2,12 @@
 
 use crate::constants::{
     CONTACT_DRIVE, CONTACT_PERIODS_S, ENVELOPE, ENVELOPE_PERIODS, FADE_IN_S, FREE_DRIVE, FREE_PERIODS_S, FULL_BEND_RAD,
-    MODULES, OBSTACLE_LEAN_DRIVE, PACE_PERIODS, PACE_RAD, REGULATORS, REST_S, SEGMENTS, START_DRIVE, SWEEP_DRIVE,
+    OBSTACLE_LEAN_DRIVE, PACE_PERIODS, PACE_RAD, REST_S, SEGMENTS_PER_MODULE, START_DRIVE, SWEEP_DRIVE,
     SWEEP_PERIODS_S, TOTAL_HEADING_RAD,
 };
 use crate::contact::Obstacle;
-use crate::motion::{Motion, Pauses, leaning_pose};
+use crate::layout::{Layout, PerModule, PerRegulator};
+use crate::motion::{Motion, Pauses, leaning_pose, still};
 use crate::noise::{Noise, Source};
 use crate::scenario::Scenario;
 use crate::setup::Setup;
@@ -17,11 +18,12 @@ use core::f64::consts::TAU;
 #[derive(Clone, Debug)]
 pub struct MotionProgram {
     motion: Motion,
-    swings: [Swing; MODULES],
+    layout: Layout,
+    swings: PerModule<Swing>,
     heading_limit_rad: f64,
     pauses: Option<Pauses>,
     /// Drive of each module before the first swing, a share of full pressure.
-    start_pose: [f64; MODULES],
+    start_pose: PerModule<f64>,
 }
 
 impl MotionProgram {
@@ -39,49 +41,52 @@ impl MotionProgram {
             Scenario::Push | Scenario::Obstacle => (CONTACT_DRIVE, CONTACT_PERIODS_S),
         };
         let periods_s = (setup.motion.periods() * periods_s.0, setup.motion.periods() * periods_s.1);
-        let side = if scenario == Scenario::Obstacle { Obstacle::new(seeds).side } else { 0.0 };
+        let side = if scenario == Scenario::Obstacle { Obstacle::new(&setup.layout, seeds).side } else { 0.0 };
+        let modules = setup.layout.modules();
         let mut schedule = Noise::of_session(seeds, Source::Schedule, 0);
-        let moving = (setup.motion == Motion::OneModule).then(|| schedule.pick(MODULES));
+        let moving = (setup.motion == Motion::OneModule).then(|| schedule.pick(modules));
         let heading_limit_rad = if scenario == Scenario::Sweep { f64::INFINITY } else { TOTAL_HEADING_RAD };
-        let swings = core::array::from_fn(|module| {
-            let lean = if module + 1 < MODULES { OBSTACLE_LEAN_DRIVE * side } else { 0.0 };
+        let swing = |module| {
+            let lean = if module + 1 < modules { OBSTACLE_LEAN_DRIVE * side } else { 0.0 };
             let drive = if moving.is_none_or(|moving| moving == module) { drive } else { 0.0 };
             Swing::new(drive, lean, periods_s, &mut Noise::of_session(seeds, Source::Motion, module))
-        });
+        };
         let is_bent = setup.motion == Motion::BentStart;
         Self {
             motion: setup.motion,
-            swings,
+            layout: setup.layout.clone(),
+            swings: (0..modules).map(swing).collect(),
             heading_limit_rad,
-            pauses: Pauses::new(setup.motion, side, &mut schedule),
-            start_pose: if is_bent { leaning_pose(START_DRIVE, side, &mut schedule) } else { [0.0; MODULES] },
+            pauses: Pauses::new(setup.motion, modules, side, &mut schedule),
+            start_pose: if is_bent { leaning_pose(modules, START_DRIVE, side, &mut schedule) } else { still(modules) },
         }
     }
 
-    /// Duties of the regulators at `t_s` seconds, each 0 … 1: module 1 right, left, module 2 right, left, module 3
-    /// right, left.
-    pub fn duties(&self, t_s: f64) -> [f64; REGULATORS] {
+    /// Duties of the regulators at `t_s` seconds, each 0 … 1: module 1 right, left, module 2 right, left, …
+    pub fn duties(&self, t_s: f64) -> PerRegulator<f64> {
         if !t_s.is_finite() || (self.motion.starts_at_rest() && t_s <= REST_S) {
-            return [0.0; REGULATORS];
+            return (0..self.layout.regulators()).map(|_| 0.0).collect();
         }
         let drives = self.drives(t_s);
-        let heading_rad = drives.iter().sum::<f64>() * FULL_BEND_RAD * (SEGMENTS / MODULES) as f64;
+        let turns = drives.iter().enumerate().map(|(module, drive)| drive * self.layout.share_of_module(module));
+        let heading_rad = turns.sum::<f64>() * FULL_BEND_RAD * SEGMENTS_PER_MODULE as f64;
         let excess = heading_rad / self.heading_limit_rad;
         let share = 1.0 / libm::sqrt(libm::sqrt(1.0 + excess * excess * excess * excess));
-        core::array::from_fn(|regulator| {
-            let drive = share * drives[regulator / 2];
-            if regulator % 2 == 0 { drive.max(0.0) } else { (-drive).max(0.0) }
-        })
+        let of_module = |drive: f64| [(share * drive).max(0.0), (-(share * drive)).max(0.0)];
+        drives.into_iter().flat_map(of_module).collect()
     }
 
     /// Right minus left of each module at `t_s`, a share of full pressure, before the heading is limited.
-    fn drives(&self, t_s: f64) -> [f64; MODULES] {
+    fn drives(&self, t_s: f64) -> PerModule<f64> {
         let is_moving = self.motion == Motion::MovingStart;
         let fade = if is_moving { 1.0 } else { smooth_step((t_s - REST_S) / FADE_IN_S) };
-        let drives = core::array::from_fn(|module| {
-            fade * self.swings[module].drive(t_s) + (1.0 - fade) * self.start_pose[module]
-        });
-        self.pauses.as_ref().map_or(drives, |pauses| pauses.interrupt(t_s - REST_S, drives))
+        let modules = self.swings.iter().zip(&self.start_pose);
+        let drives = modules.map(|(swing, start)| fade * swing.drive(t_s) + (1.0 - fade) * start);
+        let drives: PerModule<f64> = drives.collect();
+        match &self.pauses {
+            Some(pauses) => pauses.interrupt(t_s - REST_S, drives),
+            None => drives,
+        }
     }
 }
 

@@ -4,11 +4,12 @@ use crate::actuator::{Actuator, Regulator};
 use crate::arm::ArmParameters;
 use crate::bno055::Imu;
 use crate::constants::{
-    BEND_SENSORS, FUSION_S, GRID_POINTS_PER_FUSION, GRID_S, GRID_SLACK_S, LEAD_IN_S, LONGEST_STEP_S, REGULATORS,
-    SEGMENTS,
+    FUSION_S, GRID_POINTS_PER_FUSION, GRID_S, GRID_SLACK_S, LEAD_IN_S, LONGEST_STEP_S, SEGMENTS_PER_MODULE,
+    SENSORS_PER_SEGMENT,
 };
 use crate::contact::{Contacts, Push};
 use crate::flex::{BendSensor, PairError, PairErrors};
+use crate::layout::{PerBendSensor, PerRegulator, PerSegment};
 use crate::noise::{Noise, Source};
 use crate::pose::EndPose;
 use crate::program::MotionProgram;
@@ -16,7 +17,6 @@ use crate::scenario::Scenario;
 use crate::setup::Setup;
 use crate::shape::{Curve, poses};
 use crate::temperature::Temperature;
-use core::array::from_fn;
 
 /// The simulated arm with its regulators, bend sensors and IMUs.
 ///
@@ -28,16 +28,16 @@ pub struct Rig {
     /// Time since the start of the session in grid steps; negative before it.
     grid_points: i64,
     pending_s: f64,
-    regulators: [Regulator; REGULATORS],
-    actuators: [Actuator; SEGMENTS],
+    regulators: PerRegulator<Regulator>,
+    actuators: PerSegment<Actuator>,
     contacts: Contacts,
-    curves: [Curve; SEGMENTS],
-    bend_sensors: [BendSensor; BEND_SENSORS],
-    pair_errors: [PairErrors; SEGMENTS],
-    pair_error: [PairError; SEGMENTS],
+    curves: PerSegment<Curve>,
+    bend_sensors: PerBendSensor<Option<BendSensor>>,
+    pair_errors: PerSegment<PairErrors>,
+    pair_error: PerSegment<PairError>,
     temperature: Temperature,
     temperature_k: f64,
-    imus: [Imu; SEGMENTS],
+    imus: PerSegment<Option<Imu>>,
     converter_noise: Noise,
 }
 
@@ -54,7 +54,7 @@ impl Rig {
             let program = MotionProgram::of(setup);
             rig.grid_points = -(LEAD_IN_S / GRID_S) as i64;
             while rig.grid_points < 0 {
-                rig.advance(program.duties(rig.time_s()));
+                rig.advance(&program.duties(rig.time_s()));
             }
         }
         rig
@@ -62,33 +62,34 @@ impl Rig {
 
     /// The arm, vented and straight.
     fn at_rest(setup: &Setup) -> Self {
-        let (arm, seeds) = (ArmParameters::new(setup.arm_seed), setup.seeds());
-        let curves = arm.curves.map(Curve::new);
-        let poses = poses(&curves);
+        let (arm, seeds) = (ArmParameters::new(setup.arm_seed, &setup.layout), setup.seeds());
+        let curves: PerSegment<Curve> = arm.curves.into_iter().map(Curve::new).collect();
+        let strips = arm.strips.into_iter().enumerate();
+        let pairs = arm.pairs.into_iter().enumerate();
+        let imus = arm.imus.into_iter().zip(poses(&curves)).enumerate();
         Self {
             grid_points: 0,
             pending_s: 0.0,
-            regulators: arm.regulators.map(Regulator::vented),
-            actuators: arm.actuators.map(Actuator::new),
-            contacts: Contacts::new(setup.scenario, seeds),
-            curves,
-            bend_sensors: from_fn(|index| BendSensor::new(arm.strips[index], index, seeds)),
-            pair_errors: from_fn(|segment| PairErrors::new(arm.pairs[segment], segment, seeds)),
-            pair_error: [PairError::default(); SEGMENTS],
+            regulators: arm.regulators.into_iter().map(Regulator::vented).collect(),
+            actuators: arm.actuators.into_iter().map(Actuator::new).collect(),
+            contacts: Contacts::new(setup.scenario, &setup.layout, seeds),
+            bend_sensors: strips.map(|(index, strip)| Some(BendSensor::new(strip?, index, seeds))).collect(),
+            pair_error: curves.iter().map(|_| PairError::default()).collect(),
+            pair_errors: pairs.map(|(segment, pair)| PairErrors::new(pair, segment, seeds)).collect(),
             temperature: Temperature::new(seeds, FUSION_S),
             temperature_k: 0.0,
-            imus: from_fn(|segment| Imu::new(arm.imus[segment], segment, seeds, poses[segment])),
+            imus: imus.map(|(segment, (imu, pose))| Some(Imu::new(imu?, segment, seeds, pose))).collect(),
+            curves,
             converter_noise: Noise::of_session(seeds, Source::Converter, 0),
         }
     }
 
-    /// Advances by `dt_s` seconds at these duties, 0 … 1: module 1 right, left, module 2 right, left, module 3 right,
-    /// left.
+    /// Advances by `dt_s` seconds at these duties, 0 … 1: module 1 right, left, module 2 right, left, …
     ///
     /// The physics advances on a grid of 2 ms and the remainder is carried over, so that the state does not depend on
     /// the sizes of the steps. A step that is not positive has no effect; one above an hour counts as an hour. A duty
-    /// of NaN counts as 0.
-    pub fn step(&mut self, dt_s: f64, duties: [f64; REGULATORS]) {
+    /// of NaN counts as 0, as does one that is missing; those beyond the arm's regulators have no effect.
+    pub fn step(&mut self, dt_s: f64, duties: &[f64]) {
         if dt_s > 0.0 {
             self.pending_s += dt_s.min(LONGEST_STEP_S);
         }
@@ -99,25 +100,34 @@ impl Rig {
     }
 
     /// One grid step.
-    fn advance(&mut self, duties: [f64; REGULATORS]) {
+    fn advance(&mut self, duties: &[f64]) {
         self.grid_points += 1;
-        let pressures_pa: [f64; REGULATORS] = from_fn(|index| self.regulators[index].step(duties[index]));
-        let free_rad: [f64; SEGMENTS] = from_fn(|segment| {
+        let duties = duties.iter().copied().chain(core::iter::repeat(0.0));
+        let pressures_pa: PerRegulator<f64> =
+            self.regulators.iter_mut().zip(duties).map(|(regulator, duty)| regulator.step(duty)).collect();
+        let actuators = self.actuators.iter_mut().enumerate();
+        let free_rad = actuators.map(|(segment, actuator)| {
             let [right, left] = of_segment(&pressures_pa, segment);
-            self.actuators[segment].step(right - left)
+            actuator.step(right - left)
         });
+        let free_rad: PerSegment<f64> = free_rad.collect();
         let touches = self.contacts.touches(self.grid_points as f64 * GRID_S, &free_rad);
         for (segment, curve) in self.curves.iter_mut().enumerate() {
             curve.bend(free_rad[segment], touches[segment], of_segment(&pressures_pa, segment));
         }
         for (index, sensor) in self.bend_sensors.iter_mut().enumerate() {
-            sensor.step(&self.curves[index / 2], self.pair_error[index / 2], self.temperature_k);
+            let segment = index / SENSORS_PER_SEGMENT;
+            if let Some(sensor) = sensor {
+                sensor.step(&self.curves[segment], self.pair_error[segment], self.temperature_k);
+            }
         }
         if self.grid_points % GRID_POINTS_PER_FUSION == 0 {
             self.temperature_k = self.temperature.step();
-            self.pair_error = from_fn(|segment| self.pair_errors[segment].step(self.temperature_k));
+            self.pair_error = self.pair_errors.iter_mut().map(|errors| errors.step(self.temperature_k)).collect();
             for (imu, pose) in self.imus.iter_mut().zip(poses(&self.curves)) {
-                imu.fuse(pose, self.temperature_k);
+                if let Some(imu) = imu {
+                    imu.fuse(pose, self.temperature_k);
+                }
             }
         }
     }
@@ -128,33 +138,32 @@ impl Rig {
     }
 
     /// True world pose of each segment's end, at the last grid point.
-    pub fn truth(&self) -> [EndPose; SEGMENTS] {
+    pub fn truth(&self) -> PerSegment<EndPose> {
         poses(&self.curves)
     }
 
-    /// Fresh conversions of the bend sensors, 0 … 4095, in the order 1a, 1b, 2a, … 6b. Each call draws new noise.
-    pub fn adc_counts(&mut self) -> [u16; BEND_SENSORS] {
-        from_fn(|index| self.convert(index))
+    /// Fresh conversions of the bend sensors, 0 … 4095, in the order 1a, 1b, 2a, …; `None`: no such sensor. Each call
+    /// draws new noise.
+    pub fn adc_counts(&mut self) -> PerBendSensor<Option<u16>> {
+        (0..self.bend_sensors.len()).map(|index| self.convert(index)).collect()
     }
 
     /// One fresh conversion of one bend sensor, counted from 0 in the order of [`adc_counts`](Self::adc_counts), for a
-    /// converter that samples one channel after the other.
-    ///
-    /// # Panics
-    ///
-    /// If `sensor` is not below [`BEND_SENSORS`].
-    pub fn convert(&mut self, sensor: usize) -> u16 {
-        self.bend_sensors[sensor].convert(&mut self.converter_noise)
+    /// converter that samples one channel after the other; `None`: no such sensor.
+    pub fn convert(&mut self, sensor: usize) -> Option<u16> {
+        let sensor = self.bend_sensors.get(sensor)?.as_ref()?;
+        Some(sensor.convert(&mut self.converter_noise))
     }
 
-    /// The IMUs' last fusion output, at most 10 ms old: w, x, y, z of each segment's unit, in steps of 1/16384.
-    pub fn imu_quaternions(&self) -> [[i16; 4]; SEGMENTS] {
-        from_fn(|segment| self.imus[segment].quaternion())
+    /// The IMUs' last fusion output, at most 10 ms old: w, x, y, z of each segment's unit, in steps of 1/16384; `None`:
+    /// no such unit.
+    pub fn imu_quaternions(&self) -> PerSegment<Option<[i16; 4]>> {
+        self.imus.iter().map(|imu| imu.as_ref().map(Imu::quaternion)).collect()
     }
 
     /// Bend angle that contacts add to each segment now, rad; 0 without contact.
-    pub fn contact_bends_rad(&self) -> [f64; SEGMENTS] {
-        self.curves.map(|curve| curve.touch.bend_rad)
+    pub fn contact_bends_rad(&self) -> PerSegment<f64> {
+        self.curves.iter().map(|curve| curve.touch.bend_rad).collect()
     }
 
     /// The pushes of scenario II that have begun, oldest first; none in the other scenarios.
@@ -164,7 +173,7 @@ impl Rig {
 }
 
 /// Right and left value of the module that a segment belongs to.
-fn of_segment(regulators: &[f64; REGULATORS], segment: usize) -> [f64; 2] {
-    let right = 2 * (segment / 2);
+fn of_segment(regulators: &[f64], segment: usize) -> [f64; 2] {
+    let right = 2 * (segment / SEGMENTS_PER_MODULE);
     [regulators[right], regulators[right + 1]]
 }

@@ -7,8 +7,9 @@
 //! m₁ and m₂ multiply the first two Legendre polynomials of the curvature; B is the integral of a biweight kernel.
 
 use crate::arm::CurveParameters;
-use crate::constants::{FULL_SCALE_PA, SEGMENTS, SIMPSON_INTERVALS};
+use crate::constants::{FULL_SCALE_PA, SIMPSON_INTERVALS};
 use crate::contact::Touch;
+use crate::layout::PerSegment;
 use crate::pose::EndPose;
 
 /// One segment's curve at one moment.
@@ -42,8 +43,8 @@ impl Curve {
     }
 
     /// End of the segment that starts at `start`, its connector included.
-    fn end(&self, start: EndPose, connector_first: bool) -> EndPose {
-        let CurveParameters { length_m, connector_m, .. } = self.parameters;
+    fn end(&self, start: EndPose) -> EndPose {
+        let CurveParameters { length_m, connector_m, connector_first, .. } = self.parameters;
         let start = if connector_first { start.ahead(connector_m) } else { start };
         let (mut x, mut y) = (0.0, 0.0);
         for node in 0..=SIMPSON_INTERVALS {
@@ -67,16 +68,14 @@ impl Curve {
     }
 }
 
-/// Poses of all segments' ends, the base at the origin. The connector follows the curve in segments 1, 3, 5 and
-/// precedes it in 2, 4, 6 (the reference arm).
-pub(crate) fn poses(curves: &[Curve; SEGMENTS]) -> [EndPose; SEGMENTS] {
+/// Poses of all segments' ends, the base at the origin.
+pub(crate) fn poses(curves: &[Curve]) -> PerSegment<EndPose> {
     let mut end = EndPose::default();
-    let mut poses = [end; SEGMENTS];
-    for (segment, (curve, pose)) in curves.iter().zip(&mut poses).enumerate() {
-        end = curve.end(end, segment % 2 == 1);
-        *pose = end;
-    }
-    poses
+    let poses = curves.iter().map(|curve| {
+        end = curve.end(end);
+        end
+    });
+    poses.collect()
 }
 
 #[cfg(test)]
@@ -84,10 +83,11 @@ mod tests {
     use super::{Curve, CurveParameters, EndPose, poses};
     use crate::constants::{CONNECTOR_LENGTH_M, CURVE_LENGTH_M, SEGMENTS};
 
-    fn uniform(bend_rad: f64) -> Curve {
+    fn uniform(bend_rad: f64, connector_first: bool) -> Curve {
         let parameters = CurveParameters {
             length_m: CURVE_LENGTH_M,
             connector_m: CONNECTOR_LENGTH_M,
+            connector_first,
             slope: 0.0,
             bulge: 0.0,
             rest_bend_rad: 0.0,
@@ -99,7 +99,7 @@ mod tests {
     #[test]
     fn constant_curvature_ends_on_its_circle() {
         let bend = 1.2_f64;
-        let end = uniform(bend).end(EndPose::default(), false);
+        let end = uniform(bend, false).end(EndPose::default());
         let x = CURVE_LENGTH_M / bend * (1.0 - bend.cos()) + CONNECTOR_LENGTH_M * bend.sin();
         let y = CURVE_LENGTH_M / bend * bend.sin() + CONNECTOR_LENGTH_M * bend.cos();
         assert!((end.x_m - x).abs() < 1e-6 && (end.y_m - y).abs() < 1e-6, "{end:?} instead of {x}, {y}");
@@ -108,20 +108,20 @@ mod tests {
     #[test]
     fn connector_that_precedes_the_curve_does_not_turn() {
         let bend = 1.2_f64;
-        let end = uniform(bend).end(EndPose::default(), true);
+        let end = uniform(bend, true).end(EndPose::default());
         let y = CURVE_LENGTH_M / bend * bend.sin() + CONNECTOR_LENGTH_M;
         assert!((end.y_m - y).abs() < 1e-6, "{} m instead of {y} m", end.y_m);
     }
 
     #[test]
     fn straight_arm_has_its_full_length() {
-        let tip = poses(&[uniform(0.0); SEGMENTS])[SEGMENTS - 1];
+        let tip = poses(&[uniform(0.0, false); SEGMENTS])[SEGMENTS - 1];
         assert!((tip.y_m - 0.582).abs() < 1e-12 && tip.x_m.abs() < 1e-12, "{tip:?}");
     }
 
     #[test]
     fn clockwise_bend_goes_right() {
-        let tip = poses(&[uniform(0.1); SEGMENTS])[SEGMENTS - 1];
+        let tip = poses(&[uniform(0.1, false); SEGMENTS])[SEGMENTS - 1];
         assert!(tip.x_m > 0.1 && (tip.heading_rad - 0.6).abs() < 1e-12, "{tip:?}");
     }
 }

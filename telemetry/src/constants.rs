@@ -1,7 +1,7 @@
-//! Constants of the protocol and of the arm.
+//! Constants of the protocol and of the largest arm.
 
 /// Version of this protocol: the first byte of every frame. Frame, COBS and CRC stay as they are in every version.
-pub const PROTOCOL_VERSION: u8 = 2;
+pub const PROTOCOL_VERSION: u8 = 3;
 
 /// Length of the longest frame in bytes, its zero included.
 pub const MAX_FRAME: usize = 255;
@@ -15,11 +15,14 @@ pub const TICK_US: u64 = 10_000;
 /// Ticks a second: the rate of samples and estimates, unless the host requests a lower one.
 pub const TICK_HZ: f64 = 1e6 / TICK_US as f64;
 
-/// Segments of the arm.
-pub const SEGMENTS: usize = 6;
+/// Segments of the longest arm.
+pub const MAX_SEGMENTS: usize = 8;
 
-/// Bend sensors of the arm, in the order 1a, 1b, 2a … 6b.
-pub const BEND_SENSORS: usize = 12;
+/// Places for bend sensors on a segment, a and b.
+pub const BEND_PER_SEGMENT: usize = 2;
 
-/// Pressure regulators of the arm: module 1 right, left, module 2 right, left, module 3 right, left.
-pub const REGULATORS: usize = 6;
+/// Places for bend sensors on the longest arm, in the order 1a, 1b, 2a … 8b.
+pub const MAX_BEND_SENSORS: usize = MAX_SEGMENTS * BEND_PER_SEGMENT;
+
+/// Pressure regulators of the largest arm.
+pub const MAX_REGULATORS: usize = 8;

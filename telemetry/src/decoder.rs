@@ -46,6 +46,8 @@ pub struct Decoder<P> {
     /// Boot number of the last `Hello`.
     boot: Option<u32>,
     lost_before_hello: u32,
+    /// Version of the last frame that could be read.
+    version: Option<u8>,
     counts: Counts,
     payload: PhantomData<P>,
 }
@@ -61,6 +63,7 @@ impl<P: Payload> Decoder<P> {
             next: None,
             boot: None,
             lost_before_hello: 0,
+            version: None,
             counts,
             payload: PhantomData,
         }
@@ -70,6 +73,12 @@ impl<P: Payload> Decoder<P> {
     #[must_use]
     pub const fn counts(&self) -> Counts {
         self.counts
+    }
+
+    /// Version of the protocol in the last frame of one that is read: the sender's.
+    #[must_use]
+    pub const fn version(&self) -> Option<u8> {
+        self.version
     }
 
     /// Decodes one byte; returns the payload or the error of the frame that it ends, if it ends one.
@@ -98,8 +107,9 @@ impl<P: Payload> Decoder<P> {
         if self.oversize {
             return Err(DecodeError::Oversize);
         }
-        let frame = Frame::open(&mut self.block)?;
-        let payload = P::read(frame.topic, frame.body);
+        let frame = Frame::open(&mut self.block, P::VERSIONS)?;
+        self.version = Some(frame.version);
+        let payload = P::read(frame.version, frame.topic, frame.body);
         let sequence = frame.sequence;
         self.count_lost(sequence);
         if let Some(boot) = payload.as_ref().ok().and_then(P::boot) {

@@ -2,16 +2,16 @@
 
 use estimator_core::{Contact, ImuReading, Q, SegmentShape, Shape, VARIANCE_SCALE};
 
-use crate::constants::SEGMENTS;
+use crate::constants::{BEND_PER_SEGMENT, MAX_SEGMENTS};
 use crate::message::{Estimate, Sample, SegmentEstimate, SegmentUncertainty, Uncertainty};
 
 /// For an estimator of any number of segments; readings of segments that it does not have are left out.
 impl<const N: usize> From<&Sample> for estimator_core::Sample<N> {
     fn from(sample: &Sample) -> Self {
         let mut raw = Self::missing(sample.time_us);
-        let (bend, _) = sample.bend.as_chunks();
+        let (bend, _) = sample.bend.as_chunks::<BEND_PER_SEGMENT>();
         raw.bend.iter_mut().zip(bend).for_each(|(raw, counts)| *raw = *counts);
-        let imu = sample.imu.map(|quaternion| quaternion.map(ImuReading::from_bno055));
+        let imu = sample.imu.iter().map(|quaternion| quaternion.map(ImuReading::from_bno055));
         raw.imu.iter_mut().zip(imu).for_each(|(raw, reading)| *raw = reading);
         raw
     }
@@ -22,32 +22,32 @@ impl Estimate {
     /// sample of this tick.
     #[must_use]
     pub fn of<const N: usize>(tick: u32, shape: &Shape<Q, N>) -> Self {
-        let mut segments = [None; SEGMENTS];
-        for (segment, SegmentShape { theta, end }) in segments.iter_mut().zip(shape) {
-            *segment = theta.zip(*end).map(|(theta, end)| SegmentEstimate {
+        let segment = |SegmentShape { theta, end }: &SegmentShape<Q>| {
+            theta.zip(*end).map(|(theta, end)| SegmentEstimate {
                 theta: theta.remainder.to_bits(),
                 end: [end.x.to_bits(), end.y.to_bits()],
-            });
-        }
-        Self { tick, segments }
+            })
+        };
+        Self { tick, segments: shape.iter().map(segment).take(MAX_SEGMENTS).collect() }
     }
 }
 
 impl Uncertainty {
-    /// Converts the covariances and contacts after the sample of this tick. A table without `[uncertainty]` or `[contact]`
-    /// leaves them unknown.
+    /// Converts the covariances and contacts of an arm of so many segments after the sample of this tick. A table without
+    /// `[uncertainty]` or `[contact]` leaves them unknown.
     #[must_use]
-    pub fn of(tick: u32, errors: &[estimator_core::Uncertainty], contacts: &[Contact]) -> Self {
-        let mut segments = [SegmentUncertainty::default(); SEGMENTS];
-        for (segment, error) in segments.iter_mut().zip(errors) {
-            segment.theta = error.theta.map(Q::to_bits);
-            segment.end = error.end.map(|end| [end.xx, end.xy, end.yy].map(Q::to_bits));
-        }
-        for (segment, contact) in segments.iter_mut().zip(contacts) {
-            segment.contact_percent = contact.score_percent.min(u8::MAX.into()) as u8;
-            segment.in_contact = contact.in_contact;
-        }
-        Self { tick, segments }
+    pub fn of(tick: u32, segments: usize, errors: &[estimator_core::Uncertainty], contacts: &[Contact]) -> Self {
+        let segment = |i: usize| {
+            let error = errors.get(i);
+            let contact = contacts.get(i);
+            SegmentUncertainty {
+                theta: error.and_then(|error| error.theta).map(Q::to_bits),
+                end: error.and_then(|error| error.end).map(|end| [end.xx, end.xy, end.yy].map(Q::to_bits)),
+                contact_percent: contact.map_or(0, |contact| contact.score_percent.min(u8::MAX.into()) as u8),
+                in_contact: contact.is_some_and(|contact| contact.in_contact),
+            }
+        };
+        Self { tick, segments: (0..segments.min(MAX_SEGMENTS)).map(segment).collect() }
     }
 }
 
@@ -67,12 +67,4 @@ impl SegmentUncertainty {
 
 fn variance(bits: i32) -> f64 {
     Q::from_bits(bits).to_f64() / VARIANCE_SCALE
-}
-
-/// Contact of each segment.
-#[must_use]
-pub fn contact_flags(contacts: &[Contact]) -> [bool; SEGMENTS] {
-    let mut flags = [false; SEGMENTS];
-    flags.iter_mut().zip(contacts).for_each(|(flag, contact)| *flag = contact.in_contact);
-    flags
 }

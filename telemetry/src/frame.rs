@@ -23,32 +23,46 @@ pub enum EncodeError {
 /// Makes frames of one side's messages and numbers them.
 ///
 /// A frame that was encoded and then not sent counts as lost at the other side. See the [crate's example](crate).
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct Encoder {
+    version: u8,
     sequence: u16,
+}
+
+impl Default for Encoder {
+    fn default() -> Self {
+        Self::new()
+    }
 }
 
 impl Encoder {
     /// An encoder whose first frame has the number 0.
     #[must_use]
     pub const fn new() -> Self {
-        Self { sequence: 0 }
+        Self::for_version(PROTOCOL_VERSION)
+    }
+
+    /// An encoder for a receiver of this version of the protocol.
+    #[must_use]
+    pub const fn for_version(version: u8) -> Self {
+        Self { version, sequence: 0 }
     }
 
     /// Encodes a message into `buffer` and returns the frame, its zero included; [`MAX_FRAME`] bytes hold any.
     ///
     /// # Errors
-    /// [`EncodeError::Room`] where the frame does not fit; it has then used up no number.
+    /// [`EncodeError::Room`] where the frame does not fit, or the receiver's version has no such message; it has then used up no
+    /// number.
     pub fn encode<'b, P: Payload>(&mut self, payload: &P, buffer: &'b mut [u8]) -> Result<&'b [u8], EncodeError> {
-        let frame = frame(self.sequence, payload, buffer).ok_or(EncodeError::Room)?;
+        let frame = frame(self.version, self.sequence, payload, buffer).ok_or(EncodeError::Room)?;
         self.sequence = self.sequence.wrapping_add(1);
         Ok(frame)
     }
 }
 
-fn frame<'b, P: Payload>(sequence: u16, payload: &P, buffer: &'b mut [u8]) -> Option<&'b [u8]> {
+fn frame<'b, P: Payload>(version: u8, sequence: u16, payload: &P, buffer: &'b mut [u8]) -> Option<&'b [u8]> {
     let (_, content) = buffer.split_first_mut()?;
-    let length = write_content(sequence, payload, content)?;
+    let length = write_content(version, sequence, payload, content)?;
     let frame = buffer.get_mut(..length + 2).filter(|frame| frame.len() <= MAX_FRAME)?;
     let (end, block) = frame.split_last_mut()?;
     stuff(block);
@@ -57,20 +71,22 @@ fn frame<'b, P: Payload>(sequence: u16, payload: &P, buffer: &'b mut [u8]) -> Op
 }
 
 /// Writes a frame's content, from the version to the CRC, and returns its length.
-fn write_content<P: Payload>(sequence: u16, payload: &P, content: &mut [u8]) -> Option<usize> {
+fn write_content<P: Payload>(version: u8, sequence: u16, payload: &P, content: &mut [u8]) -> Option<usize> {
     let (header, body) = content.split_first_chunk_mut()?;
     let [low, high] = sequence.to_le_bytes();
-    *header = [PROTOCOL_VERSION, payload.topic(), low, high];
-    let checked = header.len() + payload.write(body)?;
+    *header = [version, payload.topic(), low, high];
+    let checked = header.len() + payload.write(version, body)?;
     let (content, rest) = content.split_at_mut_checked(checked)?;
     let crc = rest.first_chunk_mut()?;
     *crc = CRC.checksum(content).to_le_bytes();
     Some(checked + crc.len())
 }
 
-/// An undamaged frame of this version.
+/// An undamaged frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Frame<'b> {
+    /// Version of the protocol.
+    pub version: u8,
     /// Number of its kind of message.
     pub topic: u8,
     /// Its own number.
@@ -81,7 +97,9 @@ pub struct Frame<'b> {
 
 impl<'b> Frame<'b> {
     /// Opens the bytes between two zeros, in place.
-    pub fn open(block: &'b mut [u8]) -> Result<Self, DecodeError> {
+    ///
+    /// `versions` are those of which the body can be read.
+    pub fn open(block: &'b mut [u8], versions: &[u8]) -> Result<Self, DecodeError> {
         if !unstuff(block) {
             return Err(DecodeError::Damaged);
         }
@@ -91,11 +109,11 @@ impl<'b> Frame<'b> {
             return Err(DecodeError::Damaged);
         }
         match *content {
-            [PROTOCOL_VERSION, topic, low, high, ref body @ ..] => {
-                Ok(Self { topic, sequence: u16::from_le_bytes([low, high]), body })
+            [version, ..] if !versions.contains(&version) => Err(DecodeError::Version(version)),
+            [version, topic, low, high, ref body @ ..] => {
+                Ok(Self { version, topic, sequence: u16::from_le_bytes([low, high]), body })
             }
-            [] | [PROTOCOL_VERSION, ..] => Err(DecodeError::Damaged),
-            [version, ..] => Err(DecodeError::Version(version)),
+            _ => Err(DecodeError::Damaged),
         }
     }
 }

@@ -6,12 +6,14 @@
 //!
 //! | file | contents |
 //! |---|---|
-//! | `constants.rs` | [`PROTOCOL_VERSION`], [`MAX_FRAME`], the arm's numbers |
-//! | `message.rs`, `table_message.rs` | messages and requests |
+//! | `constants.rs` | [`PROTOCOL_VERSION`], [`MAX_FRAME`], the largest arm's numbers |
+//! | `message.rs`, `request.rs`, `table_message.rs` | messages, requests and replies |
 //! | `wire.rs`, `wire_conversions.rs` | fixed-width forms of the messages of every tick |
-//! | `payload.rs` | topics and bodies |
+//! | `topic.rs`, `payload.rs`, `body.rs` | topics and bodies |
+//! | `protocol_2.rs` | the version before, which a host still reads |
 //! | `frame.rs` | COBS, CRC and [`Encoder`] |
 //! | `decoder.rs`, `decode_error.rs` | [`Decoder`] and its errors |
+//! | `line.rs` | lengths of an arm's frames, and the rates at which they fit the line |
 //! | `schema.rs` | [`SCHEMA`], the hash of the messages' layout |
 //! | `estimator.rs` | a [`Sample`] for `estimator-core`, and an [`Estimate`], [`Uncertainty`] and contact from it |
 //!
@@ -44,27 +46,34 @@
 //! ```
 #![no_std]
 
+mod body;
 mod constants;
 mod decode_error;
 mod decoder;
 mod estimator;
 mod frame;
+mod line;
 mod message;
 mod payload;
+pub mod protocol_2;
+mod request;
 mod schema;
 mod table_message;
+pub mod topic;
 mod wire;
 mod wire_conversions;
 
 pub use constants::{
-    BEND_SENSORS, MAX_FRAME, PROTOCOL_VERSION, REGULATORS, SEGMENTS, TABLE_CHUNK_BYTES, TICK_HZ, TICK_US,
+    BEND_PER_SEGMENT, MAX_BEND_SENSORS, MAX_FRAME, MAX_REGULATORS, MAX_SEGMENTS, PROTOCOL_VERSION, TABLE_CHUNK_BYTES,
+    TICK_HZ, TICK_US,
 };
 pub use decode_error::DecodeError;
 pub use decoder::{Counts, Decoder};
-pub use estimator::contact_flags;
 pub use frame::{EncodeError, Encoder};
+pub use line::{FrameLengths, HELLO_TICKS, LINE_BYTES_PER_SECOND, STREAM_BYTES_PER_SECOND};
 pub use message::*;
-pub use payload::{Payload, topic};
+pub use payload::Payload;
+pub use request::*;
 pub use schema::{EARLIER_SCHEMAS, SCHEMA, is_same_layout};
 pub use table_message::{TableAnnouncement, TableChunk, TableState, TableStatus};
 

@@ -1,19 +1,33 @@
-//! Messages from the board and requests from the host.
+//! Messages from the board.
 //!
 //! Units on the wire are SI: µs, rad, m, Pa. Angles and lengths are the bits of the estimator's fixed-point numbers, so that
 //! nothing is lost.
 
 use core::fmt;
 
+use heapless::Vec;
 use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
 
-use crate::constants::{BEND_SENSORS, REGULATORS, SEGMENTS};
-use crate::table_message::{TableAnnouncement, TableChunk, TableState};
+use crate::constants::{MAX_BEND_SENSORS, MAX_REGULATORS, MAX_SEGMENTS};
+use crate::request::{Reply, TareReport};
+use crate::table_message::{TableChunk, TableState};
 use crate::wire::{EstimateWire, SampleWire, UncertaintyWire};
 
 /// A short text, cut where it is too long.
 pub type Text<const N: usize> = heapless::String<N>;
+
+/// Cuts a text at N bytes.
+#[must_use]
+pub fn text<const N: usize>(whole: &str) -> Text<N> {
+    let mut text = Text::new();
+    for character in whole.chars() {
+        if text.push(character).is_err() {
+            break;
+        }
+    }
+    text
+}
 
 /// A message from the board.
 #[derive(Debug, Clone, PartialEq, Schema)]
@@ -37,6 +51,8 @@ pub enum Message {
     Table(TableState),
     /// A piece of the table, on request.
     TableData(TableChunk),
+    /// Pose of the arm at a request to tare.
+    Tare(TareReport),
 }
 
 /// Identity of the board and its firmware, and the cause of its boot.
@@ -55,6 +71,12 @@ pub struct Hello {
     pub arm: Text<32>,
     /// Checksum of its table; 0 without a table.
     pub table: u32,
+    /// Segments of its arm.
+    pub segments: u8,
+    /// Bend sensors that are wired.
+    pub bend_sensors: u8,
+    /// Pressure regulators that are wired.
+    pub regulators: u8,
     /// Unique number of its chip.
     pub chip: [u8; 16],
     /// Cause of the last reset.
@@ -62,7 +84,7 @@ pub struct Hello {
     /// Number of this boot since power-on.
     pub boot: u32,
     /// Message of the last panic or fault before this boot.
-    pub last_panic: Option<Text<96>>,
+    pub last_panic: Option<Text<84>>,
 }
 
 /// Cause of a reset (datasheet, RSTC_SR).
@@ -82,31 +104,31 @@ pub enum ResetCause {
 }
 
 /// Raw readings of one tick: everything that a replay needs.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[serde(into = "SampleWire", from = "SampleWire")]
 pub struct Sample {
     /// Number of the tick since boot.
     pub tick: u32,
-    /// Time of the tick since boot, µs.
+    /// Time of the tick since boot, µs; below 2⁴⁸.
     pub time_us: u64,
     /// Number of tares since boot, modulo 256. A change marks the first sample after the estimator's restart.
     pub tare_epoch: u8,
-    /// Raw ADC counts; `None`: not read.
-    pub bend: [Option<u16>; BEND_SENSORS],
-    /// Raw quaternion w, x, y, z of each IMU, in units of 2⁻¹⁴; `None`: not read.
-    pub imu: [Option<[i16; 4]>; SEGMENTS],
+    /// Raw ADC counts, two places for each segment from the base, 1a, 1b, 2a, …; `None`: not read, or no sensor there.
+    pub bend: Vec<Option<u16>, MAX_BEND_SENSORS>,
+    /// Raw quaternion w, x, y, z of each segment's IMU, in units of 2⁻¹⁴; `None`: not read, or no IMU there.
+    pub imu: Vec<Option<[i16; 4]>, MAX_SEGMENTS>,
 }
 
 /// The arm's shape by the Kalman filters, in the bits of `estimator_core::Q`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[serde(into = "EstimateWire", from = "EstimateWire")]
 pub struct Estimate {
     /// Number of the tick of its sample.
     pub tick: u32,
     /// The segments, from the base; `None`: not known yet.
-    pub segments: [Option<SegmentEstimate>; SEGMENTS],
+    pub segments: Vec<Option<SegmentEstimate>, MAX_SEGMENTS>,
 }
 
 /// One segment's estimate.
@@ -120,14 +142,14 @@ pub struct SegmentEstimate {
 }
 
 /// Covariance of an estimate and contact along the arm, in the bits of `estimator_core::Q`; variances are scaled by 64.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[serde(into = "UncertaintyWire", from = "UncertaintyWire")]
 pub struct Uncertainty {
     /// Number of the tick of its estimate.
     pub tick: u32,
     /// The segments, from the base.
-    pub segments: [SegmentUncertainty; SEGMENTS],
+    pub segments: Vec<SegmentUncertainty, MAX_SEGMENTS>,
 }
 
 /// Variances of one segment's estimate, and its contact.
@@ -166,6 +188,8 @@ pub enum SensorState {
     Timeout,
     /// Readings with gaps. Reserved: no firmware sends it.
     Intermittent,
+    /// The arm has no such sensor.
+    NotWired,
 }
 
 impl fmt::Display for SensorState {
@@ -178,6 +202,7 @@ impl fmt::Display for SensorState {
             Self::Inconsistent => "Wrong",
             Self::Timeout => "Slow",
             Self::Intermittent => "Intermittent",
+            Self::NotWired => "NotWired",
         })
     }
 }
@@ -207,15 +232,15 @@ pub enum Actuation {
 }
 
 /// State of sensors and pressures, counters since boot, and timing since the last message.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, Schema)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, Schema)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Health {
     /// Number of the last tick.
     pub tick: u32,
-    /// Each bend sensor.
-    pub bend: [SensorHealth; BEND_SENSORS],
-    /// Each IMU.
-    pub imu: [SensorHealth; SEGMENTS],
+    /// Each bend sensor, two places for each segment.
+    pub bend: Vec<SensorHealth, MAX_BEND_SENSORS>,
+    /// Each segment's IMU.
+    pub imu: Vec<SensorHealth, MAX_SEGMENTS>,
     /// Longest time from a tick's trigger to its estimate since the last message, µs.
     pub max_estimate_latency_us: u32,
     /// Longest time from a tick's trigger to the last IMU's reading since the last message, µs.
@@ -237,7 +262,7 @@ pub struct Health {
     /// State of the pressures.
     pub actuation: Actuation,
     /// Set-points as they are now, Pa.
-    pub pressures_pa: [u32; REGULATORS],
+    pub pressures_pa: Vec<u32, MAX_REGULATORS>,
 }
 
 /// A change of state.
@@ -254,138 +279,6 @@ pub enum Event {
     BusRecovery,
     /// The estimator was restarted before the sample of this tick.
     Tare(u32),
-    /// Contact began or ended with the sample of this tick; the flags are the contact of each segment.
-    Contact(u32, [bool; SEGMENTS]),
-}
-
-/// A request from the host.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, Schema)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Request {
-    /// The host's number of the request. A retried request keeps its number and acts once; numbers go up.
-    pub id: u32,
-    /// The command to execute.
-    pub command: Command,
-}
-
-/// A command to the board.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, Schema)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub enum Command {
-    /// Reply, then send a [`Hello`].
-    Ping,
-    /// Restart the estimator: the arm is in its reference pose.
-    Tare,
-    /// Set the rates of the periodic messages.
-    Rates(Rates),
-    /// Let the pressures move.
-    Arm,
-    /// Vent, and let nothing move the pressures until armed again.
-    Disarm,
-    /// Set the pressures.
-    SetPressures(SetPressures),
-    /// Vent and restart.
-    Reboot,
-    /// Begin the transfer of a table to the board's flash, or resume it; the reply is followed by a [`TableState`].
-    TableBegin(TableAnnouncement),
-    /// Store the next piece of the table.
-    TableWrite(TableChunk),
-    /// End the transfer: check the table, make it the board's, and restart.
-    TableCommit,
-    /// Send the piece of the table, image first, that begins at this offset, as [`Message::TableData`].
-    TableRead(u32),
-    /// Erase the board's table, and restart.
-    TableErase,
-}
-
-/// Periods of the periodic messages, in ticks of 10 ms; 0: never.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, Schema)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Rates {
-    /// Ticks from one sample to the next.
-    pub sample: u16,
-    /// Ticks from one estimate to the next.
-    pub estimate: u16,
-    /// Ticks from one health message to the next.
-    pub health: u16,
-    /// Ticks from one uncertainty to the next.
-    pub uncertainty: u16,
-}
-
-/// Set-points with a deadline.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, Schema)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct SetPressures {
-    /// Gauge pressure of each regulator, Pa.
-    pub pressures_pa: [u32; REGULATORS],
-    /// Time until the deadline, ms; after it the pressures are held, lowered and vented.
-    pub valid_ms: u16,
-}
-
-/// Reply to a request.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, Schema)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Reply {
-    /// The request's number.
-    pub id: u32,
-    /// Outcome of the request.
-    pub outcome: RequestOutcome,
-}
-
-/// Outcome of a request.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, Schema)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub enum RequestOutcome {
-    /// It was executed.
-    Ack,
-    /// It was refused, and nothing has changed.
-    Nack(Refusal),
-}
-
-/// Reason for a refusal.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, Schema, thiserror::Error)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub enum Refusal {
-    /// The frame is valid but its body is no request of this protocol's version.
-    #[error("the board does not know this request: host and firmware are of different versions")]
-    Unknown,
-    /// Its number is lower than that of an earlier request.
-    #[error("the request is older than one already done")]
-    Late,
-    /// A pressure is over the regulator's range.
-    #[error("a pressure is over the regulator's range")]
-    OverRange,
-    /// The deadline is zero or too far away.
-    #[error("the time that the pressures stand must be 1 ms to 1000 ms")]
-    Deadline,
-    /// The pressures move only when armed.
-    #[error("the pressures are not armed: arm first")]
-    Disarmed,
-    /// Too many requests at once.
-    #[error("too many requests: wait and try again")]
-    Busy,
-    /// The table is not changed while the pressures are armed.
-    #[error("the pressures are armed: disarm first")]
-    Armed,
-    /// The board has no valid table.
-    #[error("the board has no valid table: send it one with `proprio table push`")]
-    NoTable,
-    /// The table is longer than its place on the board.
-    #[error("the table is longer than its place on the board")]
-    TableTooLong,
-    /// The table has more segments or a longer window than the firmware has room for.
-    #[error("the table has more segments or a longer window of the anchor than the firmware has room for")]
-    TableCapacity,
-    /// The table's image is none of this firmware's format.
-    #[error("the firmware cannot read the table: host and firmware are of different versions")]
-    TableImage,
-    /// A piece of the table does not follow the one before it.
-    #[error("a piece of the table was lost: begin the transfer again")]
-    TableOrder,
-    /// The checksum of the stored table is wrong.
-    #[error("the checksum of the stored table is wrong: begin the transfer again")]
-    TableChecksum,
-    /// A page of the flash did not take what was written.
-    #[error("the board's flash did not take what was written")]
-    Flash,
+    /// Contact began or ended with the sample of this tick; bit i is the contact of segment i, counted from 0.
+    Contact(u32, u8),
 }

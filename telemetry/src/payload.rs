@@ -1,47 +1,29 @@
-//! Payload of a frame: the topics of both directions and the messages' bodies.
+//! Payload of a frame: topic and body of the messages of both directions.
 
-use serde::{Deserialize, Serialize};
-
+use crate::body::{read, write};
+use crate::constants::PROTOCOL_VERSION;
 use crate::decode_error::DecodeError;
-use crate::message::{Message, Request};
-
-/// Numbers of the kinds of messages. A number is never reused for another kind.
-pub mod topic {
-    /// [`Hello`](crate::Hello), from the board.
-    pub const HELLO: u8 = 1;
-    /// [`Sample`](crate::Sample), from the board.
-    pub const SAMPLE: u8 = 2;
-    /// [`Estimate`](crate::Estimate), from the board.
-    pub const ESTIMATE: u8 = 3;
-    /// [`Health`](crate::Health), from the board.
-    pub const HEALTH: u8 = 4;
-    /// [`Event`](crate::Event), from the board.
-    pub const EVENT: u8 = 5;
-    /// [`Reply`](crate::Reply), from the board.
-    pub const REPLY: u8 = 6;
-    /// [`Uncertainty`](crate::Uncertainty), from the board.
-    pub const UNCERTAINTY: u8 = 7;
-    /// [`TableState`](crate::TableState), from the board.
-    pub const TABLE: u8 = 8;
-    /// [`TableChunk`](crate::TableChunk), from the board.
-    pub const TABLE_DATA: u8 = 9;
-    /// [`Request`](crate::Request), from the host.
-    pub const REQUEST: u8 = 0x80;
-}
+use crate::message::Message;
+use crate::protocol_2;
+use crate::request::Request;
+use crate::topic;
 
 /// Payload of one direction: the board's [`Message`], the host's [`Request`].
 pub trait Payload: Sized {
+    /// Versions of the protocol that can be read.
+    const VERSIONS: &'static [u8];
+
     /// Number of the kind of message.
     fn topic(&self) -> u8;
 
-    /// Writes the body and returns its length in bytes; `None` if it does not fit.
-    fn write(&self, body: &mut [u8]) -> Option<usize>;
+    /// Writes the body in the layout of a version and returns its length in bytes; `None` if it does not fit.
+    fn write(&self, version: u8, body: &mut [u8]) -> Option<usize>;
 
-    /// Reads a whole body.
+    /// Reads a whole body in the layout of a version, one of [`VERSIONS`](Self::VERSIONS).
     ///
     /// # Errors
     /// [`DecodeError::Topic`], [`DecodeError::Body`] or [`DecodeError::Request`].
-    fn read(topic: u8, body: &[u8]) -> Result<Self, DecodeError>;
+    fn read(version: u8, topic: u8, body: &[u8]) -> Result<Self, DecodeError>;
 
     /// Number of the sender's boot, if the message contains it.
     fn boot(&self) -> Option<u32> {
@@ -50,6 +32,8 @@ pub trait Payload: Sized {
 }
 
 impl Payload for Message {
+    const VERSIONS: &'static [u8] = &[PROTOCOL_VERSION, protocol_2::VERSION];
+
     fn topic(&self) -> u8 {
         match self {
             Self::Hello(_) => topic::HELLO,
@@ -61,10 +45,15 @@ impl Payload for Message {
             Self::Uncertainty(_) => topic::UNCERTAINTY,
             Self::Table(_) => topic::TABLE,
             Self::TableData(_) => topic::TABLE_DATA,
+            Self::Tare(_) => topic::TARE,
         }
     }
 
-    fn write(&self, body: &mut [u8]) -> Option<usize> {
+    /// A board sends messages of the newest version alone.
+    fn write(&self, version: u8, body: &mut [u8]) -> Option<usize> {
+        if version != PROTOCOL_VERSION {
+            return None;
+        }
         match self {
             Self::Hello(hello) => write(hello, body),
             Self::Sample(sample) => write(sample, body),
@@ -75,10 +64,16 @@ impl Payload for Message {
             Self::Uncertainty(uncertainty) => write(uncertainty, body),
             Self::Table(state) => write(state, body),
             Self::TableData(chunk) => write(chunk, body),
+            Self::Tare(report) => write(report, body),
         }
     }
 
-    fn read(topic: u8, body: &[u8]) -> Result<Self, DecodeError> {
+    fn read(version: u8, topic: u8, body: &[u8]) -> Result<Self, DecodeError> {
+        if version == protocol_2::VERSION
+            && let Some(message) = protocol_2::read_message(topic, body)
+        {
+            return message.ok_or(DecodeError::Body(topic));
+        }
         let message = match topic {
             topic::HELLO => read(body).map(Self::Hello),
             topic::SAMPLE => read(body).map(Self::Sample),
@@ -89,6 +84,7 @@ impl Payload for Message {
             topic::UNCERTAINTY => read(body).map(Self::Uncertainty),
             topic::TABLE => read(body).map(Self::Table),
             topic::TABLE_DATA => read(body).map(Self::TableData),
+            topic::TARE => read(body).map(Self::Tare),
             _ => return Err(DecodeError::Topic(topic)),
         };
         message.ok_or(DecodeError::Body(topic))
@@ -103,15 +99,20 @@ impl Payload for Message {
 }
 
 impl Payload for Request {
+    const VERSIONS: &'static [u8] = &[PROTOCOL_VERSION];
+
     fn topic(&self) -> u8 {
         topic::REQUEST
     }
 
-    fn write(&self, body: &mut [u8]) -> Option<usize> {
+    fn write(&self, version: u8, body: &mut [u8]) -> Option<usize> {
+        if version == protocol_2::VERSION {
+            return protocol_2::write_request(self, body);
+        }
         write(self, body)
     }
 
-    fn read(topic: u8, body: &[u8]) -> Result<Self, DecodeError> {
+    fn read(_: u8, topic: u8, body: &[u8]) -> Result<Self, DecodeError> {
         if topic != topic::REQUEST {
             return Err(DecodeError::Topic(topic));
         }
@@ -120,13 +121,4 @@ impl Payload for Request {
             Err(_) => DecodeError::Body(topic),
         })
     }
-}
-
-fn write<T: Serialize>(value: &T, body: &mut [u8]) -> Option<usize> {
-    postcard::to_slice(value, body).ok().map(|used| used.len())
-}
-
-/// Reads a value that takes all of `body`.
-fn read<'b, T: Deserialize<'b>>(body: &'b [u8]) -> Option<T> {
-    postcard::take_from_bytes(body).ok().and_then(|(value, rest)| rest.is_empty().then_some(value))
 }

@@ -3,7 +3,8 @@
 use postcard_schema::Schema;
 use postcard_schema::schema::{DataModelType, DataModelVariant, NamedType, NamedValue};
 
-use crate::message::{Message, Request};
+use crate::message::Message;
+use crate::request::Request;
 
 /// Hash of the layout of all messages: the types of their fields, and of their variants' fields, in the order on the line.
 ///
@@ -11,9 +12,9 @@ use crate::message::{Message, Request};
 /// [`is_same_layout`] before it reads any other message.
 pub const SCHEMA: u32 = hash_layout::<(Message, Request)>();
 
-/// Hashes of earlier releases whose messages this crate reads: one that covered the names too, and one without the
-/// messages about the table.
-pub const EARLIER_SCHEMAS: [u32; 2] = [0x03c8_8117, 0x666c_7703];
+/// Hashes of earlier releases whose messages this crate reads, all of protocol 2: one that covered the names too, one without
+/// the messages about the table, and the last one.
+pub const EARLIER_SCHEMAS: [u32; 3] = [0x03c8_8117, 0x666c_7703, 0x5b4d_1b8b];
 
 /// Returns whether this crate reads messages of this `schema`.
 #[must_use]

@@ -4,9 +4,10 @@ use super::bus::{Bus, BusRecovery, Poll};
 use super::stuck::StuckDetector;
 use crate::bno055::{Answer, Bno055};
 use crate::tca9548a::Channel;
+use board_table::ImuAddress;
 use embedded_hal::digital::OutputPin;
 use embedded_hal_async::i2c::I2c;
-use telemetry::{SEGMENTS, SensorHealth, SensorState};
+use telemetry::{MAX_SEGMENTS, SensorHealth, SensorState};
 
 /// NACKs or bus errors in a row after which an IMU is polled only once per pause.
 const NACKS: u8 = 3;
@@ -28,6 +29,7 @@ enum Outcome {
 
 #[derive(Debug)]
 pub(super) struct ImuChannel {
+    channel: Channel,
     imu: Bno055,
     outcome: Outcome,
     nack_count: u8,
@@ -40,9 +42,11 @@ pub(super) struct ImuChannel {
 }
 
 impl ImuChannel {
-    pub(super) const fn new(address: u8) -> Self {
-        Self {
-            imu: Bno055::new(address),
+    /// The IMU at this place; `None` for a channel that the multiplexer does not have.
+    pub(super) fn new(place: ImuAddress) -> Option<Self> {
+        Some(Self {
+            channel: Channel::ALL.get(usize::from(place.channel)).copied()?,
+            imu: Bno055::new(place.address),
             outcome: Outcome::Skipped,
             nack_count: 0,
             polled_at: 0,
@@ -50,7 +54,7 @@ impl ImuChannel {
             pending_fault: SensorState::NoResponse,
             stuck: StuckDetector::NEVER_READ,
             health: SensorHealth { state: SensorState::NoResponse, missed: 0 },
-        }
+        })
     }
 
     /// Returns whether it is polled in this tick.
@@ -59,18 +63,13 @@ impl ImuChannel {
         !pauses && !self.imu.is_waiting(tick)
     }
 
-    pub(super) async fn read<I: I2c + BusRecovery, R: OutputPin>(
-        &mut self,
-        bus: &mut Bus<I, R>,
-        channel: Channel,
-        tick: u32,
-    ) {
+    pub(super) async fn read<I: I2c + BusRecovery, R: OutputPin>(&mut self, bus: &mut Bus<I, R>, tick: u32) {
         // Counts as NACKs while the poll is in progress: if it is cut off, the next poll is after the pause, so that it does
         // not take the others' time again.
         let nack_count = core::mem::replace(&mut self.nack_count, NACKS);
         self.outcome = Outcome::Cut;
         self.polled_at = tick;
-        let poll = bus.poll(&mut self.imu, channel, tick).await;
+        let poll = bus.poll(&mut self.imu, self.channel, tick).await;
         self.outcome = Outcome::Done(poll);
         self.nack_count = match poll {
             Poll::Data(_) => 0,
@@ -89,7 +88,7 @@ impl ImuChannel {
 
     /// Ends the tick: updates the state and returns the reading if it is valid. `quaternions` are those of all IMUs in
     /// this tick.
-    pub(super) fn validate(&mut self, quaternions: &[Option<[i16; 4]>; SEGMENTS]) -> Option<[i16; 4]> {
+    pub(super) fn validate(&mut self, quaternions: &[Option<[i16; 4]>; MAX_SEGMENTS]) -> Option<[i16; 4]> {
         let quaternion = self.quaternion();
         let outcome = core::mem::replace(&mut self.outcome, Outcome::Skipped);
         if let Some(quaternion) = quaternion {

@@ -4,7 +4,7 @@
 //! within at most the last 50 ticks, another IMU turned by more than 1°: that is 2 °/s, forty times the drift of the
 //! worst unit and, with a noise of 0.1°, seven sigma.
 
-use telemetry::SEGMENTS;
+use telemetry::MAX_SEGMENTS;
 
 /// Ticks of the same bytes, and of the window in which another IMU must turn.
 const WINDOW_TICKS: u8 = 50;
@@ -21,17 +21,17 @@ pub(super) struct StuckDetector {
     /// Ticks since `reference`.
     age: u8,
     /// Readings of all IMUs at the beginning of the window; `None` for an IMU that was missing since.
-    reference: [Option<Quaternion>; SEGMENTS],
+    reference: [Option<Quaternion>; MAX_SEGMENTS],
     is_stuck: bool,
 }
 
 impl StuckDetector {
     pub(super) const NEVER_READ: Self =
-        Self { last: None, repeats: 0, age: 0, reference: [None; SEGMENTS], is_stuck: false };
+        Self { last: None, repeats: 0, age: 0, reference: [None; MAX_SEGMENTS], is_stuck: false };
 
     /// Updates the detector with a reading and with `now`, the readings of all IMUs in the same tick. Returns whether the
     /// IMU is stuck.
-    pub(super) fn update(&mut self, reading: Quaternion, now: &[Option<Quaternion>; SEGMENTS]) -> bool {
+    pub(super) fn update(&mut self, reading: Quaternion, now: &[Option<Quaternion>; MAX_SEGMENTS]) -> bool {
         if self.last != Some(reading) {
             *self = Self { last: Some(reading), reference: *now, ..Self::NEVER_READ };
             return false;

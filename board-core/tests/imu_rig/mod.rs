@@ -4,6 +4,7 @@
 
 use board_core::imus::{BusRecovery, BusStuck, ImuReadings, Imus};
 use board_core::tca9548a::{self, Tca9548a};
+use board_table::{ImuAddress, Wiring};
 use embedded_hal::digital::{self, OutputPin};
 use embedded_hal::i2c::{ErrorKind, NoAcknowledgeSource, Operation};
 use embedded_hal_async::i2c::{ErrorType, I2c};
@@ -33,6 +34,7 @@ pub fn heading(degrees: f64) -> [i16; 4] {
 /// One BNO055.
 #[derive(Debug, Clone)]
 pub struct Chip {
+    pub place: ImuAddress,
     pub is_plugged: bool,
     pub mode: u8,
     pub page: u8,
@@ -87,10 +89,10 @@ pub enum Holder {
 
 /// The bus with all that is on it.
 #[derive(Debug)]
-pub struct Wiring {
+pub struct SimulatedBus {
     pub tick: u32,
     pub connected: u8,
-    pub chips: [Chip; 6],
+    pub chips: Vec<Chip>,
     pub holder: Option<Holder>,
     /// The multiplexer acknowledges, and stays as it is.
     pub mux_ignores: bool,
@@ -103,7 +105,7 @@ pub struct Wiring {
     pub recoveries: u32,
 }
 
-impl Wiring {
+impl SimulatedBus {
     fn is_held(&self) -> bool {
         match self.holder {
             Some(Holder::Clockable(channel) | Holder::Broken(channel)) => self.connected & (1 << channel) != 0,
@@ -127,7 +129,11 @@ impl Wiring {
         if self.is_held() {
             return Some(Err(ErrorKind::Bus));
         }
-        if address == tca9548a::ADDRESS { Some(self.speak_to_mux(operations)) } else { self.speak_to_chip(operations) }
+        if address == tca9548a::ADDRESS {
+            Some(self.speak_to_mux(operations))
+        } else {
+            self.speak_to_chip(address, operations)
+        }
     }
 
     fn speak_to_mux(&mut self, operations: &mut [Operation<'_>]) -> Result<(), ErrorKind> {
@@ -143,10 +149,11 @@ impl Wiring {
         Ok(())
     }
 
-    fn speak_to_chip(&mut self, operations: &mut [Operation<'_>]) -> Option<Result<(), ErrorKind>> {
+    fn speak_to_chip(&mut self, address: u8, operations: &mut [Operation<'_>]) -> Option<Result<(), ErrorKind>> {
         assert!(self.connected.count_ones() <= 1, "several IMUs are connected: {:#010b}", self.connected);
         let (tick, connected) = (self.tick, self.connected);
-        let chip = self.chips.get_mut(connected.trailing_zeros() as usize);
+        let place = ImuAddress { channel: connected.trailing_zeros() as u8, address };
+        let chip = self.chips.iter_mut().find(|chip| chip.place == place);
         let Some(chip) = chip.filter(|chip| chip.is_plugged && chip.answers_from <= tick) else {
             return Some(self.refuse());
         };
@@ -172,7 +179,7 @@ impl Wiring {
 
 /// The board's end of the bus.
 #[derive(Debug)]
-pub struct Controller(Rc<RefCell<Wiring>>);
+pub struct Controller(Rc<RefCell<SimulatedBus>>);
 
 impl ErrorType for Controller {
     type Error = ErrorKind;
@@ -190,18 +197,18 @@ impl I2c for Controller {
 
 impl BusRecovery for Controller {
     async fn recover(&mut self) -> Result<(), BusStuck> {
-        let mut wiring = self.0.borrow_mut();
-        wiring.recoveries += 1;
-        if matches!(wiring.holder, Some(Holder::Clockable(channel)) if wiring.connected & (1 << channel) != 0) {
-            wiring.holder = None;
+        let mut bus = self.0.borrow_mut();
+        bus.recoveries += 1;
+        if matches!(bus.holder, Some(Holder::Clockable(channel)) if bus.connected & (1 << channel) != 0) {
+            bus.holder = None;
         }
-        if wiring.is_held() { Err(BusStuck) } else { Ok(()) }
+        if bus.is_held() { Err(BusStuck) } else { Ok(()) }
     }
 }
 
 /// The multiplexer's RESET.
 #[derive(Debug)]
-pub struct ResetPin(Rc<RefCell<Wiring>>);
+pub struct ResetPin(Rc<RefCell<SimulatedBus>>);
 
 impl digital::ErrorType for ResetPin {
     type Error = Infallible;
@@ -221,15 +228,22 @@ impl OutputPin for ResetPin {
 /// The IMUs as the firmware reads them, and the bus as it is.
 pub struct ImuRig {
     pub imus: Imus<Controller, ResetPin>,
-    wiring: Rc<RefCell<Wiring>>,
+    bus: Rc<RefCell<SimulatedBus>>,
     /// Transactions of the last tick: address, and how many bits were on the wire.
     pub log: Vec<(u8, u32)>,
 }
 
 impl ImuRig {
-    /// IMUs that have just come out of their reset, at headings 10°, 20° … 60°.
+    /// Six IMUs that have just come out of their reset, at headings 10°, 20° … 60°.
     pub fn powered_up() -> Self {
-        let chips = std::array::from_fn(|k| Chip {
+        Self::wired(&Wiring::reference(6))
+    }
+
+    /// The IMUs of a wiring that have just come out of their reset, at headings 10°, 20°, …
+    pub fn wired(wiring: &Wiring) -> Self {
+        let places = wiring.segments.iter().enumerate().filter_map(|(k, segment)| Some((k, segment.imu?)));
+        let chip = |(k, place): (usize, ImuAddress)| Chip {
+            place,
             is_plugged: true,
             mode: 0,
             page: 0,
@@ -237,8 +251,9 @@ impl ImuRig {
             quaternion: heading(10.0 * (k + 1) as f64),
             forced: None,
             stretches: false,
-        });
-        let wiring = Wiring {
+        };
+        let chips = places.map(chip).collect();
+        let bus = SimulatedBus {
             tick: 0,
             connected: 0,
             chips,
@@ -249,9 +264,9 @@ impl ImuRig {
             log: Vec::new(),
             recoveries: 0,
         };
-        let wiring = Rc::new(RefCell::new(wiring));
-        let mux = Tca9548a::new(tca9548a::ADDRESS, Some(ResetPin(wiring.clone())));
-        Self { imus: Imus::new(Controller(wiring.clone()), mux), wiring, log: Vec::new() }
+        let bus = Rc::new(RefCell::new(bus));
+        let mux = Tca9548a::new(tca9548a::ADDRESS, Some(ResetPin(bus.clone())));
+        Self { imus: Imus::new(Controller(bus.clone()), mux, wiring), bus, log: Vec::new() }
     }
 
     /// IMUs that have been read for a while.
@@ -262,21 +277,21 @@ impl ImuRig {
         rig
     }
 
-    pub fn wiring(&self) -> std::cell::RefMut<'_, Wiring> {
-        self.wiring.borrow_mut()
+    pub fn bus(&self) -> std::cell::RefMut<'_, SimulatedBus> {
+        self.bus.borrow_mut()
     }
 
     /// One tick. A transaction that does not end is cut off.
     pub fn tick(&mut self) -> ImuReadings {
-        let tick = self.wiring().tick;
+        let tick = self.bus().tick;
         {
             let reading = pin!(self.imus.read(tick));
             let _ = reading.poll(&mut Context::from_waker(Waker::noop()));
         }
         let readings = self.imus.validate();
-        let mut wiring = self.wiring.borrow_mut();
-        wiring.tick += 1;
-        self.log = std::mem::take(&mut wiring.log);
+        let mut bus = self.bus.borrow_mut();
+        bus.tick += 1;
+        self.log = std::mem::take(&mut bus.log);
         readings
     }
 

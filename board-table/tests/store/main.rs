@@ -2,8 +2,11 @@
 
 mod flash;
 mod transfer;
+mod wiring;
 
-use board_table::{Announcement, BoardTable, SLOT_BYTES, TableError, TableStatus, TableStore, body_crc, write_image};
+use board_table::{
+    Announcement, BoardTable, SLOT_BYTES, TableError, TableStatus, TableStore, Wiring, body_crc, write_image,
+};
 use calibration_tables::ArmFile;
 use estimator_core::Q;
 
@@ -28,11 +31,15 @@ fn small(name: &str) -> (Vec<u8>, Vec<u8>) {
 }
 
 fn image_of(file: &ArmFile) -> Vec<u8> {
+    image_with(file, None).expect("it fits")
+}
+
+fn image_with(file: &ArmFile, wiring: Option<&Wiring>) -> Result<Vec<u8>, TableError> {
     let compiled = file.compile::<Q>(100.0).expect("a table compiles");
     let mut image = vec![0; 8192];
-    let length = write_image(&file.arm, compiled.checksum(), &compiled.config(), &mut image).expect("it fits");
+    let length = write_image(&file.arm, compiled.checksum(), &compiled.config(), wiring, &mut image)?;
     image.truncate(length);
-    image
+    Ok(image)
 }
 
 /// The reference table, and a source of 300 bytes.
@@ -149,10 +156,13 @@ fn an_erased_flash_has_no_table() {
 fn a_table_of_another_format_version_is_foreign() {
     let mut flash = MockFlash::new();
     push(&mut TableStore::new(&mut flash), &first()).expect("the flash is good");
-    flash.bytes[4] = 2;
-    let crc = body_crc([&flash.bytes[..24]]);
-    flash.bytes[24..28].copy_from_slice(&crc.to_le_bytes());
-    assert_eq!(TableStore::new(&mut flash).status(), TableStatus::Foreign);
+    // Version 1 had no wiring.
+    for version in [1, 3] {
+        flash.bytes[4] = version;
+        let crc = body_crc([&flash.bytes[..24]]);
+        flash.bytes[24..28].copy_from_slice(&crc.to_le_bytes());
+        assert_eq!(TableStore::new(&mut flash).status(), TableStatus::Foreign, "version {version}");
+    }
 }
 
 #[test]

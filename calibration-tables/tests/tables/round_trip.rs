@@ -196,6 +196,8 @@ fn file() -> impl Strategy<Value = ArmFile> {
             contact: records.1,
             uncertainty: records.2,
             tuning: records.3,
+            // In board.rs.
+            board: None,
             segments,
         },
     )

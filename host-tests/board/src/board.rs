@@ -1,6 +1,6 @@
 //! A board that runs the firmware, and a host at its serial line.
 
-use rig_twin::{EndPose, MotionProgram, REGULATORS, SEGMENTS};
+use rig_twin::{EndPose, MotionProgram, PerSegment};
 use telemetry::{
     Command, Decoder, Encoder, Estimate, Event, Health, Hello, MAX_FRAME, Message, Request, RequestOutcome, Sample,
     SetPressures, TableState, Uncertainty,
@@ -34,7 +34,7 @@ pub struct Board {
     next_id: u32,
     received: Vec<Received>,
     bytes: u64,
-    truths: Vec<[EndPose; SEGMENTS]>,
+    truths: Vec<PerSegment<EndPose>>,
 }
 
 impl Board {
@@ -91,7 +91,7 @@ impl Board {
 
     /// The true pose of each segment's end at each tick since power-on.
     #[must_use]
-    pub fn truths(&self) -> &[[EndPose; SEGMENTS]] {
+    pub fn truths(&self) -> &[PerSegment<EndPose>] {
         &self.truths
     }
 
@@ -143,14 +143,15 @@ impl Board {
         assert_eq!(self.request(Command::Arm), RequestOutcome::Ack);
         let start = self.machine.seconds();
         for _ in 0..seconds * 20 {
-            self.set_pressures(program.duties(self.machine.seconds() - start));
+            self.set_pressures(&program.duties(self.machine.seconds() - start));
             self.run_ms(50);
         }
     }
 
     /// Sends set-points that stand for 200 ms, as shares of the full scale.
-    pub fn set_pressures(&mut self, duties: [f64; REGULATORS]) {
-        let pressures_pa = duties.map(|duty| (duty * f64::from(FULL_SCALE_PA)) as u32);
+    pub fn set_pressures(&mut self, duties: &[f64]) {
+        let pressure_pa = |duty: &f64| (duty * f64::from(FULL_SCALE_PA)) as u32;
+        let pressures_pa = duties.iter().map(pressure_pa).collect();
         self.send(Command::SetPressures(SetPressures { pressures_pa, valid_ms: 200 }));
     }
 

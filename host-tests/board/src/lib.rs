@@ -1,5 +1,6 @@
 //! The firmware on the emulated board, as a host sees it: received frames, sent requests, and the arm's truth.
 
+mod arms;
 mod board;
 #[cfg(unix)]
 pub mod browser;
@@ -9,6 +10,7 @@ mod flash;
 mod replay;
 mod view;
 
+pub use arms::WiredArm;
 pub use board::{Board, Received, UART};
 pub use build::{elf, firmware};
 pub use flash::{flash_with, machine, stored_table};

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use calibration_tables::ArmFile;
 use estimator_core::{Estimator, Method, Q};
-use telemetry::{Estimate, Event, SEGMENTS, Sample, TICK_HZ, Uncertainty, contact_flags};
+use telemetry::{Estimate, Event, MAX_SEGMENTS, Sample, TICK_HZ, Uncertainty};
 
 /// The reference arm's table, which the boards of the tests have in their flash.
 ///
@@ -17,7 +17,7 @@ pub fn table() -> ArmFile {
 }
 
 /// The host's results for one sample.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Replayed {
     /// The estimate.
     pub estimate: Estimate,
@@ -30,12 +30,13 @@ pub struct Replayed {
 /// Replays the samples with the host's estimator, in the same fixed point, restarted at the same samples as the board's.
 ///
 /// # Panics
-/// If the reference table is not valid.
-pub fn replay<'s>(samples: impl Iterator<Item = &'s Sample>) -> Vec<Replayed> {
-    let compiled = table().compile::<Q>(TICK_HZ).expect("the reference file is a valid table");
-    let table = compiled.config();
-    let start = || Estimator::<Q, SEGMENTS, 100>::new(&table).expect("the reference arm has six segments");
-    let (mut estimator, mut tare, mut touched_before) = (start(), 0, [false; SEGMENTS]);
+/// If the table is not valid, or is for a longer arm than the board's.
+pub fn replay<'s>(table: &ArmFile, samples: impl Iterator<Item = &'s Sample>) -> Vec<Replayed> {
+    let compiled = table.compile::<Q>(TICK_HZ).expect("a valid table");
+    let config = compiled.config();
+    let segments = config.segments.len();
+    let start = || Estimator::<Q, MAX_SEGMENTS, 100>::new(&config).expect("no longer than the board's");
+    let (mut estimator, mut tare, mut touched_before) = (start(), 0, 0);
     let mut replayed = Vec::new();
     for sample in samples {
         if sample.tare_epoch != tare {
@@ -43,11 +44,11 @@ pub fn replay<'s>(samples: impl Iterator<Item = &'s Sample>) -> Vec<Replayed> {
         }
         let estimate = estimator.update_full(&sample.into());
         let (errors, contacts) = (estimator.uncertainties(), estimator.contacts());
-        let touched = contact_flags(&contacts);
+        let touched = estimator.contact_mask();
         replayed.push(Replayed {
             estimate: Estimate::of(sample.tick, &estimator.shape(&estimate, Method::Fusion)),
-            uncertainty: Uncertainty::of(sample.tick, &errors, &contacts),
-            contact: (touched != touched_before).then_some(Event::Contact(sample.tick, touched)),
+            uncertainty: Uncertainty::of(sample.tick, segments, &errors, &contacts),
+            contact: (touched != touched_before).then_some(Event::Contact(sample.tick, touched as u8)),
         });
         touched_before = touched;
     }

@@ -3,10 +3,10 @@
 use std::fmt;
 
 use calibration_tables::DriftKind;
-use estimator_core::{Method, Q};
+use estimator_core::{Contact, Method, Q};
 use proprio_session::{BoardOutput, Row, is_version_0_1};
 use serde::Serialize;
-use telemetry::{Estimate, SegmentEstimate, Uncertainty, contact_flags};
+use telemetry::{Estimate, SegmentEstimate, Uncertainty};
 
 use crate::Outcome;
 
@@ -117,16 +117,18 @@ impl Comparison {
             return;
         }
         if let Some(recorded) = &board.uncertainty {
-            let computed = Uncertainty::of(recorded.tick, &outcome.uncertainties, &outcome.contacts);
+            let segments = recorded.segments.len();
+            let computed = Uncertainty::of(recorded.tick, segments, &outcome.uncertainties, &outcome.contacts);
             self.uncertainties.add(board.tick, *recorded == computed);
         }
         if let Some(recorded) = board.contact {
-            self.contacts.add(board.tick, recorded == contact_flags(&outcome.contacts));
+            let mask = |mask: u8, contact: &Contact| mask << 1 | u8::from(contact.in_contact);
+            self.contacts.add(board.tick, recorded == outcome.contacts.iter().rev().fold(0, mask));
         }
     }
 
     fn add_estimate(&mut self, board: &BoardOutput, outcome: &Outcome<Q>) {
-        let Some(recorded) = board.estimate else { return };
+        let Some(recorded) = &board.estimate else { return };
         self.estimates += 1;
         if !board.complete {
             self.not_compared += 1;

@@ -10,6 +10,8 @@ const JUMP_AFTER_GAP: f64 = 25.0;
 const JUMP: f64 = 40.0;
 /// Least jump of a reading of exactly 0, deg.
 const ZERO_JUMP: f64 = 10.0;
+/// Largest difference of opposite jumps, deg.
+const OPPOSITE: f64 = 10.0;
 /// Readings after which a jump is another zero, and no single wrong reading.
 const PERSISTS: u64 = 5;
 
@@ -58,10 +60,13 @@ impl NewZero {
     }
 
     pub fn finish(&self, findings: &mut Vec<Finding>) {
+        self.opposite(findings);
         for (i, jumps) in self.0.iter().enumerate() {
             let sensor = Source::Imu { segment: i + 1 };
+            // Readings that catch up jump.
+            let is_held = findings.iter().any(|finding| finding.sensor == Source::AllSensors);
             // The jumps of an IMU that turns otherwise than the arm are no other zeros, nor are those against wrong bend angles.
-            if is_imu_blamed(findings, i + 1) || is_chain_wrong(findings, i + 1) {
+            if is_held || is_imu_blamed(findings, i + 1) || is_chain_wrong(findings, i + 1) {
                 continue;
             }
             if jumps.new_zero.count > 0 {
@@ -73,6 +78,22 @@ impl NewZero {
             }
         }
     }
+
+    /// Finds two IMUs that jump at the same row by opposite angles, as those of exchanged plugs do.
+    fn opposite(&self, findings: &mut Vec<Finding>) {
+        let jumped = |i: usize| {
+            let jumps = &self.0[i];
+            jumps.new_zero.count == 1 && !is_imu_blamed(findings, i + 1) && !is_chain_wrong(findings, i + 1)
+        };
+        let jumped: Vec<usize> = (0..MAX_SEGMENTS).filter(|i| jumped(*i)).collect();
+        let [one, other] = jumped[..] else { return };
+        let [rows, of_other] = [one, other].map(|i| self.0[i].new_zero);
+        let [jump, back] = [one, other].map(|i| self.0[i].jump);
+        if rows.first == of_other.first && wrapped(jump + back).abs() < OPPOSITE {
+            let sensor = Source::TwoImus { segment: one + 1, other: other + 1 };
+            findings.push(Finding { sensor, rows, kind: Kind::NewZero, figure: jump.abs() });
+        }
+    }
 }
 
 impl Jumps {
@@ -80,8 +101,9 @@ impl Jumps {
         let [step, bend_step] = [wrapped(now[0] - self.last[0]), now[1] - self.last[1]];
         let jump = wrapped(step - bend_step);
         let limit = if is_zero { ZERO_JUMP } else { self.limit };
-        // A step of a bend sensor is no jump of the IMU.
-        let is_jump = jump.abs() > limit && step.abs() > bend_step.abs();
+        // A step of a bend sensor is no jump of the IMU. In a gap the arm may turn back by as much as the heading jumps.
+        let is_after_gap = self.limit < JUMP;
+        let is_jump = jump.abs() > limit && (is_after_gap || step.abs() > bend_step.abs());
         if !is_jump {
             if self.zero.count > 0 {
                 self.zeros.append(&self.zero);

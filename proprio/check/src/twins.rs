@@ -2,7 +2,7 @@
 
 use calibration_tables::{ArmFile, MAX_SEGMENTS};
 
-use super::finding::{Finding, Kind, Rows, Source, is_bend_blamed};
+use super::finding::{Finding, Kind, Rows, Source, is_bend_blamed, is_imu_exchanged};
 use super::frame::{Frame, difference};
 
 /// Duration of a mean, s.
@@ -103,7 +103,7 @@ impl Twins {
     pub fn finish(&mut self, findings: &mut Vec<Finding>) {
         self.end();
         for (i, segment) in self.segments.iter().enumerate() {
-            let is_blamed = is_bend_blamed(findings, i + 1);
+            let is_blamed = is_bend_blamed(findings, i + 1) || (i..=i + 1).any(|imu| is_imu_exchanged(findings, imu));
             for place in 0..2 {
                 let sensor = Source::Bend { segment: i + 1, place };
                 let rows = segment.left[place];

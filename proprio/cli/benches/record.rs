@@ -13,9 +13,11 @@ use proprio_monitor::{Monitor, Options};
 use proprio_session::recording::Recorder;
 use proprio_session::{HostNs, LoadedTable};
 use telemetry::{
-    BEND_SENSORS, Encoder, Estimate, Hello, MAX_FRAME, Message, PROTOCOL_VERSION, ResetCause, SCHEMA, SEGMENTS, Sample,
-    SegmentEstimate, Text,
+    Encoder, Estimate, Hello, MAX_FRAME, Message, PROTOCOL_VERSION, ResetCause, SCHEMA, Sample, SegmentEstimate, Text,
 };
+
+/// Segments of the reference arm.
+const SEGMENTS: usize = 6;
 
 const DAY_TICKS: u32 = 8_640_000;
 const HOUR_TICKS: u32 = 360_000;
@@ -129,10 +131,11 @@ fn messages(tick: u32) -> impl Iterator<Item = Message> {
         tick,
         time_us: u64::from(tick) * 10_000,
         tare_epoch: 1,
-        bend: [Some((1500 + tick % 1000) as u16); BEND_SENSORS],
-        imu: [Some(quaternion); SEGMENTS],
+        bend: [Some((1500 + tick % 1000) as u16); 2 * SEGMENTS].into_iter().collect(),
+        imu: [Some(quaternion); SEGMENTS].into_iter().collect(),
     };
-    let messages = [Message::Sample(sample), Message::Estimate(Estimate { tick, segments: [segment; SEGMENTS] })];
+    let estimate = Estimate { tick, segments: [segment; SEGMENTS].into_iter().collect() };
+    let messages = [Message::Sample(sample), Message::Estimate(estimate)];
     (tick.is_multiple_of(100)).then(|| Message::Hello(hello())).into_iter().chain(messages)
 }
 
@@ -144,6 +147,9 @@ fn hello() -> Hello {
         revision: Text::new(),
         arm: Text::new(),
         table: 0,
+        segments: SEGMENTS as u8,
+        bend_sensors: 2 * SEGMENTS as u8,
+        regulators: 6,
         chip: [0; 16],
         reset: ResetCause::Pin,
         boot: 1,

@@ -10,7 +10,7 @@ use divan::counter::ItemsCount;
 use proprio_calibration::tune::Tuner;
 use proprio_session::{Existing, LoadedTable, NoProgress, OutputFile};
 use proprio_simulation::{ImuColumns, SessionWriter, Simulation};
-use rig_twin::Scenario;
+use rig_twin::{Layout, Scenario};
 
 const SECONDS: f64 = 4000.0;
 const RATE_HZ: f64 = 10.0;
@@ -27,7 +27,7 @@ fn session() -> PathBuf {
     let folder = FOLDER.get_or_init(|| {
         let folder = tempfile::tempdir().expect("a temporary folder");
         let file = OutputFile::create(&folder.path().join("session.csv"), &[], Existing::Keep).expect("a session file");
-        let mut writer = SessionWriter::new(file, ImuColumns::Deg).expect("room on the disk");
+        let mut writer = SessionWriter::new(file, &Layout::default(), ImuColumns::Deg).expect("room on the disk");
         for sample in Simulation::new(Scenario::FreeSwing, 7, SECONDS, RATE_HZ).expect("a valid run") {
             writer.write(&sample).expect("room on the disk");
         }

@@ -1,5 +1,6 @@
 //! Arguments of the program.
 
+mod arm;
 mod force;
 mod link;
 
@@ -9,10 +10,11 @@ use clap::builder::Styles;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 
+pub use arm::NewArmArgs;
 pub use force::ForceArgs;
 pub use link::{
     ConvertArgs, DriveArgs, FlashArgs, LinkArgs, MonitorArgs, PortsArgs, RecordArgs, RecoverArgs, StatusArgs,
-    TableArgs, TableCommand,
+    TableArgs, TableCommand, TareArgs,
 };
 
 /// Colours of help and errors; off where stderr is not a terminal or NO_COLOR is set.
@@ -31,13 +33,15 @@ pub struct Cli {
 
 #[derive(Debug, Subcommand)]
 pub enum Command {
+    /// Make the description of an arm, with the pins of its sensors and regulators; asks for what is not given
+    NewArm(NewArmArgs),
     /// Add the truth of a camera with its own clock to a session
     Align(AlignArgs),
     /// Make a table from sessions with camera truth
     Calibrate(CalibrateArgs),
     /// Tune a table's bias filter, or its Kalman filters, on sessions with truth; Ctrl-C keeps the best so far
     Tune(TuneArgs),
-    /// Check the sensors and the times of sessions; exit status 1 where something is found
+    /// Check the sensors and the times of sessions, exit status 1 where something is found; or the wiring of arms
     Check(CheckArgs),
     /// Run sessions through the estimator and compare with truth
     Replay(ReplayArgs),
@@ -53,6 +57,8 @@ pub enum Command {
     Ports(PortsArgs),
     /// Show the status of a board: versions, sensors, rates, losses
     Status(StatusArgs),
+    /// Tare a board: its arm rests in the reference pose now, which is refused while the arm moves
+    Tare(TareArgs),
     /// Record a board's data to an MCAP file; opening the programming port restarts the board, and the recording has its tare
     Record(RecordArgs),
     /// Drive the arm's pressures, and vent them at the end
@@ -142,12 +148,12 @@ pub struct TuneArgs {
 
 #[derive(Debug, Args)]
 pub struct CheckArgs {
-    /// Sessions to check
-    #[arg(required = true, value_name = "SESSION")]
-    pub sessions: Vec<PathBuf>,
-    /// Table of the arm; by an arm description only what needs no map is checked
+    /// Sessions to check; of an arm description or a table (.toml), wiring and load of the serial line are printed
+    #[arg(required = true, value_name = "SESSION|ARM.toml")]
+    pub inputs: Vec<PathBuf>,
+    /// Table of the sessions' arm; by an arm description only what needs no map is checked
     #[arg(long, value_name = "TABLE.toml")]
-    pub table: PathBuf,
+    pub table: Option<PathBuf>,
     /// Print the findings as JSON
     #[arg(long)]
     pub json: bool,
@@ -212,7 +218,10 @@ pub struct SimulateArgs {
     /// Seed of the motion, the pushes and all noise of the session
     #[arg(long, value_name = "K")]
     pub seed: u64,
-    /// Seed of the arm's tolerances and its sensors' flaws; 0 is the reference arm
+    /// Arm description or table of the arm: its segments, their lengths and their sensors; the reference arm by default
+    #[arg(long, value_name = "ARM.toml")]
+    pub arm: Option<PathBuf>,
+    /// Seed of the arm's tolerances and its sensors' flaws; 0: those of the reference arm
     #[arg(long, value_name = "K", default_value_t = 0)]
     pub arm_seed: u64,
     /// Samples per second, 1 to 1000

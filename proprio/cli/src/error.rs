@@ -3,13 +3,15 @@
 use std::io;
 use std::path::PathBuf;
 
-use board_core::FULL_SCALE_PA;
-use proprio_link::LinkError;
+use board_table::MAX_FULL_SCALE_PA;
 use proprio_link::drive::DriveError;
 use proprio_link::table::{TableImageError, TransferError};
+use proprio_link::{LinkError, TareError};
 use proprio_session::DurationError;
 use proprio_simulation::SimulationError;
+use rig_twin::LayoutError;
 
+use crate::arm::NewArmError;
 use crate::flash::FlashError;
 
 /// An error that stops a command.
@@ -33,18 +35,37 @@ pub enum Error {
     /// A board cannot be driven, or not any more.
     #[error(transparent)]
     Drive(#[from] DriveError),
-    /// A table cannot be stored on a board.
+    /// A board was not tared.
     #[error(transparent)]
-    TableImage(#[from] TableImageError),
+    Tare(#[from] TareError),
+    /// A table cannot be stored on a board.
+    #[error("{name}: {source}")]
+    TableImage {
+        /// Name of the table's file.
+        name: String,
+        /// The reason.
+        source: TableImageError,
+    },
     /// A table was not transferred.
     #[error(transparent)]
     Transfer(#[from] TransferError),
     /// A board cannot be flashed.
     #[error(transparent)]
     Flash(#[from] FlashError),
+    /// A new arm cannot be described.
+    #[error(transparent)]
+    NewArm(#[from] NewArmError),
     /// A session cannot be simulated.
     #[error(transparent)]
     Simulation(#[from] SimulationError),
+    /// An arm that the simulation has no room for.
+    #[error("{}: {source}", path.display())]
+    Layout {
+        /// The arm's file.
+        path: PathBuf,
+        /// The reason.
+        source: LayoutError,
+    },
     /// Two outputs of one name.
     #[error("{}: cannot hold two outputs of this command", .0.display())]
     OutputTwice(PathBuf),
@@ -54,14 +75,17 @@ pub enum Error {
     /// The monitor is given a session and no table.
     #[error("a session is shown with the estimates of a replay, which needs a table")]
     SessionWithoutTable,
+    /// A session is checked without a table.
+    #[error("{}: a session is checked by the table of its arm", .0.display())]
+    CheckWithoutTable(PathBuf),
     /// `--out` with several sessions.
     #[error("--out takes the estimates of one session, found {0} sessions")]
     OneSession(usize),
     /// A duration that cannot be recorded or driven.
     #[error(transparent)]
     Seconds(#[from] DurationError),
-    /// A pressure over the regulators' full scale.
-    #[error("--kpa {0}, expected 0 to {most}", most = FULL_SCALE_PA / 1000)]
+    /// A pressure over the full scale of any regulator.
+    #[error("--kpa {0}, expected 0 to {most}", most = MAX_FULL_SCALE_PA / 1000)]
     Pressure(f64),
     /// A rate of change of pressures that is not positive.
     #[error("--ramp {0} kPa/s, expected more than 0")]

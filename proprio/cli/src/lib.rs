@@ -3,6 +3,7 @@
 //! | file or folder | purpose |
 //! |---|---|
 //! | `args/` | arguments |
+//! | `arm/` | new arms, and arms on the board |
 //! | `commands/` | one file for each command |
 //! | `flash/` | flashing of the firmware |
 //! | `error.rs`, `help/` | errors that stop a command, and their remedies |
@@ -10,6 +11,7 @@
 //! | `interrupt.rs` | Ctrl-C |
 
 mod args;
+mod arm;
 mod commands;
 #[cfg(test)]
 mod commands_page;

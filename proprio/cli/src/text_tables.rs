@@ -198,14 +198,15 @@ pub fn pairs(lines: &[(&str, String)]) -> String {
     lines.iter().map(|(name, value)| format!("{name:<13} {value}\n")).collect::<Vec<_>>().concat()
 }
 
-fn table(heads: &[&str]) -> Table {
+/// A table with these column heads.
+pub fn table(heads: &[&str]) -> Table {
     let mut table = Table::new();
     table.load_style(NOTHING).set_header(heads);
     table
 }
 
-/// Names to the left, numbers to the right, no trailing space.
-fn text(table: &mut Table) -> String {
+/// Its text: names to the left, numbers to the right, no trailing space.
+pub fn text(table: &mut Table) -> String {
     for column in table.column_iter_mut().skip(1) {
         column.set_cell_alignment(CellAlignment::Right);
     }

@@ -4,7 +4,7 @@ use std::fmt;
 use std::sync::Arc;
 
 use proprio_session::HostNs;
-use telemetry::{DecodeError, Message, PROTOCOL_VERSION, SCHEMA};
+use telemetry::{DecodeError, Message, PROTOCOL_VERSION, SCHEMA, protocol_2};
 
 /// An event on the link.
 #[derive(Debug, Clone)]
@@ -19,6 +19,7 @@ pub struct LinkEvent {
 
 /// Kind of an event, and its contents.
 #[derive(Debug, Clone)]
+#[expect(clippy::large_enum_variant, reason = "almost all are messages: a box of each would cost more than it saves")]
 pub enum EventKind {
     /// The line of this name was opened.
     Opened(String),
@@ -83,8 +84,9 @@ impl fmt::Display for Mismatch {
         match self {
             Self::Protocol(version) => write!(
                 f,
-                "the board speaks protocol version {version}, proprio {host} version {PROTOCOL_VERSION}: flash the \
-                 firmware of this release"
+                "the board speaks protocol version {version}, proprio {host} versions {} and {PROTOCOL_VERSION}: flash the \
+                 firmware of this release",
+                protocol_2::VERSION
             ),
             Self::Schema { board, firmware } => {
                 let firmware = firmware.as_deref().unwrap_or("of another version");

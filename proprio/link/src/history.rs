@@ -108,10 +108,16 @@ mod tests {
         fn run(&mut self, ticks: u32, tare_epoch: u8) {
             for _ in 0..ticks {
                 let (tick, time_us) = (self.tick, u64::from(self.tick) * 10_000);
-                let sample = Message::Sample(Sample { tick, time_us, tare_epoch, bend: [None; 12], imu: [None; 6] });
+                let sample = Message::Sample(Sample {
+                    tick,
+                    time_us,
+                    tare_epoch,
+                    bend: [None; 12].into_iter().collect(),
+                    imu: [None; 6].into_iter().collect(),
+                });
                 let mut buffer = [0; MAX_FRAME];
                 let frame = self.encoder.encode(&sample, &mut buffer).expect("it fits");
-                for kind in [EventKind::Bytes(Arc::from(frame)), EventKind::Message(sample)] {
+                for kind in [EventKind::Bytes(Arc::from(frame)), EventKind::Message(sample.clone())] {
                     self.history.take(&LinkEvent { at: HostNs(time_us * 1000), gaps: self.gaps, kind });
                 }
                 self.tick += 1;
@@ -126,7 +132,7 @@ mod tests {
     }
 
     /// Length of the frame of a sample.
-    const FRAME: usize = 98;
+    const FRAME: usize = 97;
 
     #[test]
     fn a_history_begins_with_the_boot_and_anew_with_each_tare() {

@@ -9,10 +9,10 @@
 //! use std::time::Duration;
 //!
 //! use proprio_link::{Baud, EventKind, Link, PortSource};
-//! use telemetry::{Command, Message};
+//! use telemetry::{Command, Message, TareMode};
 //!
 //! let (link, events) = Link::start(Box::new(PortSource::new(None, Baud::default())), None)?;
-//! link.request(Command::Tare)?;
+//! link.request(Command::Tare(TareMode::IfStill))?;
 //! while let Some(event) = events.next(Duration::from_secs(1)) {
 //!     if let EventKind::Message(Message::Estimate(estimate)) = event.kind {
 //!         println!("{:?}", estimate.segments);
@@ -29,7 +29,7 @@
 //! | `requests.rs` | ids, answers and repetitions |
 //! | `event.rs`, `queue.rs` | events with their time of arrival, and a queue for each subscription |
 //! | `file_recorder.rs`, `history.rs` | recording to a file; the bytes that one needs which begins later |
-//! | `drive/`, `status.rs` | pressures over time; the state of a board within seconds |
+//! | `drive/`, `status.rs`, `tare.rs` | pressures over time; the state of a board within seconds; its zero |
 //! | `table/` | transfer of the table to the board and back |
 //! | `source.rs` | [`Source`]: opens a line, once or again |
 //! | `ports.rs`, `serial.rs`, `virtual_due.rs` | the sources: serial ports and the emulated Due |
@@ -51,6 +51,7 @@ mod source;
 pub mod status;
 mod stream_decoder;
 pub mod table;
+mod tare;
 mod virtual_due;
 mod worker;
 
@@ -66,4 +67,5 @@ pub use serial::{Baud, PortSource};
 pub use shared::{LinkState, Subscription};
 pub use source::{Source, Transport};
 pub use stream_decoder::{Received, StreamDecoder};
+pub use tare::{TareError, Tared, tare};
 pub use virtual_due::{Flash, VirtualDue};

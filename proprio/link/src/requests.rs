@@ -9,7 +9,7 @@ use std::sync::Weak;
 use std::sync::mpsc::Sender;
 use std::time::{Duration, Instant};
 
-use telemetry::{Command, Encoder, MAX_FRAME, Refusal, Reply, Request, RequestOutcome};
+use telemetry::{Command, Encoder, MAX_FRAME, PROTOCOL_VERSION, Refusal, Reply, Request, RequestOutcome};
 
 /// Time without an answer after which a request is sent again.
 const AGAIN: Duration = Duration::from_millis(100);
@@ -61,6 +61,8 @@ const PIECES_AHEAD: usize = 2;
 #[derive(Debug, Default)]
 pub struct Requests {
     encoder: Encoder,
+    /// Version of the protocol that the encoder writes, once the board's is known; until then the newest.
+    version: Option<u8>,
     last_id: u32,
     is_connected: bool,
     /// In the order in which they were sent; more than one are pieces of a table.
@@ -82,6 +84,14 @@ impl Requests {
         self.waiting.push_back((command, answer));
     }
 
+    /// Sets the version of the protocol that the board uses, once it is known. Requests under way are repeated in it.
+    pub fn set_version(&mut self, version: Option<u8>) {
+        if version.is_some_and(|version| self.version.unwrap_or(PROTOCOL_VERSION) != version) {
+            self.encoder = Encoder::for_version(version.unwrap_or(PROTOCOL_VERSION));
+        }
+        self.version = version.or(self.version);
+    }
+
     /// True once the board has acknowledged a Ping since its start.
     pub fn is_connected(&self) -> bool {
         self.is_connected
@@ -93,10 +103,15 @@ impl Requests {
         if self.may_begin() {
             self.begin(now);
         }
-        let due = self.under_way.iter_mut().find(|one| one.due <= now)?;
+        let place = self.under_way.iter().position(|one| one.due <= now)?;
+        let due = self.under_way.get_mut(place)?;
         due.due = now + AGAIN;
         let mut buffer = [0; MAX_FRAME];
-        let frame = self.encoder.encode(&due.request, &mut buffer).ok()?;
+        let Ok(frame) = self.encoder.encode(&due.request, &mut buffer) else {
+            // Of all requests, a board of protocol 2 has none for other numbers of regulators than six.
+            self.finish(place, Err(Refusal::Regulators.into()));
+            return None;
+        };
         Some([&[0], frame].concat())
     }
 
@@ -177,7 +192,7 @@ mod tests {
     use std::sync::Arc;
     use std::sync::mpsc::{Receiver, TryRecvError, channel};
 
-    use telemetry::{Decoder, SetPressures, TableChunk};
+    use telemetry::{Decoder, SetPressures, TableChunk, TareMode, protocol_2};
 
     use super::*;
 
@@ -204,7 +219,14 @@ mod tests {
         requests.replied(Reply { id, outcome: RequestOutcome::Ack });
     }
 
-    const PRESSURES: Command = Command::SetPressures(SetPressures { pressures_pa: [0; 6], valid_ms: 300 });
+    const TARE: Command = Command::Tare(TareMode::IfStill);
+
+    fn pressures_of(regulators: usize) -> Command {
+        Command::SetPressures(SetPressures {
+            pressures_pa: std::iter::repeat_n(0, regulators).collect(),
+            valid_ms: 300,
+        })
+    }
 
     #[test]
     fn a_request_that_was_made_before_the_board_answers_is_given_up_two_seconds_after_the_asking() {
@@ -230,9 +252,9 @@ mod tests {
         let ping = sent(&mut requests, start);
         acknowledge(&mut requests, ping);
         let arm = ask(&mut requests, Command::Arm, start);
-        let pressures = ask(&mut requests, PRESSURES, after(300));
+        let pressures = ask(&mut requests, pressures_of(6), after(300));
         assert_eq!(sent(&mut requests, start).map(|request| request.command), Some(Command::Arm));
-        assert_eq!(sent(&mut requests, after(2000)).map(|request| request.command), Some(PRESSURES));
+        assert_eq!(sent(&mut requests, after(2000)).map(|request| request.command), Some(pressures_of(6)));
         assert_eq!(arm.outcome.try_recv(), Ok(Err(RequestError::NoAnswer)));
         assert_eq!(sent(&mut requests, after(2300)), None);
         assert_eq!(pressures.outcome.try_recv(), Ok(Err(RequestError::NoAnswer)));
@@ -269,12 +291,42 @@ mod tests {
         let (mut requests, start) = (Requests::default(), Instant::now());
         let ping = sent(&mut requests, start);
         let arm = ask(&mut requests, Command::Arm, start);
-        let tare = ask(&mut requests, Command::Tare, start);
+        let tare = ask(&mut requests, TARE, start);
         acknowledge(&mut requests, ping);
         drop(arm.asker);
         let next = sent(&mut requests, start);
-        assert_eq!(next.as_ref().map(|request| request.command.clone()), Some(Command::Tare));
+        assert_eq!(next.as_ref().map(|request| request.command.clone()), Some(TARE));
         acknowledge(&mut requests, next);
         assert_eq!(tare.outcome.try_recv(), Ok(Ok(())));
+    }
+
+    /// Version of the frame that is sent at a time, if any.
+    fn sent_version(requests: &mut Requests, now: Instant) -> Option<u8> {
+        // A zero, the distance to the next zero, and the version.
+        requests.due(now)?.get(2).copied()
+    }
+
+    #[test]
+    fn requests_are_of_the_newest_version_until_the_boards_is_known_and_are_repeated_in_that() {
+        let (mut requests, start) = (Requests::default(), Instant::now());
+        let after = |ms| start + Duration::from_millis(ms);
+        assert_eq!(sent_version(&mut requests, start), Some(PROTOCOL_VERSION));
+        requests.set_version(Some(protocol_2::VERSION));
+        assert_eq!(sent_version(&mut requests, after(100)), Some(protocol_2::VERSION));
+        requests.set_version(None);
+        assert_eq!(sent_version(&mut requests, after(200)), Some(protocol_2::VERSION), "a new line, the same board");
+        requests.set_version(Some(PROTOCOL_VERSION));
+        assert_eq!(sent_version(&mut requests, after(300)), Some(PROTOCOL_VERSION));
+    }
+
+    #[test]
+    fn set_points_that_the_boards_version_cannot_hold_are_refused_at_once() {
+        let (mut requests, now) = (Requests::default(), Instant::now());
+        let ping = sent(&mut requests, now);
+        acknowledge(&mut requests, ping);
+        requests.set_version(Some(protocol_2::VERSION));
+        let asked = ask(&mut requests, pressures_of(4), now);
+        assert_eq!(requests.due(now), None);
+        assert_eq!(asked.outcome.try_recv(), Ok(Err(RequestError::Refused(Refusal::Regulators))));
     }
 }

@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use proprio_session::{Ellipse, is_version_0_1};
 use serde::Serialize;
-use telemetry::{Event, Health, Hello, Message, SEGMENTS, TICK_HZ, Uncertainty};
+use telemetry::{Event, Health, Hello, Message, SegmentUncertainty, TICK_HZ, Uncertainty};
 
 use crate::{EventKind, Link, LinkError, Mismatch, Subscription};
 
@@ -43,23 +43,23 @@ pub struct Status {
 }
 
 /// Uncertainty of the arm's shape on a board, and contact.
-#[derive(Debug, Clone, Copy, Serialize)]
+#[derive(Debug, Clone, Serialize)]
 pub struct KnownShape {
     /// Standard deviation of each bend angle, degrees, from the base; `None`: not known.
-    pub theta_sd_deg: [Option<f64>; SEGMENTS],
+    pub theta_sd_deg: Vec<Option<f64>>,
     /// 95 % ellipse of the tip; `None`: not known.
     pub tip: Option<Ellipse>,
     /// Contact of each segment.
-    pub touched: [bool; SEGMENTS],
+    pub touched: Vec<bool>,
 }
 
 impl From<&Uncertainty> for KnownShape {
     fn from(Uncertainty { segments, .. }: &Uncertainty) -> Self {
-        let [.., tip] = segments;
+        let deviation_deg = |variance_rad2: f64| variance_rad2.sqrt().to_degrees();
         Self {
-            theta_sd_deg: segments.map(|segment| segment.theta_rad2().map(|variance| variance.sqrt().to_degrees())),
-            tip: tip.end_m2().map(Ellipse::of),
-            touched: segments.map(|segment| segment.in_contact),
+            theta_sd_deg: segments.iter().map(|segment| segment.theta_rad2().map(deviation_deg)).collect(),
+            tip: segments.last().and_then(SegmentUncertainty::end_m2).map(Ellipse::of),
+            touched: segments.iter().map(|segment| segment.in_contact).collect(),
         }
     }
 }
@@ -117,14 +117,14 @@ impl Status {
                 _ => {}
             }
             let state = link.state();
-            if let (Some(hello), Some(health), Some(rates)) = (state.hello, seen.health, seen.rates()) {
+            if let (Some(hello), Some(health), Some(rates)) = (state.hello, &seen.health, seen.rates()) {
                 let is_comparable = !is_version_0_1(&hello.firmware);
                 let differs = |mismatch: &Mismatch| matches!(mismatch, Mismatch::Table { .. });
                 return Ok(Self {
                     port: state.port.unwrap_or_default(),
                     proprio: env!("CARGO_PKG_VERSION"),
                     hello,
-                    health,
+                    health: health.clone(),
                     shape: seen.shape,
                     rates,
                     received: FrameCounts {
@@ -152,7 +152,7 @@ impl Seen {
     fn take(&mut self, message: &Message) {
         match message {
             Message::Health(health) => {
-                self.health = Some(*health);
+                self.health = Some(health.clone());
                 self.healthy_since.get_or_insert_with(Instant::now);
                 self.pass(health.tick);
             }
@@ -165,8 +165,9 @@ impl Seen {
             }
             Message::Estimate(_) => self.estimates += u32::from(self.ticks.is_some()),
             Message::Uncertainty(uncertainty) => self.shape = Some(uncertainty.into()),
-            Message::Event(Event::Contact(_, touched)) => {
-                self.shape = self.shape.map(|shape| KnownShape { touched: *touched, ..shape });
+            Message::Event(Event::Contact(_, mask)) => {
+                let touched = self.shape.iter_mut().flat_map(|shape| &mut shape.touched);
+                touched.enumerate().for_each(|(i, touched)| *touched = mask >> i & 1 == 1);
             }
             _ => {}
         }

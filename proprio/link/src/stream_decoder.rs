@@ -7,6 +7,7 @@ use super::event::Mismatch;
 
 /// A part of the stream that is complete.
 #[derive(Debug, Clone, PartialEq)]
+#[expect(clippy::large_enum_variant, reason = "almost all are messages: a box of each would cost more than it saves")]
 pub enum Received {
     /// A message.
     Message(Message),
@@ -79,6 +80,12 @@ impl StreamDecoder {
     #[must_use]
     pub fn hello(&self) -> Option<&Hello> {
         self.hello.as_ref()
+    }
+
+    /// Version of the protocol that the board uses, once a frame has come since the line was opened.
+    #[must_use]
+    pub fn version(&self) -> Option<u8> {
+        self.decoder.version()
     }
 
     /// Restarts of the board since its first `Hello`.

@@ -34,6 +34,8 @@ pub struct VirtualDue {
     pub scenario: u8,
     /// Seed of the arm's motion and the sensors' noise.
     pub seed: u64,
+    /// Arm description or table of the simulated arm; `None`: the reference arm.
+    pub arm: Option<PathBuf>,
     /// Content of its flash.
     pub flash: Flash,
 }
@@ -77,6 +79,9 @@ impl Source for VirtualDue {
         let mut command = Command::new(&program);
         command.arg("run").arg(&firmware).args(["--serial", "stdio", "--speed", "real"]);
         command.args(["--scenario", &self.scenario.to_string(), "--seed", &self.seed.to_string()]);
+        if let Some(arm) = &self.arm {
+            command.arg("--arm").arg(arm);
+        }
         let (flash, temporary) = self.flash.file()?;
         command.arg("--flash").arg(flash);
         command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());

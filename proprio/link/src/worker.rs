@@ -113,6 +113,7 @@ impl Worker {
             }
         }
         let Self { decoder, requests, shared, .. } = self;
+        requests.set_version(decoder.version());
         let mut state = shared.state();
         state.bytes += bytes.len() as u64;
         state.counts = decoder.counts();

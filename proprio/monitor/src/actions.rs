@@ -9,8 +9,9 @@ use axum::extract::{Query, State};
 use axum::http::header::{CONTENT_TYPE, HeaderName};
 use axum::http::{HeaderMap, StatusCode};
 use axum::response::{IntoResponse, Response};
+use proprio_link::TareError;
 use serde::Deserialize;
-use telemetry::{Command, REGULATORS, SetPressures};
+use telemetry::{Command, MAX_REGULATORS, SetPressures, TareMode};
 
 use super::access::Refused;
 use super::app_state::AppState;
@@ -122,14 +123,14 @@ fn check_token(state: &AppState, headers: &HeaderMap) -> Result<(), Refused> {
 }
 
 /// A request of the page to the board.
-#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(super) enum Control {
     Arm,
     /// Vents, and disarms.
     Vent,
     SetPressures {
-        kpa: [f64; REGULATORS],
+        kpa: Vec<f64>,
     },
 }
 
@@ -139,9 +140,9 @@ impl From<Control> for Command {
             Control::Arm => Self::Arm,
             Control::Vent => Self::Disarm,
             Control::SetPressures { kpa } => {
-                // The cast saturates; the board refuses pressures over its regulators' range.
-                let pressures_pa = kpa.map(|kpa| (kpa * 1e3).round() as u32);
-                Self::SetPressures(SetPressures { pressures_pa, valid_ms: VALID_MS })
+                // The cast saturates; the board refuses pressures over its regulators' range, and another number of them than it has.
+                let pressures_pa = kpa.iter().map(|kpa| (kpa * 1e3).round() as u32);
+                Self::SetPressures(SetPressures { pressures_pa: pressures_pa.collect(), valid_ms: VALID_MS })
             }
         }
     }
@@ -153,6 +154,10 @@ pub(super) async fn control(State(state): State<AppState>, headers: HeaderMap, b
     check_token(&state, &headers).map_err(Refused::into_response)?;
     let control: Control =
         serde_json::from_slice(&body).map_err(|error| (StatusCode::BAD_REQUEST, error.to_string()).into_response())?;
+    if matches!(&control, Control::SetPressures { kpa } if kpa.len() > MAX_REGULATORS) {
+        let text = format!("a board has {MAX_REGULATORS} regulators at most");
+        return Err((StatusCode::BAD_REQUEST, text).into_response());
+    }
     let shared = Arc::clone(&state.monitor);
     // This handler is dropped with its connection: nothing is sent for a page that has gone, except what vents.
     let page = Arc::new(());
@@ -167,4 +172,37 @@ pub(super) async fn control(State(state): State<AppState>, headers: HeaderMap, b
         Some(done) => done.map_err(|error| state.failure(&error.into())),
         None => Err(Refused::ReadOnly.into_response()),
     }
+}
+
+/// A request of the page to tare the board.
+#[derive(Debug, Deserialize)]
+pub(super) struct TareRequest {
+    /// Tares an arm that moves, too.
+    force: bool,
+}
+
+/// Outcome of a request to tare.
+#[derive(Debug, serde::Serialize)]
+struct TareOutcome {
+    /// The arm moves, and was not tared.
+    is_moving: bool,
+    text: String,
+}
+
+/// Tares the board.
+pub(super) async fn tare(State(state): State<AppState>, headers: HeaderMap, body: Bytes) -> Answer<Response> {
+    check_token(&state, &headers).map_err(Refused::into_response)?;
+    let TareRequest { force } =
+        serde_json::from_slice(&body).map_err(|error| (StatusCode::BAD_REQUEST, error.to_string()).into_response())?;
+    let mode = if force { TareMode::Force } else { TareMode::IfStill };
+    let shared = Arc::clone(&state.monitor);
+    let tared = run_blocking(move || shared.link.as_ref().map(|link| proprio_link::tare(link, mode))).await?;
+    let outcome = match tared.ok_or_else(|| Refused::ReadOnly.into_response())? {
+        Ok(tared) => TareOutcome { is_moving: false, text: tared.to_string() },
+        Err(error @ TareError::Moving(_)) => {
+            TareOutcome { is_moving: true, text: format!("{error}: let it rest, or tare it anyway") }
+        }
+        Err(TareError::Link(error)) => return Err(state.failure(&error.into())),
+    };
+    Ok(Json(outcome).into_response())
 }

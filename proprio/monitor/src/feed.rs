@@ -5,7 +5,7 @@ use proprio_link::LinkState;
 use proprio_link::status::MessageRates;
 use proprio_session::{CHI2_2_95, ClockDrift};
 use serde::Serialize;
-use telemetry::{Actuation, Health, SEGMENTS, SegmentUncertainty, SensorHealth, SensorState};
+use telemetry::{Actuation, Health, SegmentUncertainty, SensorHealth, SensorState};
 
 use super::latency::Percentiles;
 use super::page_row;
@@ -15,7 +15,7 @@ use super::recording::RecordingProgress;
 #[derive(Debug, Serialize)]
 #[serde(tag = "type", rename_all = "snake_case")]
 pub(super) enum Feed<'a> {
-    /// First message.
+    /// First message, and again where a board has another number of segments.
     Arm(&'a ArmDescription),
     Rows(Batch),
     Status(Box<PageStatus>),
@@ -66,6 +66,13 @@ impl ArmDescription {
             session: None,
         }
     }
+
+    /// The same page for an arm of so many segments, with the geometry in `table`.
+    pub fn with_segments(&self, segments: usize, table: Option<&ArmFile>) -> Self {
+        let Self { is_live, allows_control, opens_sessions, ref session, .. } = *self;
+        let arm = Self::new(segments, table);
+        Self { is_live, allows_control, opens_sessions, session: session.clone(), ..arm }
+    }
 }
 
 /// Geometry of a segment.
@@ -94,7 +101,7 @@ pub(super) struct Batch {
     /// Uncertainty of the shape, where the board has sent one.
     pub uncertainty: Option<EndCovariances>,
     /// Contact of the segments.
-    pub contact: Option<[bool; SEGMENTS]>,
+    pub contact: Option<Vec<bool>>,
 }
 
 /// Uncertainty of the shape.
@@ -145,6 +152,10 @@ pub(super) struct PageStatus {
 #[derive(Debug, Serialize)]
 pub(super) struct BoardInfo {
     arm: String,
+    segments: u8,
+    /// Bend sensors that are wired.
+    bend_sensors: u8,
+    regulators: u8,
     firmware: String,
     boot: u32,
     reset: telemetry::ResetCause,
@@ -161,7 +172,7 @@ pub(super) struct BoardHealth {
     bus_recoveries: u32,
     saturations: u32,
     actuation: Actuation,
-    pressures_kpa: [f64; telemetry::REGULATORS],
+    pressures_kpa: Vec<f64>,
 }
 
 impl From<&Health> for BoardHealth {
@@ -174,7 +185,7 @@ impl From<&Health> for BoardHealth {
             bus_recoveries: health.bus_recoveries,
             saturations: health.saturations,
             actuation: health.actuation,
-            pressures_kpa: health.pressures_pa.map(|pressure_pa| f64::from(pressure_pa) / 1e3),
+            pressures_kpa: health.pressures_pa.iter().map(|pressure_pa| f64::from(*pressure_pa) / 1e3).collect(),
         }
     }
 }
@@ -197,6 +208,7 @@ impl From<SensorHealth> for SensorStatus {
             SensorState::Inconsistent => "contradicts the others",
             SensorState::Timeout => "answers too late",
             SensorState::Intermittent => "comes and goes",
+            SensorState::NotWired => "is not wired",
         };
         Self { state, reason, missed }
     }
@@ -215,6 +227,9 @@ impl PageStatus {
     pub fn new(link: LinkState, rates: MessageRates) -> Self {
         let board = link.hello.map(|hello| BoardInfo {
             arm: hello.arm.as_str().to_owned(),
+            segments: hello.segments,
+            bend_sensors: hello.bend_sensors,
+            regulators: hello.regulators,
             firmware: hello.firmware.as_str().to_owned(),
             boot: hello.boot,
             reset: hello.reset,

@@ -21,6 +21,11 @@ impl<'t> HostReplica<'t> {
         Self { estimator, table, predicted_rad: [None; MAX_SEGMENTS] }
     }
 
+    /// Segments of the table's arm.
+    pub fn segments(&self) -> usize {
+        self.table.segments.len()
+    }
+
     /// Starts the estimator (again) before the next sample.
     pub fn start(&mut self) {
         self.estimator.start().expect("the file was checked");

@@ -8,6 +8,7 @@ use estimator_core::ArmConfig;
 use proprio_check::SessionCheck;
 use proprio_link::{EventKind, Link, LinkEvent, Subscription};
 use proprio_session::HostNs;
+use telemetry::Message;
 
 use super::feed::{Batch, EndCovariances, Feed, PageStatus};
 use super::host_replica::HostReplica;
@@ -90,6 +91,14 @@ impl<'t> Hub<'t> {
         {
             self.note(event.at, &warning);
         }
+        let segments = match &event.kind {
+            EventKind::Message(Message::Hello(hello)) => Some(usize::from(hello.segments)),
+            EventKind::Message(Message::Sample(sample)) => Some(sample.imu.len()),
+            _ => None,
+        };
+        if segments.is_some_and(|segments| self.shared.set_segments(segments)) {
+            self.batch.rows.clear();
+        }
         if let Some(TimedRow { row, sampled }) = self.live.take(event) {
             self.shared.history().push(&row);
             self.batch.newest_us = sampled.0 / 1000;
@@ -111,7 +120,7 @@ impl<'t> Hub<'t> {
         if !batch.rows.is_empty() {
             let uncertainty = self.live.uncertainty.as_ref();
             batch.uncertainty = uncertainty.and_then(EndCovariances::of);
-            batch.contact = uncertainty.map(|of| of.segments.map(|segment| segment.in_contact));
+            batch.contact = uncertainty.map(|of| of.segments.iter().map(|segment| segment.in_contact).collect());
             self.shared.publish(&Feed::Rows(batch));
         }
     }

@@ -45,7 +45,7 @@ use estimator_core::Q;
 use proprio_check::Finding;
 use proprio_link::{Link, Subscription};
 use proprio_session::LoadedTable;
-use telemetry::{Command, SEGMENTS, TICK_HZ};
+use telemetry::{Command, TICK_HZ};
 
 pub use access::Token;
 pub use error::Error;
@@ -167,13 +167,10 @@ impl Drop for Monitor {
 /// The state that the threads share.
 fn shared(link: Option<Link>, options: Options) -> MonitorState {
     let table = options.table.as_ref();
-    let table_segments = table.map(|table| table.file.segments.len());
-    let segments = table_segments.filter(|_| link.is_none()).unwrap_or(SEGMENTS);
-    // A table with another number of segments is not of this arm.
-    let mut arm =
-        ArmDescription::new(segments, table.map(|table| &table.file).filter(|_| table_segments == Some(segments)));
+    // Until a board has sent its number of segments, the arm is that of the table.
+    let segments = table.map_or(0, |table| table.file.segments.len());
+    let mut arm = ArmDescription::new(segments, table.map(|table| &table.file));
     (arm.is_live, arm.allows_control) = (link.is_some(), options.token.is_some());
-    arm.opens_sessions = table.is_some();
     let sessions = Sessions::new(options.folder, table, options.session, options.finding_text);
     arm.session = sessions.given();
     MonitorState::new(link, arm, options.token, sessions, options.help)
@@ -181,9 +178,8 @@ fn shared(link: Option<Link>, options: Options) -> MonitorState {
 
 fn hub(shared: &Arc<MonitorState>, events: Subscription, compiled: Option<&CompiledTable<Q>>, stop: &AtomicBool) {
     let table = compiled.map(CompiledTable::config);
-    let table = table.as_ref().filter(|table| table.segments.len() == SEGMENTS);
     if let Some(link) = &shared.link {
-        let check = table.and_then(|_| shared.sessions.check());
-        Hub::new(Arc::clone(shared), events, table, check).run(link, stop);
+        let check = shared.sessions.check();
+        Hub::new(Arc::clone(shared), events, table.as_ref(), check).run(link, stop);
     }
 }

@@ -6,7 +6,7 @@ use proprio_check::{Finding, SessionCheck};
 use proprio_link::status::MessageRates;
 use proprio_link::{EventKind, LinkEvent};
 use proprio_session::{ClockSync, HostNs, Row, RowAssembler};
-use telemetry::{BEND_SENSORS, Health, Message, SEGMENTS, SensorHealth, SensorState, Uncertainty};
+use telemetry::{FrameLengths, Health, LINE_BYTES_PER_SECOND, Message, SensorHealth, SensorState, Uncertainty};
 
 use super::feed::BoardTime;
 use super::host_replica::HostReplica;
@@ -14,8 +14,6 @@ use super::page_row::PageRow;
 
 /// Time over which rates are measured, ns.
 const RATES_NS: u64 = 2_000_000_000;
-/// Time to send a sample's frame of 98 bytes at 250 000 Bd, µs.
-const SAMPLE_FRAME_US: u32 = 3920;
 
 /// A row, with the time of its sample.
 #[derive(Debug)]
@@ -89,38 +87,51 @@ impl<'t> Live<'t> {
         match message {
             Message::Sample(_) => self.totals.samples += 1,
             Message::Estimate(_) => self.totals.estimates += 1,
-            Message::Health(health) => self.health = Some(*health),
-            Message::Uncertainty(uncertainty) => self.uncertainty = Some(*uncertainty),
-            Message::Event(telemetry::Event::Contact(_, touched)) => self.contact(*touched),
-            Message::Event(telemetry::Event::Bend(i, state)) => self.sensor(usize::from(*i), *state),
-            Message::Event(telemetry::Event::Imu(i, state)) => self.sensor(BEND_SENSORS + usize::from(*i), *state),
-            Message::Hello(_) | Message::Event(_) | Message::Reply(_) | Message::Table(_) | Message::TableData(_) => {}
+            Message::Health(health) => self.health = Some(health.clone()),
+            Message::Uncertainty(uncertainty) => self.uncertainty = Some(uncertainty.clone()),
+            Message::Event(telemetry::Event::Contact(_, mask)) => self.contact(*mask),
+            Message::Event(telemetry::Event::Bend(i, state)) => {
+                set_state(self.health.as_mut().map(|health| &mut health.bend[..]), *i, *state);
+            }
+            Message::Event(telemetry::Event::Imu(i, state)) => {
+                set_state(self.health.as_mut().map(|health| &mut health.imu[..]), *i, *state);
+            }
+            Message::Hello(_)
+            | Message::Event(_)
+            | Message::Reply(_)
+            | Message::Table(_)
+            | Message::TableData(_)
+            | Message::Tare(_) => {}
         }
     }
 
     /// The row for the page. The replica runs from a start of the board's estimator until a sample is lost; from then on its
     /// state differs from the board's, and the row has no drift and no innovations until the next start.
     fn timed(&mut self, row: &Row) -> TimedRow {
-        let mut page_row = PageRow::new(row.sample.time_us as f64 / 1e6, SEGMENTS);
-        if let Some(replica) = &mut self.replica {
+        let board = row.board.as_ref();
+        let segments = board.map_or(0, |board| board.segments);
+        let mut page_row = PageRow::new(row.sample.time_us as f64 / 1e6, segments);
+        // A table with another number of segments is not of this arm.
+        let mut replica = self.replica.as_mut().filter(|replica| replica.segments() == segments);
+        if let Some(replica) = &mut replica {
             if row.starts {
                 replica.start();
             }
-            if row.board.is_some_and(|board| board.complete) {
+            if row.is_comparable() {
                 replica.step(&row.sample, &mut page_row);
             }
         }
-        if let Some(check) = &mut self.check {
+        if let Some(check) = self.check.as_mut().filter(|_| replica.is_some()) {
             if row.starts {
                 check.restart();
             }
             check.update(row);
         }
         // The page shows the board's own estimate.
-        let estimate = row.board.and_then(|board| board.estimate);
-        page_row.set_estimate(&estimate.map_or([None; SEGMENTS], |estimate| estimate.segments));
+        let estimate = board.and_then(|board| board.estimate.as_ref());
+        page_row.set_estimate(estimate.map_or(&vec![None; segments], |estimate| &estimate.segments));
         page_row.set_sample(&row.sample);
-        let (at, time_us) = row.board.map_or((HostNs(0), 0), |board| (board.at, board.time_us));
+        let (at, time_us) = board.map_or((HostNs(0), 0), |board| (board.at, board.time_us));
         let delay_ns = self.min_delay_us().map_or(0, |delay_us| u64::from(delay_us) * 1000);
         let sampled = HostNs(self.clock.host_ns(at, time_us).0.saturating_sub(delay_ns));
         self.zero_ns = Some(sampled.0.saturating_sub(time_us.saturating_mul(1000)));
@@ -130,7 +141,9 @@ impl<'t> Live<'t> {
     /// Shortest time from a sample to its arrival, µs, which one-way time stamps cannot show: the latency that the board
     /// reports, and the time of the frame on the line.
     pub fn min_delay_us(&self) -> Option<u32> {
-        self.health.map(|health| health.max_estimate_latency_us.saturating_add(SAMPLE_FRAME_US))
+        let health = self.health.as_ref()?;
+        let frame_bytes = FrameLengths::of(health.imu.len(), health.pressures_pa.len()).sample;
+        Some(health.max_estimate_latency_us.saturating_add(frame_bytes * 1_000_000 / LINE_BYTES_PER_SECOND))
     }
 
     /// The board's clock relative to the host's.
@@ -140,18 +153,9 @@ impl<'t> Live<'t> {
     }
 
     /// Takes the begin or end of contact. The next uncertainty has the same, up to a quarter of a second later.
-    fn contact(&mut self, touched: [bool; SEGMENTS]) {
+    fn contact(&mut self, mask: u8) {
         let segments = self.uncertainty.iter_mut().flat_map(|uncertainty| &mut uncertainty.segments);
-        segments.zip(touched).for_each(|(segment, touched)| segment.in_contact = touched);
-    }
-
-    /// The state of a sensor has changed: bend sensors first, then IMUs. The next health has the same, up to a fifth of a second
-    /// later.
-    fn sensor(&mut self, i: usize, state: SensorState) {
-        let Some(health) = &mut self.health else { return };
-        if let Some(sensor) = health.bend.iter_mut().chain(&mut health.imu).nth(i) {
-            sensor.state = state;
-        }
+        segments.enumerate().for_each(|(i, segment)| segment.in_contact = mask >> i & 1 == 1);
     }
 
     /// The findings of the session check since the last start of the board's estimator.
@@ -182,6 +186,13 @@ impl<'t> Live<'t> {
     }
 }
 
+/// Sets the state of a sensor that has changed. The next health has the same, up to a fifth of a second later.
+fn set_state(sensors: Option<&mut [SensorHealth]>, i: u8, state: SensorState) {
+    if let Some(sensor) = sensors.and_then(|sensors| sensors.get_mut(usize::from(i))) {
+        sensor.state = state;
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use std::path::Path;
@@ -190,11 +201,14 @@ mod tests {
     use estimator_core::Q;
     use telemetry::{Estimate, Sample, TICK_HZ};
 
-    use super::{EventKind, HostNs, HostReplica, LinkEvent, Live, Message, SEGMENTS, TimedRow};
+    use super::{EventKind, HostNs, HostReplica, LinkEvent, Live, Message, TimedRow};
     use crate::page_row::ColumnGroup;
 
     /// Ticks from a tare until the replica's estimates are there.
     const TARE_TICKS: u32 = 150;
+
+    /// Segments of the reference arm.
+    const SEGMENTS: usize = 6;
 
     /// A stream of samples, each with its estimate.
     struct Stream<'t> {
@@ -211,10 +225,11 @@ mod tests {
 
         /// Sends a tick; returns the drifts and innovations of its row that have a value.
         fn tick(&mut self, tick: u32) -> usize {
-            let (bend, imu) = ([Some(2000); 2 * SEGMENTS], [Some([16_384, 0, 0, 0]); SEGMENTS]);
+            let bend = [Some(2000); 2 * SEGMENTS].into_iter().collect();
+            let imu = [Some([16_384, 0, 0, 0]); SEGMENTS].into_iter().collect();
             let sample = Sample { tick, time_us: u64::from(tick) * 10_000, tare_epoch: self.tare, bend, imu };
             assert!(self.message(tick, Message::Sample(sample)).is_none());
-            let estimate = Estimate { tick, segments: [None; SEGMENTS] };
+            let estimate = Estimate { tick, segments: [None; SEGMENTS].into_iter().collect() };
             let TimedRow { row, .. } = self.message(tick, Message::Estimate(estimate)).expect("its row");
             let groups = [ColumnGroup::Drift, ColumnGroup::InnovationImu, ColumnGroup::InnovationBend];
             groups.iter().flat_map(|group| row.group(*group)).filter(|value| !value.is_nan()).count()
@@ -255,9 +270,9 @@ mod tests {
     fn a_repeated_sample_makes_no_row() {
         let mut stream = Stream { live: Live::new(None, None), gaps: 0, tare: 0 };
         stream.ticks(0..5);
-        let sample =
-            Sample { tick: 3, time_us: 30_000, tare_epoch: 0, bend: [None; 2 * SEGMENTS], imu: [None; SEGMENTS] };
-        let estimate = Estimate { tick: 3, segments: [None; SEGMENTS] };
+        let (bend, imu) = ([None; 2 * SEGMENTS].into_iter().collect(), [None; SEGMENTS].into_iter().collect());
+        let sample = Sample { tick: 3, time_us: 30_000, tare_epoch: 0, bend, imu };
+        let estimate = Estimate { tick: 3, segments: [None; SEGMENTS].into_iter().collect() };
         assert!(stream.message(3, Message::Sample(sample)).is_none());
         assert!(stream.message(3, Message::Estimate(estimate)).is_none());
     }

@@ -23,7 +23,7 @@ const CAPACITY: usize = 64;
 pub(super) struct MonitorState {
     pub link: Option<Link>,
     pub clock: HostClock,
-    pub arm: ArmDescription,
+    arm: Mutex<ArmDescription>,
     pub token: Option<Token>,
     pub sessions: Sessions,
     pub help: fn(&Error) -> String,
@@ -45,7 +45,24 @@ impl MonitorState {
         let history = Mutex::new(History::new(arm.columns.len()));
         let (status, latency, recording) = Default::default();
         let (feed, _) = broadcast::channel(CAPACITY);
+        let arm = Mutex::new(arm);
         Self { link, clock: HostClock::new(), arm, token, sessions, help, feed, history, status, latency, recording }
+    }
+
+    pub fn arm(&self) -> MutexGuard<'_, ArmDescription> {
+        lock(&self.arm)
+    }
+
+    /// Sets the number of segments of the board's arm; returns true where it has changed. The rows before that are dropped.
+    pub fn set_segments(&self, segments: usize) -> bool {
+        let mut arm = self.arm();
+        if arm.segments == segments {
+            return false;
+        }
+        *arm = arm.with_segments(segments, self.sessions.arm(segments));
+        *self.history() = History::new(arm.columns.len());
+        self.publish(&Feed::Arm(&arm));
+        true
     }
 
     pub fn history(&self) -> MutexGuard<'_, History> {

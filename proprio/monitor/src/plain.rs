@@ -5,7 +5,7 @@ use std::fmt::Write;
 use estimator_core::Q;
 use proprio_link::{EventKind, LinkEvent, LinkState};
 use proprio_session::{HostNs, SENSOR_NAMES};
-use telemetry::{Actuation, BEND_SENSORS, Estimate, Message, SensorState};
+use telemetry::{Actuation, Estimate, Message, SensorState};
 
 use super::live::Live;
 
@@ -25,7 +25,7 @@ impl Plain {
     /// Takes an event of the link.
     pub fn take(&mut self, event: &LinkEvent) {
         if let EventKind::Message(Message::Estimate(estimate)) = &event.kind {
-            self.estimate = Some(*estimate);
+            self.estimate = Some(estimate.clone());
         }
         self.live.take(event);
     }
@@ -41,9 +41,10 @@ impl Plain {
             (None, _) => write!(line, "the line is gone"),
             (_, None) => write!(line, "no estimate yet"),
             (_, Some(Estimate { segments, .. })) => {
-                let thetas = segments.map(|segment| {
+                let thetas = segments.iter().map(|segment| {
                     segment.map_or("?".to_owned(), |segment| format!("{:+.1}", value(segment.theta).to_degrees()))
                 });
+                let thetas: Vec<_> = thetas.collect();
                 let tip = segments.last().copied().flatten().map(|tip| tip.end.map(|bits| value(bits) * 1e3));
                 let tip = tip.map_or("?".to_owned(), |[x, y]| format!("{x:.1} {y:.1}"));
                 write!(line, "θ {}°  tip {tip} mm", thetas.join(" "))
@@ -60,12 +61,17 @@ impl Plain {
                 let _ = write!(line, "  {:?}", health.actuation);
             }
         }
-        for (i, sensor) in self.live.sensors().iter().enumerate().filter(|(_, sensor)| sensor.state != SensorState::Ok)
-        {
-            let _ = match i.checked_sub(BEND_SENSORS) {
-                Some(imu) => write!(line, "  IMU {} {}", imu + 1, sensor.state),
-                None => write!(line, "  bend {}{} {}", i / 2 + 1, SENSOR_NAMES[i % 2], sensor.state),
-            };
+        let health = self.live.health.iter();
+        let is_lost = |state| !matches!(state, SensorState::Ok | SensorState::NotWired);
+        for (i, sensor) in health.clone().flat_map(|health| health.bend.iter().enumerate()) {
+            if is_lost(sensor.state) {
+                let _ = write!(line, "  bend {}{} {}", i / 2 + 1, SENSOR_NAMES[i % 2], sensor.state);
+            }
+        }
+        for (i, sensor) in health.flat_map(|health| health.imu.iter().enumerate()) {
+            if is_lost(sensor.state) {
+                let _ = write!(line, "  IMU {} {}", i + 1, sensor.state);
+            }
         }
         line
     }

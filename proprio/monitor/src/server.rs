@@ -63,6 +63,7 @@ pub(super) fn router(state: AppState) -> Router {
         .route("/mark", post(actions::mark))
         .route("/unlock", post(actions::unlock))
         .route("/control", post(actions::control))
+        .route("/tare", post(actions::tare))
         .layer(middleware::from_fn_with_state(state.clone(), guard))
         .with_state(state)
 }

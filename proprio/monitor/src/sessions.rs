@@ -93,6 +93,11 @@ impl Sessions {
         self.table().and_then(|table| SessionCheck::new(&table).ok())
     }
 
+    /// The arm of the table, if it has so many segments.
+    pub fn arm(&self, segments: usize) -> Option<&ArmFile> {
+        self.table.as_ref().map(|(_, file)| file).filter(|file| file.segments.len() == segments)
+    }
+
     fn table(&self) -> Option<LoadedTable<'_>> {
         self.table.as_ref().map(|(path, file)| LoadedTable { file: file.clone(), path })
     }
@@ -160,7 +165,7 @@ impl Sessions {
                 continue;
             }
             check.update(&read);
-            if let Some(estimate) = read.board.and_then(|board| board.estimate) {
+            if let Some(estimate) = read.board.as_ref().and_then(|board| board.estimate.as_ref()) {
                 row.set_estimate(&estimate.segments);
             }
             row.set_sample(&read.sample);

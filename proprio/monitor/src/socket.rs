@@ -29,7 +29,8 @@ pub(super) async fn feed(State(state): State<AppState>, upgrade: WebSocketUpgrad
 
 async fn serve(AppState { monitor, .. }: AppState, mut socket: WebSocket) -> Result<(), axum::Error> {
     let mut feed = monitor.feed.subscribe();
-    socket.send(text(&Feed::Arm(&monitor.arm))).await?;
+    let arm = text(&Feed::Arm(&monitor.arm()));
+    socket.send(arm).await?;
     loop {
         tokio::select! {
             message = feed.recv() => match message {

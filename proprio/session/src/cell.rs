@@ -1,6 +1,6 @@
 //! One cell: text to a checked reading.
 
-use board_core::FULL_SCALE_PA;
+use board_table::MAX_FULL_SCALE_PA;
 use estimator_core::{ImuReading, Phase};
 
 use crate::SessionProblem;
@@ -81,10 +81,10 @@ pub(crate) fn truth(cell: &str, factor: f64) -> Result<Option<f64>, SessionProbl
     if value.is_some_and(|value| value.abs() > MAX_TRUTH) { Err(SessionProblem::Truth(shown(cell))) } else { Ok(value) }
 }
 
-/// A pressure in units of `factor` Pa, that a regulator can give.
+/// A pressure in units of `factor` Pa, that the largest regulator of a board can give.
 pub(crate) fn pressure_pa(cell: &str, factor: f64) -> Result<f64, SessionProblem> {
     let pressure_pa = number(cell)?.ok_or(SessionProblem::NoPressure)? * factor;
-    if (0.0..=f64::from(FULL_SCALE_PA)).contains(&pressure_pa) {
+    if (0.0..=f64::from(MAX_FULL_SCALE_PA)).contains(&pressure_pa) {
         Ok(pressure_pa)
     } else {
         Err(SessionProblem::Pressure(shown(cell)))

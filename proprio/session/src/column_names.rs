@@ -47,6 +47,11 @@ pub(crate) fn is_base(name: &str) -> bool {
 
 /// True for a column of a regulator's pressure.
 pub(crate) fn is_pressure(name: &str) -> bool {
-    let part = name.strip_prefix("pressure").and_then(|part| part.split_once('_'));
-    part.is_some_and(|(digits, unit)| digits.parse::<usize>().is_ok() && ["kpa", "pa"].contains(&unit))
+    regulator_of(name).is_some()
+}
+
+/// The regulator of a column of pressures, from 1.
+pub(crate) fn regulator_of(name: &str) -> Option<usize> {
+    let (digits, unit) = name.strip_prefix("pressure")?.split_once('_')?;
+    digits.parse().ok().filter(|_| ["kpa", "pa"].contains(&unit))
 }

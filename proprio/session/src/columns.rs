@@ -3,9 +3,9 @@
 use std::collections::HashMap;
 
 use estimator_core::SENSORS_PER_SEGMENT;
-use telemetry::REGULATORS;
+use telemetry::MAX_REGULATORS;
 
-use crate::column_names::{SENSOR_NAMES, TARE, TIME, is_base, is_known, segment_of};
+use crate::column_names::{SENSOR_NAMES, TARE, TIME, is_base, is_known, regulator_of, segment_of};
 use crate::file_content::FileContent;
 use crate::missing_column::MissingColumn;
 use crate::{RequiredColumns, SessionProblem};
@@ -72,7 +72,8 @@ pub(crate) struct CameraColumns {
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct PressureColumns {
     pub time: usize,
-    pub regulators: [Column; REGULATORS],
+    /// From the first regulator on.
+    pub regulators: Vec<Column>,
 }
 
 struct Places<'h> {
@@ -113,14 +114,17 @@ impl CameraColumns {
 }
 
 impl PressureColumns {
-    /// Finds the columns of all regulators.
+    /// Finds the columns of all regulators, from the first to the last of which there is one.
     pub fn find(names: &[String]) -> Result<Self, SessionProblem> {
         // Columns of sensors are those of a session, which lacks the pressures.
         let header = Places::of(names, usize::MAX, FileContent::Profile)?;
         let time = header.required(TIME)?;
-        let regulator = |i: usize| header.in_unit(&format!("pressure{}", i + 1), [("kpa", 1e3), ("pa", 1.0)]);
-        let [a, b, c, d, e, f] = [0, 1, 2, 3, 4, 5].map(regulator);
-        Ok(Self { time, regulators: [a?, b?, c?, d?, e?, f?] })
+        let last = names.iter().filter_map(|name| regulator_of(name)).max().unwrap_or(0).max(1);
+        if last > MAX_REGULATORS {
+            return Err(SessionProblem::TooManyRegulators(last));
+        }
+        let regulator = |i: usize| header.in_unit(&format!("pressure{i}"), [("kpa", 1e3), ("pa", 1.0)]);
+        Ok(Self { time, regulators: (1..=last).map(regulator).collect::<Result<_, _>>()? })
     }
 }
 

@@ -7,9 +7,10 @@ use std::path::{Path, PathBuf};
 use csv::StringRecord;
 
 use crate::columns::{Column, TruthColumns};
+use crate::foreign_file::ForeignFile;
 use crate::line_limit::{LineLimit, LongLine};
 use crate::source::SessionFile;
-use crate::{Pose, SessionError, SessionProblem, Truth, cell};
+use crate::{FileFormat, Pose, SessionError, SessionProblem, Truth, cell};
 
 /// A CSV file that is being read, at one of its rows.
 pub(crate) struct CsvFile {
@@ -24,6 +25,9 @@ pub(crate) struct CsvFile {
 impl CsvFile {
     /// Reads the header.
     pub fn new(mut source: SessionFile) -> Result<Self, SessionError> {
+        if source.kind != FileFormat::Csv {
+            return Err(source.error(SessionProblem::Foreign(ForeignFile::Recording)));
+        }
         let (path, size_bytes, ends_with_line) = (source.path.clone(), source.size_bytes, source.ends_with_line()?);
         let mut csv =
             csv::ReaderBuilder::new().buffer_capacity(1 << 16).from_reader(LineLimit::new(source.into_bytes()?));

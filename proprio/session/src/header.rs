@@ -2,10 +2,9 @@
 
 use std::path::Path;
 
-use telemetry::SEGMENTS;
-
 use crate::column_names::segment_of;
 use crate::csv_file::CsvFile;
+use crate::reader::board_segments;
 use crate::source::{FileFormat, SessionFile};
 use crate::{SessionError, SessionProblem};
 
@@ -14,7 +13,7 @@ use crate::{SessionError, SessionProblem};
 pub struct Header {
     /// Format of the file.
     pub kind: FileFormat,
-    /// Segments of a CSV, by its columns; those of a board otherwise.
+    /// Segments of a CSV, by its columns; those of the first sample otherwise.
     pub segments: usize,
     /// Columns of a CSV that a session does not have.
     pub unknown: Vec<String>,
@@ -24,7 +23,7 @@ impl Header {
     /// Reads the begin of a file.
     ///
     /// # Errors
-    /// Any [`SessionError`] of the header, and [`SessionProblem::NotAFile`] of a pipe, whose begin would be gone.
+    /// Any [`SessionError`] of the header and the first sample, and [`SessionProblem::NotAFile`] of a pipe, whose begin would be gone.
     pub fn of(path: &Path) -> Result<Self, SessionError> {
         let source = SessionFile::open(path)?;
         if !source.is_regular_file {
@@ -32,7 +31,7 @@ impl Header {
         }
         let kind = source.kind;
         if kind != FileFormat::Csv {
-            return Ok(Self { kind, segments: SEGMENTS, unknown: Vec::new() });
+            return Ok(Self { kind, segments: board_segments(source)?, unknown: Vec::new() });
         }
         let file = CsvFile::new(source)?;
         let names = file.names().iter();

@@ -6,7 +6,7 @@
 //! | `row.rs`, `required_columns.rs`, `table.rs` | a row; the columns that a table needs of it; a table with its path |
 //! | `reader.rs`, `defects.rs` | [`SessionReader`]: the rows of a session of any kind; defects of its file |
 //! | `csv_file.rs`, `csv_rows.rs`, `column_names.rs`, `columns.rs`, `cell.rs`, `header.rs`, `line_limit.rs`, `source.rs` | CSV files |
-//! | `file_content.rs`, `missing_column.rs`, `time_unit.rs` | likely reasons of errors: a file in place of another, another name, another unit |
+//! | `file_content.rs`, `foreign_file.rs`, `missing_column.rs`, `time_unit.rs` | likely reasons of errors: a file in place of another, another name, another unit |
 //! | `camera.rs`, `pressures.rs` | a camera's poses; pressures over time |
 //! | `row_assembler.rs` | [`RowAssembler`]: rows from the messages of a board, recorded or live |
 //! | `recording/` | MCAP: written, read, recovered |
@@ -29,9 +29,11 @@ mod duration;
 mod ellipse;
 mod error;
 mod file_content;
+mod foreign_file;
 mod header;
 mod line_limit;
 mod missing_column;
+mod missing_history;
 mod output;
 mod pressures;
 mod progress;
@@ -56,8 +58,10 @@ pub use duration::{DurationError, check_seconds};
 pub use ellipse::{CHI2_2_95, Ellipse};
 pub use error::Error;
 pub use file_content::FileContent;
+pub use foreign_file::ForeignFile;
 pub use header::Header;
 pub use missing_column::{MissingColumn, MissingReason};
+pub use missing_history::MissingHistory;
 pub use output::{Existing, OutputFile, WrittenFile, discard_unfinished, is_stdout};
 pub use pressures::{PressurePoint, read_pressures};
 pub use progress::{NoProgress, Progress};

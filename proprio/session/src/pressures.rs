@@ -1,8 +1,6 @@
-//! Reads a profile: pressures of all regulators over time, one row per point.
+//! Reads a profile: pressures of all regulators over time, one row per point, one column per regulator.
 
 use std::path::Path;
-
-use telemetry::REGULATORS;
 
 use crate::columns::{Column, PressureColumns};
 use crate::csv_file::CsvFile;
@@ -10,12 +8,12 @@ use crate::source::SessionFile;
 use crate::{SessionError, SessionProblem, cell};
 
 /// The pressures at one time.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct PressurePoint {
     /// Time since the begin, s.
     pub time_s: f64,
     /// Pressure of each regulator over the atmosphere's, Pa.
-    pub pressures_pa: [f64; REGULATORS],
+    pub pressures_pa: Vec<f64>,
 }
 
 /// All points of a profile, in the order of time; at least one.
@@ -32,10 +30,10 @@ pub fn read_pressures(path: &Path) -> Result<Vec<PressurePoint>, SessionError> {
             let problem = SessionProblem::Backwards { from_s: last.time_s, to_s: time_s };
             return Err(file.cell_error(columns.time, problem));
         }
-        let mut pressures_pa = [0.0; REGULATORS];
-        for (pressure_pa, Column { index, factor }) in pressures_pa.iter_mut().zip(columns.regulators) {
-            *pressure_pa = file.cell(index, |text| cell::pressure_pa(text, factor))?;
-        }
+        let cells = columns.regulators.iter();
+        let pressures_pa = cells
+            .map(|&Column { index, factor }| file.cell(index, |text| cell::pressure_pa(text, factor)))
+            .collect::<Result<_, _>>()?;
         points.push(PressurePoint { time_s, pressures_pa });
     }
     if points.is_empty() { Err(file.error(SessionProblem::NoMoments)) } else { Ok(points) }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use telemetry::{Hello, SEGMENTS};
+use telemetry::{Hello, protocol_2};
 
 use crate::column_names::TIME;
 use crate::csv_file::CsvFile;
@@ -42,20 +42,40 @@ enum Rows {
 }
 
 impl Rows {
-    fn new(mut source: SessionFile, needs: &RequiredColumns) -> Result<Self, SessionError> {
-        let kind = source.kind;
-        if kind == FileFormat::Csv {
+    fn new(source: SessionFile, needs: &RequiredColumns) -> Result<Self, SessionError> {
+        if source.kind == FileFormat::Csv {
             return Ok(Self::Csv(Box::new(CsvRows::new(CsvFile::new(source)?, needs)?)));
         }
-        let summary = source.summary()?;
-        let (bytes, position) = source.into_counted()?;
-        let items: Items = if kind == FileFormat::Raw {
-            Box::new(RawReader::new(bytes))
-        } else {
-            Box::new(Reader::with_summary(bytes, summary))
-        };
-        Ok(Self::Recorded(Box::new(RecordedRows::new(items)), position))
+        let (rows, position) = recorded(source)?;
+        Ok(Self::Recorded(Box::new(rows), position))
     }
+}
+
+/// The rows of a recording or of raw bytes, and the position in the file.
+fn recorded(mut source: SessionFile) -> Result<(RecordedRows<Items>, Arc<AtomicU64>), SessionError> {
+    let (kind, summary) = (source.kind, source.summary()?);
+    let (bytes, position) = source.into_counted()?;
+    let items: Items = if kind == FileFormat::Raw {
+        Box::new(RawReader::new(bytes))
+    } else {
+        Box::new(Reader::with_summary(bytes, summary))
+    };
+    Ok((RecordedRows::new(items), position))
+}
+
+/// Segments of the arm in a recording or in raw bytes, by the first sample.
+///
+/// # Errors
+/// Any [`SessionError`] until there, and [`SessionProblem::NoSamples`].
+pub(crate) fn board_segments(source: SessionFile) -> Result<usize, SessionError> {
+    let path = source.path.clone();
+    let first = recorded(source)?.0.next_row();
+    let segments = match first {
+        Ok(Some(Row { board: Some(board), .. })) => Ok(board.segments),
+        Ok(_) => Err(SessionProblem::NoSamples),
+        Err(error) => Err(SessionProblem::Recording(error)),
+    };
+    segments.map_err(|problem| SessionError { path, line: None, column: None, problem })
 }
 
 impl SessionReader {
@@ -67,9 +87,6 @@ impl SessionReader {
         let source = SessionFile::open(path)?;
         let (kind, size_bytes, is_regular_file) = (source.kind, source.size_bytes, source.is_regular_file);
         let segments = needs.bend.len();
-        if kind != FileFormat::Csv && segments > SEGMENTS {
-            return Err(source.error(SessionProblem::RecordedSegments(segments)));
-        }
         let rows = Rows::new(source, needs)?;
         let bend_sensors = match &rows {
             Rows::Csv(csv) => csv.bend_sensors(),
@@ -102,6 +119,11 @@ impl SessionReader {
         self.rate_hz = rate_hz(steps.collect());
         self.rate_rows = self.ahead.len();
         if matches!(self.rows, Rows::Recorded(..)) {
+            let board = self.ahead.iter().filter_map(|row| Some(row.board.as_ref()?.segments)).max().unwrap_or(0);
+            if needs.bend.len() > board {
+                let problem = SessionProblem::RecordedSegments { board, arm: needs.bend.len() };
+                return Err(self.error(problem));
+            }
             // A recording has no columns: the sensors are those with any reading.
             for (i, present) in self.bend_sensors.iter_mut().enumerate() {
                 let reads = |place: usize| self.ahead.iter().any(|row| row.sample.bend[i][place].is_some());
@@ -141,9 +163,13 @@ impl SessionReader {
         }
     }
 
-    /// Segments from the base to the last one of which a sensor was read, or the truth seen, in the first rows.
+    /// Segments of the arm of a board that has sent their number. Of other sessions those from the base to the last one of which
+    /// a sensor was read, or the truth seen, in the first rows: every board of protocol 2 has sent readings of six segments.
     #[must_use]
-    pub fn segments_read(&self) -> usize {
+    pub fn segments(&self) -> usize {
+        if let Some(hello) = self.hello().filter(|hello| hello.protocol > protocol_2::VERSION) {
+            return self.bend_sensors.len().min(hello.segments.into());
+        }
         let is_read = |i: &usize| {
             self.ahead.iter().any(|Row { sample, truth, .. }| {
                 sample.bend[*i].iter().any(Option::is_some) || sample.imu[*i].is_some() || truth[*i].is_some()
@@ -253,7 +279,8 @@ struct Step {
 
 impl Step {
     fn new(from: &Row, to: &Row) -> Self {
-        let ticks = from.board.zip(to.board).map_or(1, |(from, to)| to.tick.wrapping_sub(from.tick));
+        let boards = from.board.as_ref().zip(to.board.as_ref());
+        let ticks = boards.map_or(1, |(from, to)| to.tick.wrapping_sub(from.tick));
         Self { us: to.sample.time_us - from.sample.time_us, ticks }
     }
 }

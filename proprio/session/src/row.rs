@@ -28,7 +28,7 @@ pub struct Truth {
 }
 
 /// One row: the readings of one tick, and the truth where it is known.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Row {
     /// The readings.
     pub sample: Sample<MAX_SEGMENTS>,
@@ -50,12 +50,14 @@ pub struct Mark {
 }
 
 /// Output of a board for one sample.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct BoardOutput {
     /// Number of the tick.
     pub tick: u32,
     /// The board's time of the tick since its boot, µs.
     pub time_us: u64,
+    /// Segments of the board's arm.
+    pub segments: usize,
     /// Time of the sample's arrival; 0 in a raw file.
     pub at: HostNs,
     /// Every sample since the estimator's start was received, so that a replica of the estimator gives the same result.
@@ -66,21 +68,21 @@ pub struct BoardOutput {
     pub estimate: Option<telemetry::Estimate>,
     /// Uncertainty of the estimate, where the board has sent one.
     pub uncertainty: Option<telemetry::Uncertainty>,
-    /// Contact of the segments, where the board has sent a change of it.
-    pub contact: Option<[bool; telemetry::SEGMENTS]>,
+    /// Contact of the segments, where the board has sent a change of it: bit i is segment i, from 0.
+    pub contact: Option<u8>,
 }
 
 impl Row {
     /// True where the row is part of the session: all but those from before the begin of a recording.
     #[must_use]
     pub fn is_recorded(&self) -> bool {
-        self.board.is_none_or(|board| board.recorded)
+        self.board.as_ref().is_none_or(|board| board.recorded)
     }
 
     /// True where an estimator over the rows has the state of the board's, or there is no board.
     #[must_use]
     pub fn is_comparable(&self) -> bool {
-        self.board.is_none_or(|board| board.complete)
+        self.board.as_ref().is_none_or(|board| board.complete)
     }
 
     /// True bend angle of segment `i` (from 0), rad: the difference of neighbouring headings, within ±π.

@@ -68,10 +68,15 @@ impl RowAssembler {
                     return Ok(self.open.replace(row));
                 }
             }
-            Message::Estimate(estimate) => self.output(estimate.tick, |board| board.estimate = Some(*estimate)),
-            Message::Uncertainty(of) => self.output(of.tick, |board| board.uncertainty = Some(*of)),
+            Message::Estimate(estimate) => self.output(estimate.tick, |board| board.estimate = Some(estimate.clone())),
+            Message::Uncertainty(of) => self.output(of.tick, |board| board.uncertainty = Some(of.clone())),
             Message::Event(Event::Contact(tick, touched)) => self.output(*tick, |board| board.contact = Some(*touched)),
-            Message::Health(_) | Message::Event(_) | Message::Reply(_) | Message::Table(_) | Message::TableData(_) => {}
+            Message::Health(_)
+            | Message::Event(_)
+            | Message::Reply(_)
+            | Message::Table(_)
+            | Message::TableData(_)
+            | Message::Tare(_) => {}
         }
         Ok(None)
     }
@@ -88,7 +93,7 @@ impl RowAssembler {
 
     /// Takes the row of the last sample where its estimate has arrived already, for display without delay.
     pub fn take_estimated(&mut self) -> Option<Row> {
-        self.open.take_if(|row| row.board.is_some_and(|board| board.estimate.is_some()))
+        self.open.take_if(|row| row.board.as_ref().is_some_and(|board| board.estimate.is_some()))
     }
 
     /// Takes the row of the last sample, at the end of the stream.
@@ -139,6 +144,7 @@ impl RowAssembler {
             board: Some(BoardOutput {
                 tick: sample.tick,
                 time_us: sample.time_us,
+                segments: sample.imu.len(),
                 at,
                 complete: self.complete,
                 recorded: !self.is_history,
@@ -148,13 +154,13 @@ impl RowAssembler {
             }),
         };
         row.sample.time_us = self.base_us + sample.time_us;
-        self.last = Some(LastSample { sample: *sample, at, row_us: row.sample.time_us, gaps });
+        self.last = Some(LastSample { sample: sample.clone(), at, row_us: row.sample.time_us, gaps });
         row
     }
 
     /// The row of the last sample, if it is of this tick.
     fn open(&mut self, tick: u32) -> Option<&mut Row> {
-        self.open.as_mut().filter(|row| row.board.is_some_and(|board| board.tick == tick))
+        self.open.as_mut().filter(|row| row.board.as_ref().is_some_and(|board| board.tick == tick))
     }
 
     /// Adds a message of the board to the row of this tick.

@@ -3,9 +3,10 @@
 use std::fmt;
 use std::path::PathBuf;
 
-use board_core::FULL_SCALE_PA;
-use telemetry::SEGMENTS;
+use board_table::MAX_FULL_SCALE_PA;
+use telemetry::{MAX_REGULATORS, MAX_SEGMENTS};
 
+use crate::foreign_file::ForeignFile;
 use crate::line_limit::LONGEST_LINE;
 use crate::missing_column::MissingColumn;
 use crate::recording::ReadError;
@@ -42,6 +43,9 @@ pub enum SessionProblem {
     /// A line that no session has.
     #[error("the line is longer than {most} kB", most = LONGEST_LINE / 1024)]
     LongLine,
+    /// It is of another kind.
+    #[error("{0}")]
+    Foreign(ForeignFile),
     /// It is not UTF-8 text.
     #[error("is not UTF-8 text")]
     NotText,
@@ -122,8 +126,11 @@ pub enum SessionProblem {
     #[error("the cell is empty, expected a pressure")]
     NoPressure,
     /// A pressure that no regulator gives.
-    #[error("pressure {0}, expected 0 to {most} kPa", most = FULL_SCALE_PA / 1000)]
+    #[error("pressure {0}, expected 0 to {most} kPa", most = MAX_FULL_SCALE_PA / 1000)]
     Pressure(String),
+    /// Pressures of more regulators than a board has.
+    #[error("has pressures of {0} regulators, a board has {MAX_REGULATORS} at most")]
+    TooManyRegulators(usize),
     /// A profile has a header and no more.
     #[error("has no pressures, expected a row for each point below the header")]
     NoMoments,
@@ -142,10 +149,15 @@ pub enum SessionProblem {
     #[error("nothing in it is whole: no message can be read")]
     NothingWhole,
     /// A recording of a board with fewer segments than the arm.
-    #[error("is a recording of a board with {SEGMENTS} segments at most, the arm has {0}")]
-    RecordedSegments(usize),
+    #[error("is a recording of a board with {board} segments, the arm has {arm}")]
+    RecordedSegments {
+        /// Segments of the board's arm.
+        board: usize,
+        /// Segments of the arm.
+        arm: usize,
+    },
     /// More segments than a board has.
-    #[error("has {0} segments, a board and its recordings have {SEGMENTS} at most")]
+    #[error("has {0} segments, a board and its recordings have {MAX_SEGMENTS} at most")]
     TooManySegments(usize),
     /// A recording without the truth that is needed.
     #[error("has no truth in its first samples")]

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
+use crate::foreign_file::ForeignFile;
 use crate::recording::{ReadError, Summary, is_damaged_begin, is_recording};
 use crate::{SessionError, SessionProblem};
 
@@ -61,9 +62,13 @@ impl SessionFile {
             let problem = ReadError::Damaged("its first bytes are not those of an MCAP file".to_owned());
             return Err(fail(SessionProblem::Recording(problem)));
         }
+        let kind = FileFormat::of(path, &begin);
+        if let Some(foreign) = ForeignFile::of(path, &begin).filter(|_| kind == FileFormat::Csv) {
+            return Err(fail(SessionProblem::Foreign(foreign)));
+        }
         Ok(Self {
             path: path.to_owned(),
-            kind: FileFormat::of(path, &begin),
+            kind,
             size_bytes: metadata.len(),
             is_regular_file: metadata.is_file(),
             begin,

@@ -1,9 +1,7 @@
 //! The twin as a rig that is recorded: its own duty programme, sampled at a fixed rate.
 
 use proprio_session::check_seconds;
-use rig_twin::{
-    BEND_SENSORS, Camera, EndPose, Frame, HeadingDrift, MotionProgram, REGULATORS, Rig, SEGMENTS, Scenario, Setup,
-};
+use rig_twin::{Camera, EndPose, Frame, HeadingDrift, MotionProgram, PerBendSensor, PerSegment, Rig, Scenario, Setup};
 
 use crate::error::SimulationError;
 
@@ -11,22 +9,22 @@ use crate::error::SimulationError;
 const TICK_S: f64 = 0.01;
 
 /// One recorded sample.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub struct Recorded {
     /// Time since the start, µs.
     pub time_us: u64,
-    /// ADC counts of bend sensors 1a, 1b, … 6b; `None`: not read.
-    pub counts: [Option<u16>; BEND_SENSORS],
-    /// Quaternion registers w, x, y, z of each IMU, units of 2⁻¹⁴; `None`: not read.
-    pub quaternions: [Option<[i16; 4]>; SEGMENTS],
+    /// ADC counts of bend sensors 1a, 1b, 2a, …; `None`: not read, or no such sensor.
+    pub counts: PerBendSensor<Option<u16>>,
+    /// Quaternion registers w, x, y, z of each IMU, units of 2⁻¹⁴; `None`: not read, or no such IMU.
+    pub quaternions: PerSegment<Option<[i16; 4]>>,
     /// True pose of each segment's end.
-    pub truth: [EndPose; SEGMENTS],
+    pub truth: PerSegment<EndPose>,
 }
 
 impl Recorded {
     /// The same sample with a drift added to each IMU's heading.
     #[must_use]
-    pub fn with_drift(mut self, drifts: &[HeadingDrift; SEGMENTS]) -> Self {
+    pub fn with_drift(mut self, drifts: &[HeadingDrift]) -> Self {
         let time_s = self.time_us as f64 / 1e6;
         for (quaternion, drift) in self.quaternions.iter_mut().zip(drifts) {
             *quaternion = quaternion.map(|quaternion| drift.turn(time_s, quaternion));
@@ -109,7 +107,8 @@ impl Simulation {
         let ticks = ((to_s - from_s) / TICK_S - 1e-6).ceil().max(1.0);
         for k in 0..ticks as u32 {
             let dt_s = (to_s - from_s) / ticks;
-            self.step(dt_s, self.program.duties(self.program_s(from_s + f64::from(k) * dt_s)));
+            let duties = self.program.duties(self.program_s(from_s + f64::from(k) * dt_s));
+            self.step(dt_s, &duties);
         }
     }
 
@@ -122,12 +121,12 @@ impl Simulation {
     }
 
     /// Lets time pass, with a stop at every frame in it.
-    fn step(&mut self, mut dt_s: f64, duties: [f64; REGULATORS]) {
+    fn step(&mut self, mut dt_s: f64, duties: &[f64]) {
         if let Some(camera) = &mut self.camera {
             let mut to_frame_s = camera.next_s() - self.rig.time_s();
             while to_frame_s < dt_s {
                 self.rig.step(to_frame_s, duties);
-                self.frames.extend(camera.take(self.rig.truth()));
+                self.frames.extend(camera.take(&self.rig.truth()));
                 dt_s -= to_frame_s.max(0.0);
                 to_frame_s = camera.next_s() - self.rig.time_s();
             }
@@ -150,8 +149,8 @@ impl Iterator for Simulation {
         self.next += 1;
         Some(Recorded {
             time_us: (time_s * 1e6).round() as u64,
-            counts: self.rig.adc_counts().map(Some),
-            quaternions: self.rig.imu_quaternions().map(Some),
+            counts: self.rig.adc_counts(),
+            quaternions: self.rig.imu_quaternions(),
             truth: self.rig.truth(),
         })
     }

@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use estimator_core::ImuReading;
 use proprio_session::SENSOR_NAMES;
-use rig_twin::{EndPose, Frame, SEGMENTS};
+use rig_twin::{EndPose, Frame, Layout};
 
 use crate::simulation::Recorded;
 
@@ -20,45 +20,47 @@ pub enum ImuColumns {
 /// Writer of a session.
 pub struct SessionWriter<W> {
     sink: W,
+    layout: Layout,
     imu: ImuColumns,
     truth: bool,
 }
 
 impl<W: Write> SessionWriter<W> {
-    /// Begins a session with its header.
+    /// Begins a session of an arm with its header. A sensor that the arm does not have has no column.
     ///
     /// # Errors
     /// Errors of `sink`.
-    pub fn new(sink: W, imu: ImuColumns) -> io::Result<Self> {
-        Self::begin(sink, imu, true)
+    pub fn new(sink: W, layout: &Layout, imu: ImuColumns) -> io::Result<Self> {
+        Self::begin(sink, layout, imu, true)
     }
 
     /// Begins a session without truth.
     ///
     /// # Errors
     /// Errors of `sink`.
-    pub fn without_truth(sink: W, imu: ImuColumns) -> io::Result<Self> {
-        Self::begin(sink, imu, false)
+    pub fn without_truth(sink: W, layout: &Layout, imu: ImuColumns) -> io::Result<Self> {
+        Self::begin(sink, layout, imu, false)
     }
 
-    fn begin(mut sink: W, imu: ImuColumns, truth: bool) -> io::Result<Self> {
+    fn begin(mut sink: W, layout: &Layout, imu: ImuColumns, truth: bool) -> io::Result<Self> {
+        let segments = || (1..).zip(layout.segments());
         write!(sink, "time_s")?;
-        for i in 1..=SEGMENTS {
-            for sensor in SENSOR_NAMES {
+        for (i, segment) in segments() {
+            for (sensor, _) in SENSOR_NAMES.iter().zip(segment.bend).filter(|(_, has)| *has) {
                 write!(sink, ",bend{i}{sensor}_adc")?;
             }
         }
-        for i in 1..=SEGMENTS {
+        for (i, _) in segments().filter(|(_, segment)| segment.imu) {
             match imu {
                 ImuColumns::Deg => write!(sink, ",imu{i}_deg")?,
                 ImuColumns::Quaternion => write!(sink, ",imu{i}_qw,imu{i}_qx,imu{i}_qy,imu{i}_qz")?,
             }
         }
-        for i in (1..=SEGMENTS).take_while(|_| truth) {
+        for (i, _) in segments().take_while(|_| truth) {
             write!(sink, ",truth{i}_x_mm,truth{i}_y_mm,truth{i}_heading_deg")?;
         }
         writeln!(sink)?;
-        Ok(Self { sink, imu, truth })
+        Ok(Self { sink, layout: layout.clone(), imu, truth })
     }
 
     /// Writes one sample.
@@ -67,31 +69,26 @@ impl<W: Write> SessionWriter<W> {
     /// Errors of the sink.
     pub fn write(&mut self, sample: &Recorded) -> io::Result<()> {
         write!(self.sink, "{}", sample.time_us as f64 / 1e6)?;
-        for counts in sample.counts {
+        let places = self.layout.segments().iter().flat_map(|segment| segment.bend);
+        for (counts, _) in sample.counts.iter().zip(places).filter(|(_, has)| *has) {
             write!(self.sink, ",")?;
             if let Some(counts) = counts {
                 write!(self.sink, "{counts}")?;
             }
         }
-        for quaternion in sample.quaternions {
+        for (segment, quaternion) in self.layout.segments().iter().zip(&sample.quaternions) {
+            if !segment.imu {
+                continue;
+            }
             match self.imu {
                 ImuColumns::Deg => write!(self.sink, ",{}", quaternion.map(heading_deg).unwrap_or_default())?,
-                ImuColumns::Quaternion => self.write_quaternion(quaternion)?,
+                ImuColumns::Quaternion => write_quaternion(&mut self.sink, *quaternion)?,
             }
         }
         for end in sample.truth.iter().take_while(|_| self.truth) {
             write_pose(&mut self.sink, end)?;
         }
         writeln!(self.sink)
-    }
-
-    fn write_quaternion(&mut self, quaternion: Option<[i16; 4]>) -> io::Result<()> {
-        let Some(parts) = quaternion else { return write!(self.sink, ",,,,") };
-        for part in parts {
-            // 2⁻¹⁴ has a finite decimal form, so that the reading comes back to the bit.
-            write!(self.sink, ",{}", f64::from(part) / 16_384.0)?;
-        }
-        Ok(())
     }
 
     /// The sink, when all samples are written.
@@ -106,13 +103,13 @@ pub struct CameraWriter<W> {
 }
 
 impl<W: Write> CameraWriter<W> {
-    /// Begins the file with its header.
+    /// Begins the file of an arm of `segments` segments with its header.
     ///
     /// # Errors
     /// Errors of `sink`.
-    pub fn new(mut sink: W) -> io::Result<Self> {
+    pub fn new(mut sink: W, segments: usize) -> io::Result<Self> {
         write!(sink, "time_s,base_x_mm,base_y_mm,base_heading_deg")?;
-        for i in 1..=SEGMENTS {
+        for i in 1..=segments {
             write!(sink, ",truth{i}_x_mm,truth{i}_y_mm,truth{i}_heading_deg")?;
         }
         writeln!(sink)?;
@@ -138,6 +135,15 @@ impl<W: Write> CameraWriter<W> {
     pub fn into_inner(self) -> W {
         self.sink
     }
+}
+
+fn write_quaternion(sink: &mut impl Write, quaternion: Option<[i16; 4]>) -> io::Result<()> {
+    let Some(parts) = quaternion else { return write!(sink, ",,,,") };
+    for part in parts {
+        // 2⁻¹⁴ has a finite decimal form, so that the reading comes back to the bit.
+        write!(sink, ",{}", f64::from(part) / 16_384.0)?;
+    }
+    Ok(())
 }
 
 fn write_pose(sink: &mut impl Write, pose: &EndPose) -> io::Result<()> {

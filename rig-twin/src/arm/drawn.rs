@@ -5,8 +5,8 @@ use super::parameters::{
     StripParameters,
 };
 use crate::constants::{
-    CONNECTOR_LENGTH_M, CURVE_LENGTH_M, ERROR_PER_ACCELERATION_RAD_S2_PER_M, ERROR_PER_SPIN_S2, FLAT_OHM, FLAT_SIGMA,
-    FULL_SCALE_PA, MEMORY_PLAY_RAD, MEMORY_SHARE,
+    ERROR_PER_ACCELERATION_RAD_S2_PER_M, ERROR_PER_SPIN_S2, FLAT_OHM, FLAT_SIGMA, FULL_SCALE_PA, MEMORY_PLAY_RAD,
+    MEMORY_SHARE,
 };
 use crate::flaws::{
     ACCELERATION_SCALE_RANGE, ACTUATOR_ASYMMETRY_SIGMA, ACTUATOR_CREEP_RANGE_S, ACTUATOR_CREEP_SHARE_RANGE,
@@ -22,27 +22,31 @@ use crate::flaws::{
     STRIP_LENGTH_RANGE, STRIP_PLACE_SIGMA, STRIP_RANGE_PER_K, STRIP_SIGMA, STRIP_SIGMA_PER_K,
     THERMAL_BEND_SIGMA_RAD_PER_K, TURN_ON_RANGE_RAD_PER_S,
 };
+use crate::layout::{Layout, SegmentLayout};
 use crate::noise::{Noise, Source};
-use core::array::from_fn;
 use core::f64::consts::{PI, TAU};
 
 /// Device number of the stream of a batch, larger than that of any device.
 const BATCH: usize = 1000;
 
-/// The arm of a seed.
-pub(crate) fn arm(arm_seed: u64) -> ArmParameters {
+/// The arm of a seed with this layout.
+pub(crate) fn arm(arm_seed: u64, layout: &Layout) -> ArmParameters {
     let of = |source, device| Noise::of_arm(arm_seed, source, device);
     let curves = CurveBatch::new(of(Source::Curve, BATCH));
     let strips = StripBatch::new(of(Source::BendSensor, BATCH));
     let pairs = PairBatch::new(of(Source::CommonMode, BATCH));
     let imus = ImuBatch::new(of(Source::Imu, BATCH));
+    let segments = || layout.segments().iter().enumerate();
     ArmParameters {
-        regulators: from_fn(|index| regulator(of(Source::Regulator, index))),
-        actuators: from_fn(|segment| actuator(of(Source::Actuator, segment))),
-        curves: from_fn(|segment| curves.device(of(Source::Curve, segment))),
-        strips: from_fn(|index| strips.device(of(Source::BendSensor, index))),
-        pairs: from_fn(|segment| pairs.device(of(Source::CommonMode, segment))),
-        imus: from_fn(|segment| imus.device(of(Source::Imu, segment))),
+        regulators: (0..layout.regulators()).map(|index| regulator(of(Source::Regulator, index))).collect(),
+        actuators: segments().map(|(segment, _)| actuator(of(Source::Actuator, segment))).collect(),
+        curves: segments().map(|(segment, layout)| curves.device(layout, of(Source::Curve, segment))).collect(),
+        strips: layout
+            .bend_sensors()
+            .map(|(index, has)| has.then(|| strips.device(of(Source::BendSensor, index))))
+            .collect(),
+        pairs: segments().map(|(segment, _)| pairs.device(of(Source::CommonMode, segment))).collect(),
+        imus: segments().map(|(segment, layout)| layout.imu.then(|| imus.device(of(Source::Imu, segment)))).collect(),
     }
 }
 
@@ -83,10 +87,11 @@ impl CurveBatch {
         }
     }
 
-    fn device(&self, mut noise: Noise) -> CurveParameters {
+    fn device(&self, layout: &SegmentLayout, mut noise: Noise) -> CurveParameters {
         CurveParameters {
-            length_m: CURVE_LENGTH_M * noise.tolerance((1.0, LENGTH_SIGMA)),
-            connector_m: CONNECTOR_LENGTH_M * noise.tolerance((1.0, CONNECTOR_SIGMA)),
+            length_m: layout.curve_m * noise.tolerance((1.0, LENGTH_SIGMA)),
+            connector_m: layout.connector_m * noise.tolerance((1.0, CONNECTOR_SIGMA)),
+            connector_first: layout.connector_first,
             slope: noise.tolerance((self.slope, SLOPE_SIGMA)),
             bulge: noise.tolerance((self.bulge, BULGE_SIGMA)),
             rest_bend_rad: noise.tolerance((0.0, REST_BEND_SIGMA_RAD)),
@@ -218,28 +223,34 @@ impl ImuBatch {
 
 #[cfg(test)]
 mod tests {
-    use super::arm;
     use crate::arm::ArmParameters;
+    use crate::layout::Layout;
+
+    /// An arm of a seed with six segments.
+    fn arm(seed: u64) -> ArmParameters {
+        super::arm(seed, &Layout::default())
+    }
 
     #[test]
     fn drawn_arms_have_every_flaw_that_the_reference_arm_lacks() {
         for seed in 1..=20 {
             let ArmParameters { regulators, actuators, curves, strips, pairs, imus } = arm(seed);
+            let (strip, imu) = (strips[0].expect("it has all sensors"), imus[0].expect("it has all sensors"));
             let flaws = [
                 regulators[0].offset_pa,
                 actuators[0].gains[0] - actuators[0].gains[1],
                 curves[0].length_m - curves[1].length_m,
                 curves[0].rest_bend_rad,
-                strips[0].cubic_per_rad2,
-                strips[0].creep_share[1],
-                strips[0].ohm_share_per_k,
+                strip.cubic_per_rad2,
+                strip.creep_share[1],
+                strip.ohm_share_per_k,
                 pairs[0].shared_rms_rad,
                 pairs[0].bend_rad_per_k,
-                imus[0].plane_tilt_rad,
-                imus[0].turn_on_rad_per_s,
-                imus[0].instability_rad_per_s,
-                imus[0].heading_walk_rad,
-                imus[0].rate_rad_per_s_per_k,
+                imu.plane_tilt_rad,
+                imu.turn_on_rad_per_s,
+                imu.instability_rad_per_s,
+                imu.heading_walk_rad,
+                imu.rate_rad_per_s_per_k,
             ];
             assert!(flaws.iter().all(|flaw| flaw.abs() > 0.0), "arm {seed}: {flaws:?}");
         }
@@ -248,7 +259,7 @@ mod tests {
     #[test]
     fn strips_stay_on_their_curves() {
         for seed in 1..=200 {
-            for strip in arm(seed).strips {
+            for strip in arm(seed).strips.into_iter().flatten() {
                 assert!(strip.start >= 0.0 && strip.start + strip.length <= 1.0, "arm {seed}: {strip:?}");
             }
         }

@@ -1,16 +1,16 @@
 //! Types of an arm's parameters.
 
-use crate::constants::{BEND_SENSORS, REGULATORS, SEGMENTS};
+use crate::layout::{PerBendSensor, PerRegulator, PerSegment};
 
 /// All parameters of an arm.
 #[derive(Clone, Debug)]
 pub(crate) struct ArmParameters {
-    pub(crate) regulators: [RegulatorParameters; REGULATORS],
-    pub(crate) actuators: [ActuatorParameters; SEGMENTS],
-    pub(crate) curves: [CurveParameters; SEGMENTS],
-    pub(crate) strips: [StripParameters; BEND_SENSORS],
-    pub(crate) pairs: [PairParameters; SEGMENTS],
-    pub(crate) imus: [ImuParameters; SEGMENTS],
+    pub(crate) regulators: PerRegulator<RegulatorParameters>,
+    pub(crate) actuators: PerSegment<ActuatorParameters>,
+    pub(crate) curves: PerSegment<CurveParameters>,
+    pub(crate) strips: PerBendSensor<Option<StripParameters>>,
+    pub(crate) pairs: PerSegment<PairParameters>,
+    pub(crate) imus: PerSegment<Option<ImuParameters>>,
 }
 
 /// Parameters of a pressure regulator.
@@ -38,6 +38,7 @@ pub(crate) struct ActuatorParameters {
 pub(crate) struct CurveParameters {
     pub(crate) length_m: f64,
     pub(crate) connector_m: f64,
+    pub(crate) connector_first: bool,
     pub(crate) slope: f64,
     pub(crate) bulge: f64,
     pub(crate) rest_bend_rad: f64,

@@ -7,19 +7,19 @@ use super::parameters::{
 };
 use crate::constants::{
     ACTUATOR_CREEP_S, ACTUATOR_CREEP_SHARE, ACTUATOR_LAG_S, ACTUATOR_PLAY_RAD, ADC_NOISE_COUNTS, BULGE_MEAN,
-    BULGE_SIGMA, COMMON_MODE_RAD, COMMON_MODE_S, CONNECTOR_LENGTH_M, CURVE_LENGTH_M, DRIFT_RAD_PER_S,
-    DRIFT_WALK_RAD_PER_S, ERROR_PER_ACCELERATION_RAD_S2_PER_M, ERROR_PER_SPIN_S2, FLAT_OHM, FLAT_SIGMA, GAIN_SIGMA,
-    GAUGE_PER_RAD, GYRO_SENSITIVITY_SIGMA, HEADING_NOISE_RAD, MEMORY_PLAY_RAD, MEMORY_SHARE, MEMORY_SIGMA,
-    PRE_BEND_RAD, REGULATOR_LAG_S, RIPPLE_PERIOD_RAD, RIPPLE_RAD, SLOPE_MEAN, SLOPE_SIGMA, STIFFENING,
-    STORED_BEND_SIGMA_RAD, STRETCH_AT_FULL_PRESSURE, STRIP_BALANCE, STRIP_CREEP_S, STRIP_CREEP_SHARE, STRIP_LENGTH,
-    STRIP_RELAXATION_S, STRIP_RELAXATION_SHARE, STRIP_START, TILT_SIGMA_RAD,
+    BULGE_SIGMA, COMMON_MODE_RAD, COMMON_MODE_S, DRIFT_RAD_PER_S, DRIFT_WALK_RAD_PER_S,
+    ERROR_PER_ACCELERATION_RAD_S2_PER_M, ERROR_PER_SPIN_S2, FLAT_OHM, FLAT_SIGMA, GAIN_SIGMA, GAUGE_PER_RAD,
+    GYRO_SENSITIVITY_SIGMA, HEADING_NOISE_RAD, MEMORY_PLAY_RAD, MEMORY_SHARE, MEMORY_SIGMA, PRE_BEND_RAD,
+    REGULATOR_LAG_S, RIPPLE_PERIOD_RAD, RIPPLE_RAD, SLOPE_MEAN, SLOPE_SIGMA, STIFFENING, STORED_BEND_SIGMA_RAD,
+    STRETCH_AT_FULL_PRESSURE, STRIP_BALANCE, STRIP_CREEP_S, STRIP_CREEP_SHARE, STRIP_LENGTH, STRIP_RELAXATION_S,
+    STRIP_RELAXATION_SHARE, STRIP_START, TILT_SIGMA_RAD,
 };
+use crate::layout::{Layout, SegmentLayout};
 use crate::noise::{Noise, Source};
-use core::array::from_fn;
 use core::f64::consts::TAU;
 
-/// The reference arm.
-pub(crate) fn arm() -> ArmParameters {
+/// An arm with the tolerances of the reference arm.
+pub(crate) fn arm(layout: &Layout) -> ArmParameters {
     let regulator = RegulatorParameters { lag_s: REGULATOR_LAG_S, gain: 1.0, offset_pa: 0.0 };
     let pair = PairParameters {
         opposed_rms_rad: COMMON_MODE_RAD,
@@ -28,13 +28,20 @@ pub(crate) fn arm() -> ArmParameters {
         offset_rad: 0.0,
         bend_rad_per_k: 0.0,
     };
+    let of = |source, device| Noise::of_arm(0, source, device);
+    let segments = || layout.segments().iter().enumerate();
     ArmParameters {
-        regulators: [regulator; _],
-        actuators: from_fn(|segment| actuator(&mut Noise::of_arm(0, Source::Actuator, segment))),
-        curves: from_fn(|segment| curve(&mut Noise::of_arm(0, Source::Curve, segment))),
-        strips: from_fn(|index| strip(&mut Noise::of_arm(0, Source::BendSensor, index))),
-        pairs: [pair; _],
-        imus: from_fn(|segment| imu(segment, &mut Noise::of_arm(0, Source::Imu, segment))),
+        regulators: (0..layout.regulators()).map(|_| regulator).collect(),
+        actuators: segments().map(|(segment, _)| actuator(&mut of(Source::Actuator, segment))).collect(),
+        curves: segments().map(|(segment, layout)| curve(layout, &mut of(Source::Curve, segment))).collect(),
+        strips: layout
+            .bend_sensors()
+            .map(|(index, has)| has.then(|| strip(&mut of(Source::BendSensor, index))))
+            .collect(),
+        pairs: segments().map(|_| pair).collect(),
+        imus: segments()
+            .map(|(segment, layout)| layout.imu.then(|| imu(segment, &mut of(Source::Imu, segment))))
+            .collect(),
     }
 }
 
@@ -49,10 +56,11 @@ fn actuator(noise: &mut Noise) -> ActuatorParameters {
     }
 }
 
-fn curve(noise: &mut Noise) -> CurveParameters {
+fn curve(layout: &SegmentLayout, noise: &mut Noise) -> CurveParameters {
     CurveParameters {
-        length_m: CURVE_LENGTH_M,
-        connector_m: CONNECTOR_LENGTH_M,
+        length_m: layout.curve_m,
+        connector_m: layout.connector_m,
+        connector_first: layout.connector_first,
         slope: noise.tolerance((SLOPE_MEAN, SLOPE_SIGMA)),
         bulge: noise.tolerance((BULGE_MEAN, BULGE_SIGMA)),
         rest_bend_rad: 0.0,

@@ -5,7 +5,7 @@ use rig_twin::{Camera, EndPose, Frame, SEGMENTS};
 /// Frames of an arm that stands still in one pose.
 fn frames(seed: u64, pose: EndPose, count: usize) -> Vec<Option<Frame>> {
     let mut camera = Camera::new(seed);
-    (0..count).map(|_| camera.take([pose; SEGMENTS])).collect()
+    (0..count).map(|_| camera.take(&[pose; SEGMENTS])).collect()
 }
 
 fn mean(values: impl Iterator<Item = f64>) -> f64 {
@@ -45,7 +45,7 @@ fn it_loses_some_frames_and_some_markers() {
 fn its_clock_is_80_ppm_fast() {
     let mut camera = Camera::new(4);
     let frames =
-        (0..30_000).filter_map(|_| Some((camera.next_s(), camera.take([EndPose::default(); SEGMENTS])?.time_s)));
+        (0..30_000).filter_map(|_| Some((camera.next_s(), camera.take(&[EndPose::default(); SEGMENTS])?.time_s)));
     let ahead: Vec<f64> = frames.map(|(taken_s, time_s)| time_s - 1.76e9 - taken_s).collect();
     let tenth = ahead.len() / 10;
     // Over nine tenths of 1000 s, from means of 3000 stamps that are good to 2 ms each.

@@ -68,7 +68,7 @@ fn result_does_not_depend_on_how_time_is_cut() {
         for tick in 0..1500 {
             let duties = program.duties(f64::from(tick) * 0.01);
             for &dt_s in cut {
-                rig.step(dt_s, duties);
+                rig.step(dt_s, &duties);
             }
         }
         (rig.truth(), rig.imu_quaternions(), rig.adc_counts())
@@ -85,8 +85,8 @@ fn reading_the_converter_disturbs_nothing_else() {
     let mut busy = quiet.clone();
     for tick in 0..1000 {
         let duties = program.duties(f64::from(tick) * 0.01);
-        quiet.step(0.01, duties);
-        busy.step(0.01, duties);
+        quiet.step(0.01, &duties);
+        busy.step(0.01, &duties);
         busy.adc_counts();
     }
     assert_eq!((quiet.truth(), quiet.imu_quaternions()), (busy.truth(), busy.imu_quaternions()));

@@ -1,6 +1,6 @@
 //! Arms drawn from a seed: reproducible, unlike each other, and with every flaw.
 
-use crate::recording::{Sample, bends_rad, record_of, tared_headings_rad};
+use crate::recording::{Sample, bends_rad, counts, quaternions, record_of, tared_headings_rad, truth};
 use rig_twin::{Motion, MotionProgram, Rig, SEGMENTS, Scenario, Setup};
 
 fn setup(arm_seed: u64, scenario: Scenario, seed: u64) -> Setup {
@@ -28,8 +28,8 @@ fn seed_zero_is_the_reference_arm() {
     let of_family = session(0, Scenario::Push, 5, 30);
     let (program, mut rig) = (MotionProgram::new(Scenario::Push, 5), Rig::new(Scenario::Push, 5));
     for sample in of_family {
-        (0..10).for_each(|_| rig.step(0.01, program.duties(rig.time_s())));
-        assert_eq!((sample.counts, sample.quaternions), (rig.adc_counts(), rig.imu_quaternions()));
+        (0..10).for_each(|_| rig.step(0.01, &program.duties(rig.time_s())));
+        assert_eq!((sample.counts, sample.quaternions), (counts(&mut rig), quaternions(&rig)));
     }
 }
 
@@ -96,10 +96,10 @@ fn two_segments_of_a_module_bend_by_more_than_a_degree_apart() {
 /// Readings of a vented arm, 1000 conversions of a strip, counts: of a session, after `after_s`.
 fn counts_at_rest(arm_seed: u64, seed: u64, after_s: f64) -> [f64; 2 * SEGMENTS] {
     let mut rig = Rig::of(&setup(arm_seed, Scenario::FreeSwing, seed));
-    rig.step(after_s, [0.0; 6]);
+    rig.step(after_s, &[0.0; 6]);
     let mut sums = [0.0; 2 * SEGMENTS];
     for _ in 0..1000 {
-        sums.iter_mut().zip(rig.adc_counts()).for_each(|(sum, count)| *sum += f64::from(count) / 1000.0);
+        sums.iter_mut().zip(counts(&mut rig)).for_each(|(sum, count)| *sum += f64::from(count) / 1000.0);
     }
     sums
 }
@@ -135,8 +135,8 @@ fn regulators_differ_so_that_the_same_duty_bends_by_other_angles() {
     let bends: Vec<f64> = (1..=6)
         .map(|arm| {
             let mut rig = Rig::of(&Setup { motion: Motion::Swings, ..setup(arm, Scenario::FreeSwing, 1) });
-            rig.step(60.0, [0.6, 0.0, 0.0, 0.0, 0.0, 0.0]);
-            bends_rad(&rig.truth())[0].to_degrees()
+            rig.step(60.0, &[0.6, 0.0, 0.0, 0.0, 0.0, 0.0]);
+            bends_rad(&truth(&rig))[0].to_degrees()
         })
         .collect();
     let (low, high) = bends.iter().fold((f64::MAX, f64::MIN), |(low, high), &b| (low.min(b), high.max(b)));

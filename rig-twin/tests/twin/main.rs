@@ -5,6 +5,7 @@ mod camera;
 mod determinism;
 mod family;
 mod kinematics;
+mod layouts;
 mod motion;
 mod programs;
 mod recording;

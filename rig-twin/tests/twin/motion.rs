@@ -1,6 +1,6 @@
 //! Scenarios: motion and contacts of the arm.
 
-use crate::recording::{Sample, bends_rad, record};
+use crate::recording::{Sample, bends_rad, record, truth};
 use rig_twin::{MotionProgram, Rig, SEGMENTS, Scenario};
 
 const ALL: [Scenario; 4] = [Scenario::Sweep, Scenario::FreeSwing, Scenario::Push, Scenario::Obstacle];
@@ -87,9 +87,9 @@ fn pushes_bend_the_pushed_segment_by_more_than_ten_degrees() {
     let mut largest_deg = [0.0_f64; SEGMENTS];
     for _ in 0..60_000 {
         let duties = program.duties(pushed.time_s());
-        pushed.step(0.01, duties);
-        free.step(0.01, duties);
-        let (with, without) = (bends_rad(&pushed.truth()), bends_rad(&free.truth()));
+        pushed.step(0.01, &duties);
+        free.step(0.01, &duties);
+        let (with, without) = (bends_rad(&truth(&pushed)), bends_rad(&truth(&free)));
         for (largest, (with, without)) in largest_deg.iter_mut().zip(with.iter().zip(without)) {
             *largest = largest.max((with - without).abs().to_degrees());
         }

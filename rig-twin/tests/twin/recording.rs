@@ -20,16 +20,36 @@ pub fn record_of(setup: &Setup, seconds: u32) -> Vec<Sample> {
     let (program, mut rig) = (MotionProgram::of(setup), Rig::of(setup));
     let sample = |_| {
         for _ in 0..10 {
-            rig.step(0.01, program.duties(rig.time_s()));
+            rig.step(0.01, &program.duties(rig.time_s()));
         }
         Sample {
-            counts: rig.adc_counts(),
-            quaternions: rig.imu_quaternions(),
-            truth: rig.truth(),
-            contact_bends_rad: rig.contact_bends_rad(),
+            counts: counts(&mut rig),
+            quaternions: quaternions(&rig),
+            truth: truth(&rig),
+            contact_bends_rad: whole(rig.contact_bends_rad()),
         }
     };
     (0..10 * seconds).map(sample).collect()
+}
+
+/// Counts of all bend sensors.
+pub fn counts(rig: &mut Rig) -> [u16; BEND_SENSORS] {
+    whole(rig.adc_counts().into_iter().flatten())
+}
+
+/// Quaternions of all IMUs.
+pub fn quaternions(rig: &Rig) -> [[i16; 4]; SEGMENTS] {
+    whole(rig.imu_quaternions().into_iter().flatten())
+}
+
+/// True poses of all segments' ends.
+pub fn truth(rig: &Rig) -> [EndPose; SEGMENTS] {
+    whole(rig.truth())
+}
+
+/// Values of an arm of six segments.
+fn whole<T, const COUNT: usize>(values: impl IntoIterator<Item = T>) -> [T; COUNT] {
+    values.into_iter().collect::<Vec<T>>().try_into().ok().expect("the arm has six segments and all sensors")
 }
 
 /// True bend angles: differences of neighbouring headings.

@@ -1,6 +1,6 @@
 //! Raw readings: bend sensors that never saturate, IMUs that drift and hold.
 
-use crate::recording::{heading_rad, record, tared_headings_rad};
+use crate::recording::{counts, heading_rad, quaternions, record, tared_headings_rad};
 use rig_twin::{Rig, SEGMENTS, Scenario};
 
 #[test]
@@ -15,8 +15,8 @@ fn bend_sensors_do_not_saturate() {
 #[test]
 fn converter_noise_is_two_counts() {
     let mut rig = Rig::new(Scenario::FreeSwing, 1);
-    rig.step(1.0, [0.0; 6]);
-    let counts: Vec<f64> = (0..5000).map(|_| f64::from(rig.adc_counts()[0])).collect();
+    rig.step(1.0, &[0.0; 6]);
+    let counts: Vec<f64> = (0..5000).map(|_| f64::from(counts(&mut rig)[0])).collect();
     let mean = counts.iter().sum::<f64>() / 5000.0;
     let variance = counts.iter().map(|count| (count - mean).powi(2)).sum::<f64>() / 5000.0;
     assert!((1.7..2.4).contains(&variance.sqrt()), "{} counts", variance.sqrt());
@@ -27,10 +27,10 @@ fn worst_imu_drifts_45_degrees_in_900_seconds() {
     for seed in 1..=3 {
         let mut rig = Rig::new(Scenario::FreeSwing, seed);
         let mut turned = [0.0; SEGMENTS];
-        let mut last = rig.imu_quaternions().map(heading_rad);
+        let mut last = quaternions(&rig).map(heading_rad);
         for _ in 0..900 {
-            rig.step(1.0, [0.0; 6]);
-            let next = rig.imu_quaternions().map(heading_rad);
+            rig.step(1.0, &[0.0; 6]);
+            let next = quaternions(&rig).map(heading_rad);
             for segment in 0..SEGMENTS {
                 let turn = next[segment] - last[segment];
                 turned[segment] += turn.sin().atan2(turn.cos());
@@ -79,10 +79,10 @@ fn quaternions_are_unit_and_not_a_pure_yaw() {
 #[test]
 fn fusion_output_holds_for_ten_milliseconds() {
     let mut rig = Rig::new(Scenario::FreeSwing, 1);
-    rig.step(0.01, [1.0; 6]);
+    rig.step(0.01, &[1.0; 6]);
     let fused = rig.imu_quaternions();
-    rig.step(0.008, [1.0; 6]);
+    rig.step(0.008, &[1.0; 6]);
     assert_eq!(rig.imu_quaternions(), fused);
-    rig.step(0.002, [1.0; 6]);
+    rig.step(0.002, &[1.0; 6]);
     assert_ne!(rig.imu_quaternions(), fused);
 }

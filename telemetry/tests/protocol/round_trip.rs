@@ -1,7 +1,7 @@
 //! Nothing loses a bit.
 
 use proptest::prelude::*;
-use telemetry::{Decoder, Encoder, Message, Payload, Request};
+use telemetry::{Decoder, Encoder, Message, PROTOCOL_VERSION, Payload, Request};
 
 use crate::values::{longest_messages, longest_request, message, request};
 use crate::{decode, encode};
@@ -20,11 +20,11 @@ proptest! {
     }
 
     #[test]
-    fn any_body_is_refused_or_read_without_a_panic(topic in 0_u8..11, body in prop::collection::vec(any::<u8>(), 0..250)) {
-        if let Ok(message) = Message::read(topic, &body) {
+    fn any_body_is_refused_or_read_without_a_panic(version in 2_u8..=3, topic in 0_u8..12, body in prop::collection::vec(any::<u8>(), 0..250)) {
+        if let Ok(message) = Message::read(version, topic, &body) {
             prop_assert_eq!(message.topic(), topic);
         }
-        if let Ok(request) = Request::read(topic | 0x80, &body) {
+        if let Ok(request) = Request::read(PROTOCOL_VERSION, topic | 0x80, &body) {
             prop_assert_eq!(request.topic(), topic | 0x80);
         }
     }

@@ -1,5 +1,6 @@
 //! Messages with any values at all, and with those that take the most bytes.
 
+use heapless::Vec;
 use proptest::prelude::*;
 use proptest::sample::select;
 use telemetry::*;
@@ -22,16 +23,42 @@ pub fn message() -> impl Strategy<Value = Message> {
         uncertainty().prop_map(Message::Uncertainty),
         table_state().prop_map(Message::Table),
         chunk().prop_map(Message::TableData),
+        tare_report().prop_map(Message::Tare),
     ]
+}
+
+/// A list of any length up to its room.
+fn list<T: Clone + std::fmt::Debug, const N: usize>(of: impl Strategy<Value = T>) -> impl Strategy<Value = Vec<T, N>> {
+    prop::collection::vec(of, 0..=N).prop_map(|values| values.into_iter().collect())
+}
+
+/// A list of this length.
+fn exactly<T: Clone + std::fmt::Debug, const N: usize>(
+    length: usize,
+    of: impl Strategy<Value = T>,
+) -> impl Strategy<Value = Vec<T, N>> {
+    prop::collection::vec(of, length).prop_map(|values| values.into_iter().collect())
+}
+
+fn tare_report() -> impl Strategy<Value = TareReport> {
+    let angle = || prop::option::of((number!(u8), number!(i32)));
+    (number!(u32), angle(), angle()).prop_map(|(id, turned, bent)| TareReport { id, turned, bent })
 }
 
 pub fn request() -> impl Strategy<Value = Request> {
     let rates = prop::array::uniform4(number!(u16)).prop_map(|[sample, estimate, health, uncertainty]| {
         Command::Rates(Rates { sample, estimate, health, uncertainty })
     });
-    let pressures = (prop::array::uniform(number!(u32)), number!(u16))
+    let pressures = (list(number!(u32)), number!(u16))
         .prop_map(|(pressures_pa, valid_ms)| Command::SetPressures(SetPressures { pressures_pa, valid_ms }));
-    let plain = select(vec![Command::Ping, Command::Tare, Command::Arm, Command::Disarm, Command::Reboot]);
+    let plain = select(vec![
+        Command::Ping,
+        Command::Tare(TareMode::IfStill),
+        Command::Tare(TareMode::Force),
+        Command::Arm,
+        Command::Disarm,
+        Command::Reboot,
+    ]);
     let table = prop_oneof![
         prop::array::uniform3(number!(u32)).prop_map(|[image_bytes, source_bytes, crc]| {
             Command::TableBegin(TableAnnouncement { image_bytes, source_bytes, crc })
@@ -80,14 +107,22 @@ fn hello() -> impl Strategy<Value = Hello> {
     ]);
     let texts = (text(), text(), text(), prop::option::of(text()));
     let numbers = (number!(u8), number!(u32), number!(u32), number!(u32));
-    (texts, numbers, any::<[u8; 16]>(), reset).prop_map(
-        |((firmware, revision, arm, last_panic), (protocol, schema, table, boot), chip, reset)| Hello {
+    (texts, numbers, any::<[u8; 19]>(), reset).prop_map(
+        |(
+            (firmware, revision, arm, last_panic),
+            (protocol, schema, table, boot),
+            [segments, bend_sensors, regulators, chip @ ..],
+            reset,
+        )| Hello {
             protocol,
             schema,
             firmware,
             revision,
             arm,
             table,
+            segments,
+            bend_sensors,
+            regulators,
             chip,
             reset,
             boot,
@@ -96,10 +131,17 @@ fn hello() -> impl Strategy<Value = Hello> {
     )
 }
 
+/// Of any arm.
 pub fn sample() -> impl Strategy<Value = Sample> {
-    let bend = prop::array::uniform(prop::option::of(number!(u16)));
-    let imu = prop::array::uniform(prop::option::of(prop::array::uniform4(number!(i16))));
-    (number!(u32), number!(u64), number!(u8), bend, imu).prop_map(|(tick, time_us, tare_epoch, bend, imu)| Sample {
+    (0..=MAX_SEGMENTS).prop_flat_map(sample_of)
+}
+
+/// Of an arm of so many segments.
+pub fn sample_of(segments: usize) -> impl Strategy<Value = Sample> {
+    let bend = exactly(BEND_PER_SEGMENT * segments, prop::option::of(number!(u16)));
+    let imu = exactly(segments, prop::option::of(prop::array::uniform4(number!(i16))));
+    let time_us = number!(u64).prop_map(|time_us| time_us >> 16);
+    (number!(u32), time_us, number!(u8), bend, imu).prop_map(|(tick, time_us, tare_epoch, bend, imu)| Sample {
         tick,
         time_us,
         tare_epoch,
@@ -111,7 +153,7 @@ pub fn sample() -> impl Strategy<Value = Sample> {
 fn estimate() -> impl Strategy<Value = Estimate> {
     let segment = (number!(i32), prop::array::uniform2(number!(i32)));
     let segment = segment.prop_map(|(theta, end)| SegmentEstimate { theta, end });
-    let segments = prop::array::uniform(prop::option::of(segment));
+    let segments = list(prop::option::of(segment));
     (number!(u32), segments).prop_map(|(tick, segments)| Estimate { tick, segments })
 }
 
@@ -120,7 +162,7 @@ fn uncertainty() -> impl Strategy<Value = Uncertainty> {
     let segment = (prop::option::of(number!(i32)), end, number!(u8), any::<bool>()).prop_map(
         |(theta, end, contact_percent, in_contact)| SegmentUncertainty { theta, end, contact_percent, in_contact },
     );
-    (number!(u32), prop::array::uniform(segment)).prop_map(|(tick, segments)| Uncertainty { tick, segments })
+    (number!(u32), list(segment)).prop_map(|(tick, segments)| Uncertainty { tick, segments })
 }
 
 fn sensor_state() -> impl Strategy<Value = SensorState> {
@@ -132,6 +174,7 @@ fn sensor_state() -> impl Strategy<Value = SensorState> {
         SensorState::Inconsistent,
         SensorState::Timeout,
         SensorState::Intermittent,
+        SensorState::NotWired,
     ])
 }
 
@@ -141,9 +184,9 @@ fn actuation() -> impl Strategy<Value = Actuation> {
 
 fn health() -> impl Strategy<Value = Health> {
     let sensor = || (sensor_state(), number!(u16)).prop_map(|(state, missed)| SensorHealth { state, missed });
-    let sensors = (prop::array::uniform(sensor()), prop::array::uniform(sensor()));
+    let sensors = (list(sensor()), list(sensor()));
     let numbers = prop::array::uniform9(number!(u32));
-    let pressures = prop::array::uniform(number!(u32));
+    let pressures = list(number!(u32));
     (sensors, numbers, number!(u16), actuation(), pressures).prop_map(
         |((bend, imu), numbers, load_permille, actuation, pressures_pa)| {
             let [tick, max_estimate_latency_us, longest_imu_read_us, overruns, stale_scans, counts @ ..] = numbers;
@@ -175,7 +218,7 @@ fn event() -> impl Strategy<Value = Event> {
         actuation().prop_map(Event::Actuation),
         Just(Event::BusRecovery),
         number!(u32).prop_map(Event::Tare),
-        (number!(u32), any::<[bool; SEGMENTS]>()).prop_map(|(tick, touched)| Event::Contact(tick, touched)),
+        (number!(u32), number!(u8)).prop_map(|(tick, touched)| Event::Contact(tick, touched)),
     ]
 }
 
@@ -195,6 +238,9 @@ fn reply() -> impl Strategy<Value = Reply> {
         Refusal::TableOrder,
         Refusal::TableChecksum,
         Refusal::Flash,
+        Refusal::Moving,
+        Refusal::Regulators,
+        Refusal::TableWiring,
     ]);
     let outcome = prop_oneof![Just(RequestOutcome::Ack), refusal.prop_map(RequestOutcome::Nack)];
     (number!(u32), outcome).prop_map(|(id, outcome)| Reply { id, outcome })
@@ -205,33 +251,41 @@ pub fn ping(id: u32) -> Request {
     Request { id, command: Command::Ping }
 }
 
-/// Of each kind the message that takes the most bytes.
-pub fn longest_messages() -> [Message; 9] {
+/// Of each kind the message of the largest arm that takes the most bytes.
+pub fn longest_messages() -> [Message; 10] {
+    longest_messages_of(MAX_SEGMENTS, MAX_REGULATORS)
+}
+
+/// So many of the same value.
+pub fn many<T: Clone, const N: usize>(count: usize, value: T) -> Vec<T, N> {
+    std::iter::repeat_n(value, count).collect()
+}
+
+/// Of each kind the message of an arm of so many segments and regulators that takes the most bytes.
+pub fn longest_messages_of(segments: usize, regulators: usize) -> [Message; 10] {
+    let uncertain = SegmentUncertainty {
+        theta: Some(i32::MIN),
+        end: Some([i32::MIN; 3]),
+        contact_percent: u8::MAX,
+        in_contact: true,
+    };
     [
         Message::Hello(longest_hello()),
         Message::Sample(Sample {
             tick: u32::MAX,
-            time_us: u64::MAX,
+            time_us: u64::MAX >> 16,
             tare_epoch: u8::MAX,
-            bend: [Some(u16::MAX); BEND_SENSORS],
-            imu: [Some([i16::MIN; 4]); SEGMENTS],
+            bend: many(BEND_PER_SEGMENT * segments, Some(u16::MAX)),
+            imu: many(segments, Some([i16::MIN; 4])),
         }),
         Message::Estimate(Estimate {
             tick: u32::MAX,
-            segments: [Some(SegmentEstimate { theta: i32::MIN, end: [i32::MIN; 2] }); SEGMENTS],
+            segments: many(segments, Some(SegmentEstimate { theta: i32::MIN, end: [i32::MIN; 2] })),
         }),
-        Message::Health(longest_health()),
-        Message::Event(Event::Contact(u32::MAX, [true; SEGMENTS])),
+        Message::Health(longest_health(segments, regulators)),
+        Message::Event(Event::Contact(u32::MAX, u8::MAX)),
         Message::Reply(Reply { id: u32::MAX, outcome: RequestOutcome::Nack(Refusal::Busy) }),
-        Message::Uncertainty(Uncertainty {
-            tick: u32::MAX,
-            segments: [SegmentUncertainty {
-                theta: Some(i32::MIN),
-                end: Some([i32::MIN; 3]),
-                contact_percent: u8::MAX,
-                in_contact: true,
-            }; SEGMENTS],
-        }),
+        Message::Uncertainty(Uncertainty { tick: u32::MAX, segments: many(segments, uncertain) }),
         Message::Table(TableState {
             status: TableStatus::Unusable,
             generation: u32::MAX,
@@ -241,6 +295,7 @@ pub fn longest_messages() -> [Message; 9] {
             received_bytes: u32::MAX,
         }),
         Message::TableData(longest_chunk()),
+        Message::Tare(TareReport { id: u32::MAX, turned: Some((7, i32::MIN)), bent: Some((7, i32::MIN)) }),
     ]
 }
 
@@ -260,6 +315,9 @@ pub fn longest_hello() -> Hello {
         revision: full(),
         arm: full(),
         table: u32::MAX,
+        segments: u8::MAX,
+        bend_sensors: u8::MAX,
+        regulators: u8::MAX,
         chip: [u8::MAX; 16],
         reset: ResetCause::Pin,
         boot: u32::MAX,
@@ -267,12 +325,12 @@ pub fn longest_hello() -> Hello {
     }
 }
 
-fn longest_health() -> Health {
+fn longest_health(segments: usize, regulators: usize) -> Health {
     let sensor = SensorHealth { state: SensorState::Intermittent, missed: u16::MAX };
     Health {
         tick: u32::MAX,
-        bend: [sensor; BEND_SENSORS],
-        imu: [sensor; SEGMENTS],
+        bend: many(BEND_PER_SEGMENT * segments, sensor),
+        imu: many(segments, sensor),
         max_estimate_latency_us: u32::MAX,
         longest_imu_read_us: u32::MAX,
         load_permille: u16::MAX,
@@ -283,7 +341,7 @@ fn longest_health() -> Health {
         bus_recoveries: u32::MAX,
         saturations: u32::MAX,
         actuation: Actuation::Ramping,
-        pressures_pa: [u32::MAX; REGULATORS],
+        pressures_pa: many(regulators, u32::MAX),
     }
 }
 

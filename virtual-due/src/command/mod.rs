@@ -1,5 +1,7 @@
 //! The command line, and the run that it starts.
 
+mod arm_file;
+mod error;
 #[cfg(unix)]
 mod fault_injection;
 mod flash_file;
@@ -9,12 +11,13 @@ mod run;
 mod stdio;
 
 use clap::{Parser, Subcommand, ValueEnum};
+use error::Error;
 use flash_file::FlashFile;
 use rig_twin::Scenario;
 use run::Run;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use virtual_due::{ImageError, Machine, rig::WiredRig};
+use virtual_due::{Machine, rig::WiredRig};
 
 /// An emulated Arduino Due with the simulated arm on its pins.
 #[derive(Debug, Parser)]
@@ -45,6 +48,10 @@ struct Arguments {
     /// Seed of the arm's motion and the sensors' noise.
     #[arg(long, default_value_t = 1)]
     seed: u64,
+    /// Arm description or table of the simulated arm: its segments, their lengths, and the pins in `[board]`; without it the
+    /// reference arm in its reference wiring.
+    #[arg(long, value_name = "ARM.toml")]
+    arm: Option<PathBuf>,
     /// File of the chip's flash, 512 KiB, kept between runs; the firmware is written over it. Made if there is none.
     #[arg(long, value_name = "FILE")]
     flash: Option<PathBuf>,
@@ -79,47 +86,16 @@ enum Serial {
     Pty,
 }
 
-/// Reason why the firmware cannot be run.
-#[derive(Debug, thiserror::Error)]
-pub enum Error {
-    /// The firmware cannot be read.
-    #[error("{path}: {error}; build the firmware first, and give the path of its ELF file")]
-    Firmware {
-        /// The path as it was given.
-        path: String,
-        /// The system's error.
-        error: std::io::Error,
-    },
-    /// It is not a firmware for the Due.
-    #[error("{path}: {error}")]
-    Elf {
-        /// The path as it was given.
-        path: String,
-        /// The reason.
-        error: ImageError,
-    },
-    /// The file of the flash cannot be read or written.
-    #[error("{path}: {error}; --flash takes a file of 512 KiB, or the name of a new one")]
-    Flash {
-        /// The path as it was given.
-        path: String,
-        /// The system's error.
-        error: std::io::Error,
-    },
-    /// The serial port cannot be opened.
-    #[error("serial port: {0}")]
-    Serial(#[from] std::io::Error),
-}
-
 impl Cli {
     /// Executes the command.
     ///
     /// # Errors
     ///
-    /// [`Error`] if the firmware or the serial port cannot be opened.
+    /// [`Error`] if the firmware, the arm's file or the serial port cannot be opened.
     pub fn execute(self) -> Result<ExitCode, Error> {
         let Command::Run(arguments) = self.command;
-        let mut machine = machine(&arguments.firmware, WiredRig::new(arguments.scenario, arguments.seed))?;
+        let rig = arm_file::rig(arguments.arm.as_deref(), arguments.scenario, arguments.seed)?;
+        let mut machine = machine(&arguments.firmware, rig)?;
         let flash = arguments.flash.map(|path| {
             let shown = path.display().to_string();
             FlashFile::load(path, &mut machine).map_err(|error| Error::Flash { path: shown, error })
@@ -133,7 +109,7 @@ impl Cli {
                 let mut pty = pty::Pty::new()?;
                 eprintln!("serial port: {}", pty.path());
                 let injector = fault_injection::FaultInjector::new();
-                run.execute(&mut pty, |rig| injector.apply(&mut rig.faults))?;
+                run.execute(&mut pty, |rig| injector.apply(rig))?;
             }
         }
         Ok(run.summary())

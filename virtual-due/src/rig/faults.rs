@@ -1,14 +1,14 @@
 //! Faults of the rig that tests and users inject.
 
-use rig_twin::{BEND_SENSORS, SEGMENTS};
+use rig_twin::MAX_SEGMENTS;
 
 /// The present faults.
 #[derive(Debug, Clone, Default)]
 pub struct Faults {
-    /// Bend sensors 1a, 1b, … 6b.
-    pub bend: [Option<Rail>; BEND_SENSORS],
-    /// IMUs 1 … 6.
-    pub imus: [ImuFault; SEGMENTS],
+    /// Bend sensors 1a, 1b, 2a, …; those that the arm does not have stay without effect.
+    pub bend: [Option<Rail>; 2 * MAX_SEGMENTS],
+    /// IMUs of segments 1, 2, …; those that the arm does not have stay without effect.
+    pub imus: [ImuFault; MAX_SEGMENTS],
     /// The multiplexer.
     pub mux: Option<MuxFault>,
     /// Something holds SDA low.

@@ -1,21 +1,27 @@
-//! The reference rig on the Due's pins: the simulated arm with its bend sensors, IMUs and pressure regulators.
+//! The rig on the Due's pins: the simulated arm with its bend sensors, IMUs and pressure regulators.
 //!
-//! | what | where |
-//! |---|---|
-//! | bend sensors 1a, 1b, 2a, … 6b | A0 … A11: ADC channels 7 … 0, 10 … 13 |
-//! | TCA9548A, address 0x70 | TWI1: D20 SDA (PB12), D21 SCL (PB13); its RESET on D22 (PB26) |
-//! | IMU k, a BNO055 at 0x28 | channel k − 1 of the TCA9548A |
-//! | regulators of module 1, right and left | D6 (PC24, PWML7), D7 (PC23, PWML6) |
-//! | of module 2 | D8 (PC22, PWML5), D9 (PC21, PWML4) |
-//! | of module 3 | D34 (PC2, PWML0), D36 (PC4, PWML1) |
+//! | what | where | in the reference wiring |
+//! |---|---|---|
+//! | bend sensors | A0 … A11: ADC channels 7 … 0, 10 … 13 | 1a, 1b, 2a, … 6b |
+//! | TCA9548A, address 0x70 | TWI1: D20 SDA (PB12), D21 SCL (PB13); its RESET on D22 (PB26) | |
+//! | IMUs, BNO055 units | its channels 0 … 7, at 0x28 or 0x29 | IMU k at 0x28 of channel k − 1 |
+//! | regulators | D6 (PC24, PWML7), D7 (PC23, PWML6) | module 1, right and left |
+//! | | D8 (PC22, PWML5), D9 (PC21, PWML4) | module 2 |
+//! | | D34 (PC2, PWML0), D36 (PC4, PWML1) | module 3 |
+//! | | D38 (PC6, PWML2), D40 (PC8, PWML3) | |
 //!
-//! A regulator gives 280 kPa at full duty. Its pin counts as 0 or 1 where PIO drives it, and vents where nothing does. As
-//! long as no regulator pin was ever given to the PWM or driven, the scenario's own program moves the arm, as a bench supply
+//! A [`Wiring`] assigns the pins. An analog pin without a bend sensor is tied to GND, and reads 0. Regulator 1 of the wiring
+//! bends module 1 to the right, regulator 2 to the left, and so on; a module without regulators stays vented, and regulators
+//! beyond the arm's modules move nothing.
+//!
+//! A regulator gives its full scale at full duty, but no more than the 280 kPa of the supply. Its pin counts as 0 or 1 where PIO
+//! drives it, and vents where nothing does. As long as no regulator pin was ever given to the PWM or driven, the scenario's own program moves the arm, as a bench supply
 //! would, so that a firmware that only reads sensors has a moving arm. From then on the pins alone count.
 
 mod arm;
 mod bno055;
 mod faults;
+mod pin_map;
 mod pins;
 mod sensors;
 mod serial;
@@ -23,8 +29,10 @@ mod tca9548a;
 mod wires;
 
 use arm::DrivenArm;
+use board_table::Wiring;
 pub use faults::{Faults, HeldLow, ImuFault, MuxFault, Rail};
-use rig_twin::{EndPose, REGULATORS, SEGMENTS, Scenario};
+use pin_map::Pins;
+use rig_twin::{EndPose, Layout, PerRegulator, PerSegment, Scenario, Setup};
 use sam3x_models::model::Cycles;
 use sensors::Sensors;
 use serial::Port;
@@ -49,24 +57,35 @@ pub struct WiredRig {
     /// The present faults.
     pub faults: Faults,
     now: Cycles,
+    wiring: Wiring,
+    pins: Pins,
     arm: DrivenArm,
     sensors: Sensors,
     wires: Wires,
     ports: [Port; PORTS],
     no_devices: NoDevices,
     scans: u64,
-    truth_at_scan: [EndPose; SEGMENTS],
+    truth_at_scan: PerSegment<EndPose>,
 }
 
 impl WiredRig {
-    /// The rig at rest at time 0, in a session of `seed`.
+    /// The reference arm in its reference wiring, at rest at time 0, in a session of `seed`.
     pub fn new(scenario: Scenario, seed: u64) -> Self {
-        let arm = DrivenArm::new(scenario, seed);
-        let sensors = Sensors::new(arm.twin().imu_quaternions());
+        let setup = Setup::new(scenario, seed);
+        Self::of(&setup, &Wiring::reference(setup.layout.segments().len()))
+    }
+
+    /// The arm of a session in this wiring, at time 0. A sensor has to be on the arm and wired.
+    pub fn of(setup: &Setup, wiring: &Wiring) -> Self {
+        let wiring = of_arm(wiring, &setup.layout);
+        let arm = DrivenArm::new(setup, &wiring);
+        let sensors = Sensors::new(&wiring, arm.twin().imu_quaternions());
         let truth_at_scan = arm.twin().truth();
         Self {
             faults: Faults::default(),
             now: 0,
+            pins: Pins::new(&wiring),
+            wiring,
             arm,
             sensors,
             wires: Wires::default(),
@@ -85,17 +104,18 @@ impl WiredRig {
     }
 
     /// True world pose of each segment's end, at the last multiple of 2 ms before the rig's time.
-    pub fn truth(&self) -> [EndPose; SEGMENTS] {
+    pub fn truth(&self) -> PerSegment<EndPose> {
         self.arm.twin().truth()
     }
 
-    /// Number of conversions of bend sensor 1a, and the truth at the last of them, with which a sample's estimate is compared.
-    pub fn last_scan(&self) -> (u64, [EndPose; SEGMENTS]) {
-        (self.scans, self.truth_at_scan)
+    /// Number of conversions of the first wired bend sensor (of A0 where there is none), and the truth at the last of them,
+    /// with which a sample's estimate is compared.
+    pub fn last_scan(&self) -> (u64, PerSegment<EndPose>) {
+        (self.scans, self.truth_at_scan.clone())
     }
 
-    /// Set-points of the regulators, Pa: module 1 right, left, module 2 right, left, module 3 right, left.
-    pub fn set_points_pa(&self) -> [f64; REGULATORS] {
+    /// Set-points of the wired regulators, Pa, in the wiring's order: module 1 right, left, module 2 right, left, …
+    pub fn set_points_pa(&self) -> PerRegulator<f64> {
         self.arm.set_points_pa()
     }
 
@@ -104,9 +124,14 @@ impl WiredRig {
         self.arm.twin()
     }
 
-    /// Resets IMU `imu`, counted from 0, to its CONFIG mode at the rig's time, as a dip of its supply does.
+    /// Resets the IMU of segment `imu`, counted from 0, to its CONFIG mode at the rig's time, as a dip of its supply does.
     pub fn brown_out(&mut self, imu: usize) {
         self.sensors.brown_out(imu, self.now);
+    }
+
+    /// The wiring, without the sensors that the arm does not have.
+    pub fn wiring(&self) -> &Wiring {
+        &self.wiring
     }
 
     /// Sends bytes to the receiver of a serial port, 0 for UART and 1 … 4 for USART0 … USART3: one after the other, at its
@@ -121,5 +146,20 @@ impl WiredRig {
     }
 }
 
+/// A wiring without the sensors that the arm does not have.
+fn of_arm(wiring: &Wiring, arm: &Layout) -> Wiring {
+    let mut wiring = wiring.clone();
+    wiring.segments.truncate(arm.segments().len());
+    for (wired, segment) in wiring.segments.iter_mut().zip(arm.segments()) {
+        for (pin, has_sensor) in wired.bend.iter_mut().zip(segment.bend) {
+            *pin = pin.filter(|_| has_sensor);
+        }
+        wired.imu = wired.imu.filter(|_| segment.imu);
+    }
+    wiring
+}
+
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod wiring_tests;

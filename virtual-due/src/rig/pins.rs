@@ -2,15 +2,9 @@
 
 use super::WiredRig;
 use super::faults::{HeldLow, Rail};
-use rig_twin::REGULATORS;
 use sam3x_models::model::{Cycles, I2c, Pin, Reception, World};
 
-/// The ADC channel of each bend sensor.
-const BEND_CHANNELS: [u8; 12] = [7, 6, 5, 4, 3, 2, 1, 0, 10, 11, 12, 13];
-/// PWM channel and line of PIOC of each regulator.
-const REGULATOR_PINS: [(u8, u8); REGULATORS] = [(7, 24), (6, 23), (5, 22), (4, 21), (0, 2), (1, 4)];
 const PIOB: u8 = 1;
-pub const PIOC: u8 = 2;
 pub const SDA: Pin = Pin { port: PIOB, line: 12 };
 pub const SCL: Pin = Pin { port: PIOB, line: 13 };
 pub const MUX_RESET: Pin = Pin { port: PIOB, line: 26 };
@@ -18,12 +12,12 @@ pub const MUX_RESET: Pin = Pin { port: PIOB, line: 26 };
 impl World for WiredRig {
     fn adc_counts(&mut self, channel: u8, now: Cycles) -> u16 {
         self.advance_to(now);
-        let Some(sensor) = BEND_CHANNELS.iter().position(|wired| *wired == channel) else { return 0 };
-        let counts = self.arm.convert(sensor);
-        if sensor == 0 {
+        if channel == self.pins.scan_channel {
             self.scans += 1;
             self.truth_at_scan = self.truth();
         }
+        let Some(sensor) = self.pins.sensor(channel) else { return 0 };
+        let Some(counts) = self.arm.convert(sensor) else { return 0 };
         match self.faults.bend[sensor] {
             None => counts,
             Some(Rail::Low) => 0,
@@ -37,20 +31,19 @@ impl World for WiredRig {
 
     fn pwm(&mut self, channel: u8, duty: Option<(u32, u32)>, now: Cycles) {
         self.advance_to(now);
-        if let Some(regulator) = REGULATOR_PINS.iter().position(|(wired, _)| *wired == channel) {
+        if let Some(regulator) = self.pins.pulsed(channel) {
             self.arm.pulse(regulator, duty);
         }
     }
 
     fn drive(&mut self, pin: Pin, level: Option<bool>, now: Cycles) {
         self.advance_to(now);
-        let regulator = REGULATOR_PINS.iter().position(|(_, line)| pin == Pin { port: PIOC, line: *line });
         match pin {
             SDA => self.drive_sda(level),
             SCL => self.drive_scl(level, now),
             MUX_RESET => self.drive_mux_reset(level),
             _ => {
-                if let Some(regulator) = regulator {
+                if let Some(regulator) = self.pins.driven(pin) {
                     self.arm.drive(regulator, level);
                 }
             }
@@ -80,7 +73,7 @@ impl I2c for WiredRig {
     fn start(&mut self, address: u8, read: bool, now: Cycles) -> bool {
         self.advance_to(now);
         let orientations = self.arm.twin().imu_quaternions();
-        self.sensors.start(address, read, now, orientations, &self.faults)
+        self.sensors.start(address, read, now, &orientations, &self.faults)
     }
 
     fn write(&mut self, byte: u8, now: Cycles) -> bool {

@@ -3,47 +3,80 @@
 use super::bno055::Bno055;
 use super::faults::{Faults, ImuFault};
 use super::tca9548a::Tca9548a;
-use rig_twin::SEGMENTS;
+use board_table::{ImuAddress, Wiring};
+use rig_twin::PerSegment;
 use sam3x_models::model::Cycles;
 
 /// The devices, and those that the master has addressed.
 #[derive(Debug, Clone)]
 pub struct Sensors {
     pub mux: Tca9548a,
-    imus: [Bno055; SEGMENTS],
-    powered: [bool; SEGMENTS],
-    /// The orientations that frozen units keep showing.
-    last_orientations: [[i16; 4]; SEGMENTS],
+    /// IMU of each segment that has one.
+    units: PerSegment<Option<Unit>>,
     mux_addressed: bool,
-    imus_addressed: [bool; SEGMENTS],
+}
+
+/// One IMU behind the multiplexer.
+#[derive(Debug, Clone)]
+struct Unit {
+    place: ImuAddress,
+    imu: Bno055,
+    powered: bool,
+    /// The orientation that a frozen unit keeps showing.
+    last_orientation: [i16; 4],
+    addressed: bool,
+}
+
+impl Unit {
+    fn apply_power_fault(&mut self, fault: ImuFault, now: Cycles) {
+        let has_power = fault != ImuFault::Unplugged;
+        if has_power && !self.powered {
+            self.imu = Bno055::powered(now);
+        }
+        self.powered = has_power;
+    }
+
+    /// Handles an address on the bus, with these channels connected.
+    fn start(&mut self, (address, read): (u8, bool), connected: u8, orientation: [i16; 4], now: Cycles) {
+        let is_called = address == self.place.address && connected >> self.place.channel & 1 == 1;
+        self.addressed = is_called && self.powered && self.imu.answers(now);
+        if self.addressed {
+            self.last_orientation = orientation;
+            self.imu.start(read, orientation, now);
+        }
+    }
 }
 
 impl Sensors {
     /// All powered at time 0.
-    pub fn new(orientations: [[i16; 4]; SEGMENTS]) -> Self {
-        Self {
-            mux: Tca9548a::default(),
-            imus: std::array::from_fn(|_| Bno055::powered(0)),
-            powered: [true; SEGMENTS],
-            last_orientations: orientations,
-            mux_addressed: false,
-            imus_addressed: [false; SEGMENTS],
-        }
+    pub fn new(wiring: &Wiring, orientations: PerSegment<Option<[i16; 4]>>) -> Self {
+        let unit = |(segment, orientation): (usize, Option<[i16; 4]>)| {
+            Some(Unit {
+                place: wiring.segments.get(segment)?.imu?,
+                imu: Bno055::powered(0),
+                powered: true,
+                last_orientation: orientation?,
+                addressed: false,
+            })
+        };
+        let units = orientations.into_iter().enumerate().map(unit).collect();
+        Self { mux: Tca9548a::default(), units, mux_addressed: false }
     }
 
     /// Switches the units' power according to the faults.
     pub fn apply_power_faults(&mut self, faults: &Faults, now: Cycles) {
-        for ((imu, powered), fault) in self.imus.iter_mut().zip(&mut self.powered).zip(&faults.imus) {
-            let has_power = *fault != ImuFault::Unplugged;
-            if has_power && !*powered {
-                *imu = Bno055::powered(now);
+        for (unit, fault) in self.units.iter_mut().zip(&faults.imus) {
+            if let Some(unit) = unit {
+                unit.apply_power_fault(*fault, now);
             }
-            *powered = has_power;
         }
     }
 
-    pub fn brown_out(&mut self, imu: usize, now: Cycles) {
-        self.imus[imu].brown_out(now);
+    /// Resets the IMU of a segment, if it has one.
+    pub fn brown_out(&mut self, segment: usize, now: Cycles) {
+        if let Some(Some(unit)) = self.units.get_mut(segment) {
+            unit.imu.brown_out(now);
+        }
     }
 
     /// Handles a start condition and an address. All units on connected channels receive it: their open drains make a wired
@@ -53,27 +86,24 @@ impl Sensors {
         address: u8,
         read: bool,
         now: Cycles,
-        orientations: [[i16; 4]; SEGMENTS],
+        orientations: &[Option<[i16; 4]>],
         faults: &Faults,
     ) -> bool {
         self.mux_addressed = address == Tca9548a::ADDRESS && self.mux.answers(faults.mux);
-        for (index, imu) in self.imus.iter_mut().enumerate() {
-            let is_called = address == Bno055::ADDRESS && self.mux.connected() & (1 << index) != 0;
-            let addressed = is_called && self.powered[index] && imu.answers(now);
-            self.imus_addressed[index] = addressed;
-            if addressed {
-                if faults.imus[index] != ImuFault::Frozen {
-                    self.last_orientations[index] = orientations[index];
-                }
-                imu.start(read, self.last_orientations[index], now);
+        let connected = self.mux.connected();
+        for ((unit, orientation), fault) in self.units.iter_mut().zip(orientations).zip(&faults.imus) {
+            if let Some(unit) = unit {
+                let is_frozen = *fault == ImuFault::Frozen;
+                let orientation = orientation.filter(|_| !is_frozen).unwrap_or(unit.last_orientation);
+                unit.start((address, read), connected, orientation, now);
             }
         }
-        self.mux_addressed || self.imus_addressed.contains(&true)
+        self.mux_addressed || self.addressed().next().is_some()
     }
 
     /// The addressed units.
     fn addressed(&mut self) -> impl Iterator<Item = &mut Bno055> {
-        self.imus.iter_mut().zip(&self.imus_addressed).filter(|(_, addressed)| **addressed).map(|(imu, _)| imu)
+        self.units.iter_mut().flatten().filter(|unit| unit.addressed).map(|unit| &mut unit.imu)
     }
 
     /// Writes a byte to the addressed devices; true if one acknowledged.
@@ -98,7 +128,7 @@ impl Sensors {
     /// A stop condition.
     pub fn stop(&mut self) {
         self.mux_addressed = false;
-        self.imus_addressed = [false; SEGMENTS];
+        self.units.iter_mut().flatten().for_each(|unit| unit.addressed = false);
         self.mux.stop();
     }
 

@@ -40,7 +40,7 @@ fn analog_write_of_255_on_pin_6_gives_the_first_regulator_full_pressure() {
     );
     board.run_until(MILLISECOND);
     assert!(board.sleeps());
-    let kilopascals = board.world().set_points_pa().map(|pa| (pa / 1000.0).round() as u32);
+    let kilopascals = board.world().set_points_pa().iter().map(|pa| (pa / 1000.0).round() as u32).collect::<Vec<_>>();
     assert_eq!(kilopascals, [280, 0, 0, 0, 0, 0]);
     assert_eq!(board.reports(), Vec::<String>::new());
 }

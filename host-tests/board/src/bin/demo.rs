@@ -5,9 +5,9 @@ use std::error::Error;
 use std::fs::File;
 use std::io::BufWriter;
 
-use board_tests::{Board, View, replay};
+use board_tests::{Board, View, replay, table};
 use proprio_simulation::{ImuColumns, Recorded, SessionWriter};
-use rig_twin::{MotionProgram, Scenario};
+use rig_twin::{Layout, MotionProgram, Scenario};
 use telemetry::{Command, RequestOutcome};
 use virtual_due::WiredRig;
 
@@ -33,14 +33,14 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     let start_s = board.machine.seconds();
     for _ in 0..seconds * 1000 / LOOK_MS {
-        board.set_pressures(program.duties(board.machine.seconds() - start_s));
+        board.set_pressures(&program.duties(board.machine.seconds() - start_s));
         board.run_ms(LOOK_MS);
         view.show(&board);
     }
     view.finish();
 
     record(&board, &path)?;
-    let expected = replay(board.samples());
+    let expected = replay(&table(), board.samples());
     let equal = board.estimates().zip(&expected).filter(|(found, expected)| **found == expected.estimate).count();
     println!(
         "{equal} of {} estimates of the board are, bit for bit, the host's of the same samples",
@@ -51,14 +51,15 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 /// Writes the stream since the first tare as a session, with the truth in further columns.
 fn record(board: &Board, path: &str) -> Result<(), Box<dyn Error>> {
-    let mut session = SessionWriter::new(BufWriter::new(File::create(path)?), ImuColumns::Quaternion)?;
+    let file = BufWriter::new(File::create(path)?);
+    let mut session = SessionWriter::new(file, &Layout::default(), ImuColumns::Quaternion)?;
     for sample in board.samples().filter(|sample| sample.tare_epoch > 0) {
         let Some(truth) = board.truths().get(sample.tick as usize) else { continue };
         session.write(&Recorded {
             time_us: sample.time_us,
-            counts: sample.bend,
-            quaternions: sample.imu,
-            truth: *truth,
+            counts: sample.bend.iter().copied().collect(),
+            quaternions: sample.imu.iter().copied().collect(),
+            truth: truth.clone(),
         })?;
     }
     Ok(())

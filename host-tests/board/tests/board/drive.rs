@@ -23,9 +23,9 @@ fn start(folder: &Path, terminal: &Terminal, arguments: &[&str]) -> Running {
 }
 
 /// Lets the board run until the drive has ended; the set-points of every slice go to `see`.
-fn run(terminal: &mut Terminal, child: &mut Child, mut see: impl FnMut([f64; 6])) {
+fn run(terminal: &mut Terminal, child: &mut Child, mut see: impl FnMut(&[f64])) {
     terminal.run_until(|machine| {
-        see(machine.world().set_points_pa());
+        see(&machine.world().set_points_pa());
         child.try_wait().expect("its state is readable").is_some()
     });
 }
@@ -57,13 +57,13 @@ fn a_profile_is_followed_and_recorded_and_ends_vented() {
     let mut terminal = Terminal::new();
     let mut drive =
         start(&folder, &terminal, &["profile.csv", "--ramp", "150", "-o", "drive.mcap", "--table", &table()]);
-    let (mut highest, mut before, mut longest_step) = ([0.0; 6], [0.0; 6], 0.0_f64);
+    let (mut highest, mut before, mut longest_step) = ([0.0; 6], vec![0.0; 6], 0.0_f64);
     run(&mut terminal, &mut drive.0, |set_points| {
         for i in 0..6 {
             highest[i] = f64::max(highest[i], set_points[i]);
             longest_step = longest_step.max((set_points[i] - before[i]).abs());
         }
-        before = set_points;
+        before = set_points.to_vec();
     });
     assert!(is_vented(&terminal));
     let (code, messages) = ended(drive);

@@ -22,7 +22,7 @@ fn ready() -> Board {
 fn the_watchdog_bites_a_stuck_task_and_the_arm_is_vented() {
     let mut board = ready();
     assert_eq!(board.request(Command::Arm), RequestOutcome::Ack);
-    let pressures = SetPressures { pressures_pa: [100_000; 6], valid_ms: 1000 };
+    let pressures = SetPressures { pressures_pa: [100_000; 6].into_iter().collect(), valid_ms: 1000 };
     assert_eq!(board.request(Command::SetPressures(pressures)), RequestOutcome::Ack);
     assert!(board.machine.poke_core(NVIC_ICER0, 1 << TC0), "the tick is stuck");
     board.run_ms(250);

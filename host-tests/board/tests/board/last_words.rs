@@ -9,7 +9,9 @@ use rig_twin::Scenario;
 use telemetry::{Command, Hello, Refusal, RequestOutcome, ResetCause, SetPressures};
 use virtual_due::{CYCLES_PER_SECOND, Cycles, WiredRig};
 
-const PRESSURES: Command = Command::SetPressures(SetPressures { pressures_pa: [100_000; 6], valid_ms: 1000 });
+fn pressures() -> Command {
+    Command::SetPressures(SetPressures { pressures_pa: [100_000; 6].into_iter().collect(), valid_ms: 1000 })
+}
 
 /// Time between two looks at a crashing board: shorter than writing the last words takes.
 const STEP: Cycles = CYCLES_PER_SECOND / 200_000;
@@ -31,7 +33,7 @@ fn under_pressure() -> Board {
     let mut board = Board::new(WiredRig::new(Scenario::FreeSwing, 1));
     board.run_ms(1500);
     assert_eq!(board.request(Command::Arm), RequestOutcome::Ack);
-    assert_eq!(board.request(PRESSURES), RequestOutcome::Ack);
+    assert_eq!(board.request(pressures()), RequestOutcome::Ack);
     assert!(!board.is_vented());
     board
 }
@@ -133,9 +135,9 @@ fn the_arm_moves_after_a_crash_only_when_armed_again() {
     let mut board = under_pressure();
     break_the_tick(&mut board, &UNDEFINED);
     hello_after(&mut board);
-    assert_eq!(board.request(PRESSURES), RequestOutcome::Nack(Refusal::Disarmed));
+    assert_eq!(board.request(pressures()), RequestOutcome::Nack(Refusal::Disarmed));
     assert_eq!(board.request(Command::Arm), RequestOutcome::Ack);
-    assert_eq!(board.request(PRESSURES), RequestOutcome::Ack);
+    assert_eq!(board.request(pressures()), RequestOutcome::Ack);
     assert!(!board.is_vented());
 }
 
@@ -156,7 +158,7 @@ fn three_crashes_in_a_minute_leave_the_arm_vented_and_the_telemetry_alive() {
         break_the_tick(&mut board, &UNDEFINED);
         assert_eq!(hello_after(&mut board).boot, crashes + 1);
         assert_eq!(board.request(Command::Arm), RequestOutcome::Ack);
-        assert_eq!(board.request(PRESSURES), RequestOutcome::Ack);
+        assert_eq!(board.request(pressures()), RequestOutcome::Ack);
         assert_eq!(board.is_vented(), crashes == 3, "after {crashes} crashes");
     }
     let counts = |board: &Board| [board.samples().count(), board.estimates().count(), board.healths().count()];

@@ -1,5 +1,6 @@
 //! Behaviour of the firmware that users rely on, tested on the emulated board.
 
+mod arms;
 mod boot;
 #[cfg(unix)]
 mod drive;
@@ -21,6 +22,7 @@ mod replay;
 mod requests;
 mod sensors;
 mod table;
+mod tare;
 #[cfg(unix)]
 mod terminal;
 #[cfg(unix)]

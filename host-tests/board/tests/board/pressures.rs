@@ -7,7 +7,11 @@ use telemetry::{Actuation, Command, Event, Refusal, RequestOutcome, SetPressures
 use virtual_due::WiredRig;
 
 /// The right side of all modules at 100 kPa.
-const RIGHT: SetPressures = SetPressures { pressures_pa: [100_000, 0, 100_000, 0, 100_000, 0], valid_ms: 200 };
+const RIGHT_PA: [u32; 6] = [100_000, 0, 100_000, 0, 100_000, 0];
+
+fn right() -> Command {
+    Command::SetPressures(SetPressures { pressures_pa: RIGHT_PA.into_iter().collect(), valid_ms: 200 })
+}
 
 fn ready() -> Board {
     let mut board = Board::new(WiredRig::new(Scenario::FreeSwing, 1));
@@ -23,7 +27,7 @@ fn a_board_comes_up_vented() {
 #[test]
 fn pressures_move_only_when_armed() {
     let mut board = ready();
-    assert_eq!(board.request(Command::SetPressures(RIGHT)), RequestOutcome::Nack(Refusal::Disarmed));
+    assert_eq!(board.request(right()), RequestOutcome::Nack(Refusal::Disarmed));
     assert!(board.is_vented());
 }
 
@@ -31,8 +35,8 @@ fn pressures_move_only_when_armed() {
 fn set_pressures_reach_the_regulators() {
     let mut board = ready();
     assert_eq!(board.request(Command::Arm), RequestOutcome::Ack);
-    assert_eq!(board.request(Command::SetPressures(RIGHT)), RequestOutcome::Ack);
-    for (commanded, requested) in board.machine.world().set_points_pa().into_iter().zip(RIGHT.pressures_pa) {
+    assert_eq!(board.request(right()), RequestOutcome::Ack);
+    for (commanded, requested) in board.machine.world().set_points_pa().into_iter().zip(RIGHT_PA) {
         // A step of the PWM is 67 Pa.
         assert!((commanded - f64::from(requested)).abs() <= 67.0, "{commanded} Pa of {requested}");
     }
@@ -43,7 +47,7 @@ fn the_arm_moves_and_the_estimate_follows() {
     let mut board = ready();
     assert_eq!(board.request(Command::Arm), RequestOutcome::Ack);
     for _ in 0..30 {
-        assert_eq!(board.request(Command::SetPressures(RIGHT)), RequestOutcome::Ack);
+        assert_eq!(board.request(right()), RequestOutcome::Ack);
     }
     let truth = board.machine.world().truth();
     let tip = truth[5];
@@ -58,7 +62,7 @@ fn the_arm_moves_and_the_estimate_follows() {
 fn silence_vents_the_arm_within_one_and_a_half_seconds() {
     let mut board = ready();
     assert_eq!(board.request(Command::Arm), RequestOutcome::Ack);
-    board.send(Command::SetPressures(RIGHT));
+    board.send(right());
     board.run_ms(1500);
     assert!(board.is_vented());
     let states: Vec<_> = board.events().filter(|event| matches!(event, Event::Actuation(_))).collect();
@@ -70,9 +74,9 @@ fn silence_vents_the_arm_within_one_and_a_half_seconds() {
 fn vented_pressures_stay_until_armed_again() {
     let mut board = ready();
     assert_eq!(board.request(Command::Arm), RequestOutcome::Ack);
-    board.send(Command::SetPressures(RIGHT));
+    board.send(right());
     board.run_ms(1600);
-    assert_eq!(board.request(Command::SetPressures(RIGHT)), RequestOutcome::Nack(Refusal::Disarmed));
+    assert_eq!(board.request(right()), RequestOutcome::Nack(Refusal::Disarmed));
     assert!(board.is_vented());
 }
 
@@ -80,7 +84,7 @@ fn vented_pressures_stay_until_armed_again() {
 fn disarm_vents_at_once() {
     let mut board = ready();
     assert_eq!(board.request(Command::Arm), RequestOutcome::Ack);
-    assert_eq!(board.request(Command::SetPressures(RIGHT)), RequestOutcome::Ack);
+    assert_eq!(board.request(right()), RequestOutcome::Ack);
     board.send(Command::Disarm);
     board.run_ms(30);
     assert!(board.is_vented());

@@ -2,7 +2,7 @@
 
 use board_tests::{Board, UART};
 use rig_twin::Scenario;
-use telemetry::{Command, Message, Rates, Refusal, Request, RequestOutcome, ResetCause, SetPressures};
+use telemetry::{Command, Message, Rates, Refusal, Request, RequestOutcome, ResetCause, SetPressures, TareMode};
 use virtual_due::WiredRig;
 
 fn ready() -> Board {
@@ -37,7 +37,7 @@ fn rates_slow_the_stream_down() {
 fn a_repeated_request_acts_once_and_is_answered_again() {
     let mut board = ready();
     let tares = board.samples().next_back().expect("samples come").tare_epoch;
-    let request = Request { id: 77, command: Command::Tare };
+    let request = Request { id: 77, command: Command::Tare(TareMode::Force) };
     for _ in 0..3 {
         board.send_again(&request);
         board.run_ms(50);
@@ -51,7 +51,7 @@ fn a_repeated_request_acts_once_and_is_answered_again() {
 fn a_pressure_over_the_range_is_refused() {
     let mut board = ready();
     assert_eq!(board.request(Command::Arm), RequestOutcome::Ack);
-    let over = SetPressures { pressures_pa: [0, 0, 0, 280_001, 0, 0], valid_ms: 100 };
+    let over = SetPressures { pressures_pa: [0, 0, 0, 280_001, 0, 0].into_iter().collect(), valid_ms: 100 };
     assert_eq!(board.request(Command::SetPressures(over)), RequestOutcome::Nack(Refusal::OverRange));
 }
 

@@ -4,9 +4,12 @@ use std::collections::BTreeSet;
 
 use board_tests::Board;
 use rig_twin::Scenario;
-use telemetry::{BEND_SENSORS, SEGMENTS, SensorState};
+use telemetry::SensorState;
 use virtual_due::WiredRig;
 use virtual_due::rig::{ImuFault, Rail};
+
+const SEGMENTS: usize = 6;
+const BEND_SENSORS: usize = 12;
 
 /// A board whose sensors have all come up.
 fn ready() -> Board {
@@ -28,7 +31,7 @@ fn twelve_bend_sensors_and_six_imus_arrive_with_values_of_their_own() {
 fn the_counts_of_each_bend_sensor_are_those_of_its_strip() {
     let board = ready();
     // The arm rests, so that the twin's strips read the same now as in the last tick, but for noise.
-    let strips = board.machine.world().twin().clone().adc_counts();
+    let strips = board.machine.world().twin().clone().adc_counts().into_iter().flatten();
     let sample = board.samples().next_back().expect("samples come");
     for (sensor, (counts, strip)) in sample.bend.iter().zip(strips).enumerate() {
         let counts = counts.expect("every strip is read");
@@ -39,7 +42,7 @@ fn the_counts_of_each_bend_sensor_are_those_of_its_strip() {
 #[test]
 fn the_quaternion_of_each_imu_is_that_of_its_unit() {
     let board = ready();
-    let units = board.machine.world().twin().imu_quaternions();
+    let units = board.machine.world().twin().imu_quaternions().into_iter().flatten();
     let sample = board.samples().next_back().expect("samples come");
     for (imu, (read, unit)) in sample.imu.iter().zip(units).enumerate() {
         let read = read.expect("every unit is read");

@@ -62,8 +62,10 @@ impl Tables {
 /// Writes the sweep of an arm of the twin.
 pub fn sweep(arm_seed: u64, folder: &Path) -> Result<PathBuf, Problem> {
     let path = folder.join(format!("sweep-{arm_seed}.csv"));
-    let mut writer = SessionWriter::new(OutputFile::create(&path, &[], Existing::Replace)?, ImuColumns::Quaternion)?;
-    for sample in Simulation::of(&setup(arm_seed, Scenario::Sweep, Motion::Swings), SESSION_S, RATE_HZ)? {
+    let setup = setup(arm_seed, Scenario::Sweep, Motion::Swings);
+    let file = OutputFile::create(&path, &[], Existing::Replace)?;
+    let mut writer = SessionWriter::new(file, &setup.layout, ImuColumns::Quaternion)?;
+    for sample in Simulation::of(&setup, SESSION_S, RATE_HZ)? {
         writer.write(&sample)?;
     }
     writer.into_inner().finish()?;
@@ -72,7 +74,7 @@ pub fn sweep(arm_seed: u64, folder: &Path) -> Result<PathBuf, Problem> {
 
 /// Set-up of a session of an arm with this motion.
 pub fn setup(arm_seed: u64, scenario: Scenario, motion: Motion) -> Setup {
-    Setup { arm_seed, scenario, motion, seed: session_seed(arm_seed, scenario, motion) }
+    Setup { arm_seed, motion, ..Setup::new(scenario, session_seed(arm_seed, scenario, motion)) }
 }
 
 /// Seed of a session: no two of an arm share one.

@@ -38,7 +38,7 @@ impl RealDrift {
             let (name, scenario) = SCENARIOS[*k];
             let session = TwinSession::new(&setup(*seed, scenario, Motion::Swings), SESSION_S, RATE_HZ)?;
             let figures = |drifts: &[HeadingDrift; SEGMENTS]| {
-                let samples = session.samples.iter().map(|sample| sample.with_drift(drifts)).collect();
+                let samples = session.samples.iter().map(|sample| sample.clone().with_drift(drifts)).collect();
                 Evaluation::of_twin(family.tables(*seed)?, &TwinSession { samples, ..session.clone() })
                     .map_err(Problem::from)
             };

@@ -106,7 +106,7 @@ impl Rig {
         let (mut false_alarms, mut free_s) = (0, 0.0);
         let mut figures = |session: &str| -> Result<Figures, Problem> {
             let (rate_hz, rows) = rows(&unpacked(path, session, folder)?, &tables)?;
-            let evaluation = Evaluation::of(&tables, rate_hz, || rows.iter().copied())?;
+            let evaluation = Evaluation::of(&tables, rate_hz, || rows.iter().cloned())?;
             if FREE.contains(&session) {
                 false_alarms += alarms(&evaluation.contact);
                 free_s += rows.len() as f64 / rate_hz;

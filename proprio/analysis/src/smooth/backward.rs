@@ -75,7 +75,7 @@ impl<'t, S: FusedOps> SmoothingPass<'t, S> {
             }
             self.steps.extend(self.covariance.apply(operation));
         }
-        self.rows.push(BufferedRow { row: *row, outcome, absence, output, end: self.steps.len() });
+        self.rows.push(BufferedRow { row: row.clone(), outcome, absence, output, end: self.steps.len() });
         if self.rows.len() == BLOCK_ROWS { self.end_block(visit) } else { Ok(()) }
     }
 

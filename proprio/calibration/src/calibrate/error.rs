@@ -108,6 +108,12 @@ pub enum CalibrationError {
         /// The segment, from 1.
         segment: usize,
     },
+    /// An IMU whose headings are radians in a column of degrees.
+    #[error("imu{segment} is in radians in a column of degrees: its steps are 57.3 times too small")]
+    RadianImu {
+        /// The segment, from 1.
+        segment: usize,
+    },
     /// An IMU that follows another segment's end.
     #[error("imu{segment} follows the end of segment {follows}, not its own: it is swapped with imu{follows}")]
     SwappedImu {

@@ -2,7 +2,10 @@
 //!
 //! Headings have an unknown zero and drift, so steps over one second are compared instead. An IMU measures them one to
 //! one, and so the size counts as well: the ends of a module's two segments turn alike, but not equally far. The median over
-//! the pieces of the sweep decides.
+//! the pieces of a session decides about it.
+
+use std::f64::consts::TAU;
+use std::ops::Range;
 
 use super::error::{CalibrationError, Warning};
 use super::pieces::{median, moving, pieces};
@@ -19,31 +22,47 @@ const SAME: f64 = 0.5;
 /// Difference of equal headings after unwrapping, turns: rounding alone.
 const EQUAL_TURNS: f64 = 1e-9;
 
-pub(super) fn check(sweep: &Sweep) -> Result<Vec<Warning>, CalibrationError> {
+/// Checks the IMUs of each session; an error has the session's number, from 0.
+pub(super) fn check(sweep: &Sweep) -> Result<Vec<Warning>, (usize, CalibrationError)> {
+    let mut is_read = vec![false; sweep.imu.len()];
+    let mut first = 0;
+    for rows in sweep.sessions.chunk_by(|a, b| a == b) {
+        let end = first + rows.len();
+        check_session(sweep, first..end, &mut is_read).map_err(|error| (rows[0], error))?;
+        first = end;
+    }
+    let not_read = (1..).zip(is_read).filter(|(_, is_read)| !is_read);
+    Ok(not_read.map(|(segment, _)| Warning::ImuNotRead { segment }).collect())
+}
+
+/// Checks the IMUs in the rows of one session, and notes those that were read.
+fn check_session(sweep: &Sweep, rows: Range<usize>, is_read: &mut [bool]) -> Result<(), CalibrationError> {
     let lag = sweep.rate_hz.round().max(1.0) as usize;
-    let mut warnings = Vec::new();
-    for (i, imu) in sweep.imu.iter().enumerate() {
-        if let Some(j) = (0..i).find(|j| are_same(imu, &sweep.imu[*j])) {
+    let runs = &sweep.runs[rows.clone()];
+    let imus: Vec<&[Option<f64>]> = sweep.imu.iter().map(|imu| &imu[rows.clone()]).collect();
+    for (i, imu) in imus.iter().enumerate() {
+        if let Some(j) = (0..i).find(|j| are_same(imu, imus[*j])) {
             return Err(CalibrationError::SameImus { segment: j + 1, other: i + 1 });
         }
     }
     let headings: Vec<Vec<Option<f64>>> =
-        sweep.heading.iter().map(|heading| steps(heading, &sweep.runs, lag)).collect();
-    for (i, imu) in sweep.imu.iter().enumerate() {
+        sweep.heading.iter().map(|heading| steps(&heading[rows.clone()], runs, lag)).collect();
+    for (i, imu) in imus.iter().enumerate() {
         let segment = i + 1;
-        let imu = steps(imu, &sweep.runs, lag);
+        let imu = steps(imu, runs, lag);
         let moving = moving(&headings[i]);
-        let left = |j: usize, sign: f64| {
+        let left = |imu: &[Option<f64>], j: usize, sign: f64| {
             median(moving.iter().map(|rows| unexplained(&imu[rows.clone()], &headings[j][rows.clone()], sign)))
         };
-        let Some(own) = left(i, 1.0) else {
-            warnings.push(Warning::ImuNotRead { segment });
-            continue;
-        };
+        let Some(own) = left(&imu, i, 1.0) else { continue };
+        is_read[i] = true;
         if own < GOOD_ENOUGH {
             continue;
         }
-        let explains = |j: usize, sign| left(j, sign).filter(|left| left * BETTER < own);
+        if left(&of_radians(&imu), i, 1.0).is_some_and(|left| left < GOOD_ENOUGH) {
+            return Err(CalibrationError::RadianImu { segment });
+        }
+        let explains = |j: usize, sign| left(&imu, j, sign).filter(|left| left * BETTER < own && *left < UNRELATED);
         if explains(i, -1.0).is_some() {
             return Err(CalibrationError::InvertedImu { segment });
         }
@@ -55,12 +74,18 @@ pub(super) fn check(sweep: &Sweep) -> Result<Vec<Warning>, CalibrationError> {
             return Err(CalibrationError::UnrelatedImu { segment });
         }
     }
-    Ok(warnings)
+    Ok(())
+}
+
+/// Steps of headings that were radians in a column of degrees.
+fn of_radians(steps: &[Option<f64>]) -> Vec<Option<f64>> {
+    let wrapped = |rad: f64| rad - TAU * (rad / TAU).round();
+    steps.iter().map(|step| step.map(|step| wrapped(step.to_degrees()))).collect()
 }
 
 /// True where two IMUs give the same readings in most pieces. Readings that do not change may be equal by chance.
 fn are_same(one: &[Option<f64>], other: &[Option<f64>]) -> bool {
-    let share = |rows: std::ops::Range<usize>| {
+    let share = |rows: Range<usize>| {
         let (mut changed, mut equal) = (0_usize, 0_usize);
         for row in rows.skip(1) {
             let (now, before) = (one[row].zip(other[row]), one[row - 1].zip(other[row - 1]));
@@ -77,7 +102,7 @@ fn are_same(one: &[Option<f64>], other: &[Option<f64>]) -> bool {
 
 /// True for the same direction.
 fn are_equal(a_rad: f64, b_rad: f64) -> bool {
-    let turns = (a_rad - b_rad) / std::f64::consts::TAU;
+    let turns = (a_rad - b_rad) / TAU;
     (turns - turns.round()).abs() < EQUAL_TURNS
 }
 

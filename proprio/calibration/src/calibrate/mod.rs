@@ -81,9 +81,12 @@ pub fn calibrate(
     progress: &mut dyn Progress,
 ) -> Result<Calibration, Error> {
     let sweep = Sweep::read(sessions, &arm.file, progress)?;
-    let refuse = |source| Error::Calibration { path: sessions.first().cloned().unwrap_or_default(), source };
-    let mut warnings = sweep.check_range().map_err(refuse)?;
-    warnings.extend(imus::check(&sweep).map_err(refuse)?);
+    let refuse = |session: usize, source| Error::Calibration {
+        path: sessions.get(session).cloned().unwrap_or_default(),
+        source,
+    };
+    let mut warnings = sweep.check_range().map_err(|source| refuse(0, source))?;
+    warnings.extend(imus::check(&sweep).map_err(|(session, source)| refuse(session, source))?);
     let derived = derive::table(&sweep, sessions, arm, options, &mut warnings, progress)?;
     let segments = derived.segment_reports(&sweep);
     let held_out = held_out::evaluate(&sweep, sessions, arm, options, progress)?;

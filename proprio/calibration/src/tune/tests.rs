@@ -11,7 +11,7 @@ use proprio_analysis::metrics::ErrorMetrics;
 use proprio_analysis::replay::replay;
 use proprio_session::{LoadedTable, NoProgress};
 use proprio_simulation::{ImuColumns, SessionWriter, Simulation};
-use rig_twin::Scenario;
+use rig_twin::{Layout, Scenario};
 
 use super::descent::{MAX_ITERATIONS, descend};
 use super::objective::{Evaluation, Objective};
@@ -22,7 +22,8 @@ use super::{Dual, TuningError, pooled};
 
 /// A simulated session; of `gaps`, some readings are missing and the camera sees no segment now and then.
 fn session(folder: &Path, scenario: Scenario, rate_hz: f64, gaps: bool) -> PathBuf {
-    let mut writer = SessionWriter::new(Vec::new(), ImuColumns::Deg).expect("memory can be written to");
+    let mut writer =
+        SessionWriter::new(Vec::new(), &Layout::default(), ImuColumns::Deg).expect("memory can be written to");
     for (k, mut sample) in Simulation::new(scenario, 3, 60.0, rate_hz).expect("a valid run").enumerate() {
         if gaps && k % 7 == 0 {
             sample.counts[k % 12] = None;

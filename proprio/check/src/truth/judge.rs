@@ -38,16 +38,20 @@ struct Suspects {
     is_misplaced: bool,
 }
 
+/// True end of each segment less the expected one, in the frame of the segment's start, m; `None` without the poses.
+type Residuals = [Option<Vector2<f64>>; MAX_SEGMENTS];
+
 /// The judge.
 #[derive(Debug, Clone)]
 pub(super) struct Judge {
     chain: Chain,
     usual: Usual,
+    is_usual_known: bool,
     /// Rows that wait until the usual values are known.
     waiting: Vec<TruthRow>,
-    current: Option<TruthRow>,
+    current: Option<(TruthRow, Residuals)>,
     /// Residuals of the last good row.
-    residuals: [Option<Vector2<f64>>; MAX_SEGMENTS],
+    residuals: Residuals,
     /// Mean change of the residuals from row to row, m.
     noise: [f64; MAX_SEGMENTS],
     good: [Option<Truth>; MAX_SEGMENTS],
@@ -62,6 +66,7 @@ impl Judge {
         Self {
             holds: Holds::new(&chain.lengths),
             usual: Usual::new(),
+            is_usual_known: false,
             waiting: Vec::new(),
             current: None,
             residuals: [None; MAX_SEGMENTS],
@@ -75,13 +80,12 @@ impl Judge {
     /// Adds a row. Adds the faults that are found to `faults`, and the earlier rows without their wrong poses to `judged`.
     pub fn update(&mut self, mut row: TruthRow, faults: &mut Vec<Fault>, judged: &mut Vec<TruthRow>) {
         take_zeros(&mut row, self.chain.count(), faults);
-        if self.usual.is_known() {
+        if self.is_usual_known {
             self.advance(&row, faults, judged);
             return;
         }
-        self.usual.add(&row, &self.chain);
         self.waiting.push(row);
-        if self.usual.is_known() {
+        if Usual::is_enough(&self.waiting) {
             self.judge_waiting(faults, judged);
         }
     }
@@ -89,15 +93,16 @@ impl Judge {
     /// Judges the last rows.
     pub fn finish(&mut self, faults: &mut Vec<Fault>, judged: &mut Vec<TruthRow>) {
         self.judge_waiting(faults, judged);
-        if let Some(last) = self.current.take() {
-            self.judge(last, None, faults, judged);
+        if let Some((last, own)) = self.current.take() {
+            self.judge(last, own, None, faults, judged);
         }
         self.holds.finish(faults);
     }
 
     fn judge_waiting(&mut self, faults: &mut Vec<Fault>, judged: &mut Vec<TruthRow>) {
         if !self.waiting.is_empty() {
-            self.usual.find();
+            self.usual = Usual::of(&self.waiting, &self.chain);
+            self.is_usual_known = true;
             self.noise = std::array::from_fn(|i| self.usual.change(i));
         }
         for row in &std::mem::take(&mut self.waiting) {
@@ -106,28 +111,31 @@ impl Judge {
     }
 
     fn advance(&mut self, next: &TruthRow, faults: &mut Vec<Fault>, judged: &mut Vec<TruthRow>) {
-        if let Some(row) = self.current.replace(*next) {
-            self.judge(row, Some(next), faults, judged);
+        let of_next = self.residuals_of(next);
+        if let Some((row, own)) = self.current.replace((*next, of_next)) {
+            self.judge(row, own, Some(&of_next), faults, judged);
         }
     }
 
     fn judge(
         &mut self,
         mut row: TruthRow,
-        next: Option<&TruthRow>,
+        mut own: Residuals,
+        next: Option<&Residuals>,
         faults: &mut Vec<Fault>,
         judged: &mut Vec<TruthRow>,
     ) {
         let original = row;
-        let suspects = self.suspects(&row, next);
+        let suspects = self.suspects(&row, &own, next);
         if !suspects.is_empty() {
             self.blame(&mut row, next, &suspects, faults);
+            own = self.residuals_of(&row);
         }
-        self.holds.update(&original, self.usual.scale(), faults);
+        self.holds.update(&original, self.usual.scale, faults);
         for i in 0..self.chain.count() {
             self.was_wrong[i] = original.poses[i].is_some() && row.poses[i].is_none();
             self.good[i] = row.poses[i].or(self.good[i]);
-            let Some(residual) = self.residual(i, &row) else { continue };
+            let Some(residual) = own[i] else { continue };
             if let Some(last) = self.residuals[i].replace(residual) {
                 let change = (residual - last).norm().min(JUMP * self.length(i));
                 self.noise[i] += NOISE_WEIGHT * (change - self.noise[i]);
@@ -138,22 +146,25 @@ impl Judge {
 
     /// Length of a segment with its connector in the truth's own unit.
     fn length(&self, i: usize) -> f64 {
-        self.chain.lengths[i] * self.usual.scale()
+        self.chain.lengths[i] * self.usual.scale
     }
 
-    /// True end less the expected one, in the frame of the segment's start.
-    fn residual(&self, i: usize, row: &TruthRow) -> Option<Vector2<f64>> {
-        self.chain.link(i, &row.poses).map(|link| link.end - link.expected * self.usual.scale())
+    fn residuals_of(&self, row: &TruthRow) -> Residuals {
+        let mut residuals = [None; MAX_SEGMENTS];
+        for (i, residual) in residuals.iter_mut().enumerate().take(self.chain.count()) {
+            *residual = self.chain.link(i, &row.poses).map(|link| link.end - link.expected * self.usual.scale);
+        }
+        residuals
     }
 
     /// Links of a row that cannot be right.
-    fn suspects(&self, row: &TruthRow, next: Option<&TruthRow>) -> Vec<Suspects> {
+    fn suspects(&self, row: &TruthRow, own: &Residuals, next: Option<&Residuals>) -> Vec<Suspects> {
         let mut suspects = Vec::new();
         let mut last = None;
         for to in (0..self.chain.count()).filter(|i| row.poses[*i].is_some()) {
             let from = last.replace(to);
-            let is_jump = from.map_or(0, |from| from + 1) == to && self.is_jump(to, row, next);
-            let is_misplaced = self.is_misplaced(from, to, &row.poses);
+            let is_jump = from.map_or(0, |from| from + 1) == to && self.is_jump(to, own, next);
+            let is_misplaced = self.is_misplaced(from, to, &row.poses, own);
             if is_jump || is_misplaced {
                 suspects.push(Suspects { from, to, is_jump, is_misplaced });
             }
@@ -161,7 +172,13 @@ impl Judge {
         suspects
     }
 
-    fn is_misplaced(&self, from: Option<usize>, to: usize, poses: &[Option<Truth>; MAX_SEGMENTS]) -> bool {
+    fn is_misplaced(
+        &self,
+        from: Option<usize>,
+        to: usize,
+        poses: &[Option<Truth>; MAX_SEGMENTS],
+        own: &Residuals,
+    ) -> bool {
         let start = from.map_or(Some(BASE), |from| poses[from]);
         let Some((start, end)) = start.zip(poses[to]) else { return false };
         let first = from.map_or(0, |from| from + 1);
@@ -171,16 +188,13 @@ impl Judge {
         if distance(&start, &end) > TOO_FAR * length + usual.norm() + margin {
             return true;
         }
-        let link = (first == to).then(|| self.chain.link(to, poses)).flatten();
-        link.is_some_and(|link| {
-            let residual = link.end - link.expected * self.usual.scale();
-            (residual - usual).norm() > (MISPLACED * length).max(margin)
-        })
+        let residual = own[to].filter(|_| first == to);
+        residual.is_some_and(|residual| (residual - usual).norm() > (MISPLACED * length).max(margin))
     }
 
-    fn is_jump(&self, i: usize, row: &TruthRow, next: Option<&TruthRow>) -> bool {
-        let of_next = next.and_then(|next| self.residual(i, next));
-        let Some(((own, before), after)) = self.residual(i, row).zip(self.residuals[i]).zip(of_next) else {
+    fn is_jump(&self, i: usize, own: &Residuals, next: Option<&Residuals>) -> bool {
+        let of_next = next.and_then(|next| next[i]);
+        let Some(((own, before), after)) = own[i].zip(self.residuals[i]).zip(of_next) else {
             return false;
         };
         let change = (own - before).norm().min((own - after).norm());
@@ -188,7 +202,7 @@ impl Judge {
     }
 
     /// Takes the poses out of a row that make its links impossible.
-    fn blame(&mut self, row: &mut TruthRow, next: Option<&TruthRow>, suspects: &[Suspects], faults: &mut Vec<Fault>) {
+    fn blame(&mut self, row: &mut TruthRow, next: Option<&Residuals>, suspects: &[Suspects], faults: &mut Vec<Fault>) {
         if suspects.iter().any(|suspects| suspects.is_misplaced)
             && let Some([one, other]) = self.exchanged(row)
         {
@@ -209,7 +223,7 @@ impl Judge {
                 let kind = if is_single { FaultKind::Jump } else { FaultKind::Misplaced };
                 faults.push(Fault { segment, rows: row.rows(), kind });
             }
-            left = self.suspects(row, next);
+            left = self.suspects(row, &self.residuals_of(row), next);
         }
     }
 
@@ -244,7 +258,9 @@ impl Judge {
         let is_possible = |[i, j]: &[usize; 2]| {
             let mut swapped = *row;
             swapped.poses.swap(*i, *j);
-            row.poses[*i].is_some() && row.poses[*j].is_some() && self.suspects(&swapped, None).is_empty()
+            row.poses[*i].is_some()
+                && row.poses[*j].is_some()
+                && self.suspects(&swapped, &self.residuals_of(&swapped), None).is_empty()
         };
         pairs.into_iter().find(is_possible)
     }

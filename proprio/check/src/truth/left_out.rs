@@ -31,7 +31,7 @@ impl LeftOut {
     /// The row without its wrong poses; `number` counts from 0.
     #[must_use]
     pub fn without(&self, row: &Row, number: usize) -> Row {
-        let mut row = *row;
+        let mut row = row.clone();
         for (i, truth) in row.truth.iter_mut().enumerate() {
             *truth = truth.filter(|_| !self.contains(number, i));
         }

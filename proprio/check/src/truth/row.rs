@@ -25,13 +25,18 @@ impl TruthRow {
     /// The truth of row `number` of a session, from 1.
     #[must_use]
     pub fn of(row: &Row, number: u64) -> Self {
-        let heading = |imu: &Option<ImuReading>| imu.as_ref().and_then(ImuReading::heading).map(Phase::rad);
+        let headings = row.sample.imu.each_ref().map(|imu| imu.as_ref().and_then(ImuReading::heading));
+        Self::new(row, number, &headings)
+    }
+
+    /// The same, with the headings of its IMUs.
+    pub(crate) fn new(row: &Row, number: u64, headings: &[Option<Phase>; MAX_SEGMENTS]) -> Self {
         Self {
             row: number,
             time_s: row.sample.time_us as f64 / 1e6,
             starts: row.starts,
             poses: row.truth,
-            imu: row.sample.imu.each_ref().map(heading),
+            imu: headings.map(|heading| heading.map(Phase::rad)),
         }
     }
 

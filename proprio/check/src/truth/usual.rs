@@ -1,5 +1,6 @@
 //! The scale of the truth and the usual residuals of its links, from the first rows: lengths in another unit and markers that
-//! are mounted off the axis must not make every row impossible.
+//! are mounted off the axis must not make every row impossible. Two markers whose numbers are exchanged from the first row on
+//! are no markers off the axis.
 
 use calibration_tables::MAX_SEGMENTS;
 use nalgebra::Vector2;
@@ -10,13 +11,17 @@ use crate::median::median;
 
 /// Rows with truth from which the usual values are found.
 const FIRST: usize = 1000;
+/// Median misfit of a link from which on two markers may be exchanged, and below which all are with the exchange, as shares of
+/// the segment's length.
+const IMPOSSIBLE: f64 = 0.5;
+const POSSIBLE: f64 = 0.2;
 
-/// Usual values.
-#[derive(Debug, Clone)]
+/// Usual values of a session's truth.
+#[derive(Debug, Clone, Copy)]
 pub(super) struct Usual {
-    links: Vec<Vec<[Vector2<f64>; 2]>>,
-    rows: usize,
-    found: Option<(f64, [Link; MAX_SEGMENTS])>,
+    /// The truth over the arm's lengths.
+    pub scale: f64,
+    links: [Link; MAX_SEGMENTS],
 }
 
 /// Usual values of a link.
@@ -27,51 +32,61 @@ struct Link {
 }
 
 impl Usual {
+    /// The values before any row.
     pub fn new() -> Self {
-        Self { links: vec![Vec::new(); MAX_SEGMENTS], rows: 0, found: None }
+        Self { scale: 1.0, links: [Link::default(); MAX_SEGMENTS] }
     }
 
-    /// True where the values are found.
-    pub fn is_known(&self) -> bool {
-        self.found.is_some() || self.rows >= FIRST
+    /// True for rows enough to find the values.
+    pub fn is_enough(rows: &[TruthRow]) -> bool {
+        rows.len() >= FIRST
     }
 
-    /// The truth over the arm's lengths.
-    pub fn scale(&self) -> f64 {
-        self.found.map_or(1.0, |(scale, _)| scale)
+    /// Finds the values from the first rows.
+    pub fn of(rows: &[TruthRow], chain: &Chain) -> Self {
+        let (as_named, misfit) = Self::with(rows, chain, None);
+        if misfit < IMPOSSIBLE {
+            return as_named;
+        }
+        let n = chain.count();
+        let pairs = (0..n).flat_map(|i| (i + 1..n).map(move |j| [i, j]));
+        let exchanged = pairs.map(|pair| Self::with(rows, chain, Some(pair))).min_by(|a, b| a.1.total_cmp(&b.1));
+        exchanged.filter(|(_, misfit)| *misfit < POSSIBLE).map_or(as_named, |(usual, _)| usual)
     }
 
-    /// True end of segment `i` less the expected one, in the frame of its start.
-    pub fn residual(&self, i: usize) -> Vector2<f64> {
-        self.found.map_or(Vector2::zeros(), |(_, links)| links[i].residual)
-    }
-
-    /// Median change of this difference from row to row, m.
-    pub fn change(&self, i: usize) -> f64 {
-        self.found.map_or(0.0, |(_, links)| links[i].change)
-    }
-
-    pub fn add(&mut self, row: &TruthRow, chain: &Chain) {
-        for i in 0..chain.count() {
-            if let Some(link) = chain.link(i, &row.poses) {
-                self.links[i].push([link.end, link.expected]);
+    /// The values with two markers exchanged, and the largest median misfit of a link.
+    fn with(rows: &[TruthRow], chain: &Chain, exchanged: Option<[usize; 2]>) -> (Self, f64) {
+        let mut links: Vec<Vec<[Vector2<f64>; 2]>> = vec![Vec::new(); chain.count()];
+        for row in rows {
+            let mut poses = row.poses;
+            if let Some([i, j]) = exchanged {
+                poses.swap(i, j);
+            }
+            for (i, links) in links.iter_mut().enumerate() {
+                links.extend(chain.link(i, &poses).map(|link| [link.end, link.expected]));
             }
         }
-        self.rows += 1;
-    }
-
-    /// Finds the values from the rows that were added.
-    pub fn find(&mut self) {
-        let links = std::mem::take(&mut self.links);
         let ratios = links.iter().flatten().map(|[end, expected]| end.norm() / expected.norm());
         let scale = median(ratios.collect()).filter(|scale| *scale > 0.0).unwrap_or(1.0);
-        let mut found = [Link::default(); MAX_SEGMENTS];
-        for (found, links) in found.iter_mut().zip(&links) {
+        let (mut found, mut largest) = ([Link::default(); MAX_SEGMENTS], 0.0_f64);
+        for ((found, links), length) in found.iter_mut().zip(&links).zip(&chain.lengths) {
             let residuals: Vec<Vector2<f64>> = links.iter().map(|[end, expected]| end - expected * scale).collect();
             let of = |axis: usize| median(residuals.iter().map(|residual| residual[axis]).collect()).unwrap_or(0.0);
             let changes = residuals.windows(2).map(|pair| (pair[1] - pair[0]).norm());
             *found = Link { residual: Vector2::new(of(0), of(1)), change: median(changes.collect()).unwrap_or(0.0) };
+            let misfit = median(residuals.iter().map(Vector2::norm).collect()).unwrap_or(0.0);
+            largest = largest.max(misfit / (length * scale));
         }
-        self.found = Some((scale, found));
+        (Self { scale, links: found }, largest)
+    }
+
+    /// True end of segment `i` less the expected one, in the frame of its start.
+    pub fn residual(&self, i: usize) -> Vector2<f64> {
+        self.links[i].residual
+    }
+
+    /// Median change of this difference from row to row, m.
+    pub fn change(&self, i: usize) -> f64 {
+        self.links[i].change
     }
 }

@@ -7,7 +7,7 @@ use std::sync::OnceLock;
 use calibration_tables::ArmFile;
 use proprio_session::{Existing, LoadedTable, OutputFile};
 use proprio_simulation::{ImuColumns, SessionWriter, Simulation};
-use rig_twin::Scenario;
+use rig_twin::{Layout, Scenario};
 
 static FOLDER: OnceLock<tempfile::TempDir> = OnceLock::new();
 
@@ -17,7 +17,7 @@ pub fn session(seconds: u32, rate_hz: u32) -> PathBuf {
     let path = folder.path().join(format!("{seconds}-s-at-{rate_hz}-Hz.csv"));
     if !path.exists() {
         let file = OutputFile::create(&path, &[], Existing::Keep).expect("a session file");
-        let mut writer = SessionWriter::new(file, ImuColumns::Deg).expect("room on the disk");
+        let mut writer = SessionWriter::new(file, &Layout::default(), ImuColumns::Deg).expect("room on the disk");
         let run = Simulation::new(Scenario::FreeSwing, 1, f64::from(seconds), f64::from(rate_hz)).expect("a valid run");
         for sample in run {
             writer.write(&sample).expect("room on the disk");

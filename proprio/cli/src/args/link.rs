@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
 use proprio_link::Baud;
-use telemetry::REGULATORS;
+use telemetry::MAX_REGULATORS;
 
 use super::force::ForceArgs;
 
@@ -32,6 +32,9 @@ pub struct LinkArgs {
     /// Seed of the simulated arm's motion and noise
     #[arg(long, value_name = "K", requires = "emulated", default_value_t = 1)]
     pub seed: u64,
+    /// Arm description or table of the simulated arm [default: that of --table, or the reference arm]
+    #[arg(long, value_name = "ARM.toml", requires = "emulated")]
+    pub arm: Option<PathBuf>,
     /// Table that the board should have
     #[arg(long, value_name = "TABLE.toml")]
     pub table: Option<PathBuf>,
@@ -48,7 +51,7 @@ pub struct TableArgs {
 pub enum TableCommand {
     /// Store a table on the board, which restarts and uses it
     Push {
-        /// Table to store
+        /// Table to store; or an arm description, by whose wiring the board sends the samples of a calibration
         #[arg(value_name = "TABLE.toml")]
         file: PathBuf,
         #[command(flatten)]
@@ -78,7 +81,7 @@ pub enum TableCommand {
 
 #[derive(Debug, Args)]
 pub struct FlashArgs {
-    /// Table of the arm
+    /// Table of the arm, or its description before the calibration
     #[arg(long, value_name = "TABLE.toml")]
     pub table: PathBuf,
     /// The board's programming port [default: that of the one Due that is plugged in]
@@ -115,6 +118,15 @@ pub struct StatusArgs {
 }
 
 #[derive(Debug, Args)]
+pub struct TareArgs {
+    /// Tare an arm that moves, too
+    #[arg(long)]
+    pub force: bool,
+    #[command(flatten)]
+    pub link: LinkArgs,
+}
+
+#[derive(Debug, Args)]
 pub struct RecordArgs {
     #[command(flatten)]
     pub link: LinkArgs,
@@ -128,12 +140,12 @@ pub struct RecordArgs {
 
 #[derive(Debug, Args)]
 pub struct DriveArgs {
-    /// Profile: pressures over time, columns time_s and pressure1_kpa to pressure6_kpa
+    /// Profile: pressures over time, columns time_s and pressure1_kpa, pressure2_kpa, … for all regulators of the board
     #[arg(value_name = "PROFILE.csv", required_unless_present = "kpa", conflicts_with = "kpa")]
     pub profile: Option<PathBuf>,
-    /// Pressures to hold instead: module 1 right, left, module 2 right, left, module 3 right, left
-    #[arg(long, value_name = "KPA,KPA,KPA,KPA,KPA,KPA", value_parser = pressures_kpa, allow_negative_numbers = true)]
-    pub kpa: Option<[f64; REGULATORS]>,
+    /// Pressures to hold instead, one for each regulator of the board: module 1 right, left, module 2 right, left, …
+    #[arg(long, value_name = "KPA,KPA,…", value_parser = pressures_kpa, allow_negative_numbers = true)]
+    pub kpa: Option<Pressures>,
     /// Time to hold them, s [default: until Ctrl-C]
     #[arg(long, value_name = "S", requires = "kpa", allow_negative_numbers = true)]
     pub seconds: Option<f64>,
@@ -147,10 +159,17 @@ pub struct DriveArgs {
     pub link: LinkArgs,
 }
 
-fn pressures_kpa(text: &str) -> Result<[f64; REGULATORS], String> {
+/// Pressures of all regulators, kPa. A type of its own: of a `Vec`, clap would take the option several times.
+#[derive(Debug, Clone)]
+pub struct Pressures(pub Vec<f64>);
+
+fn pressures_kpa(text: &str) -> Result<Pressures, String> {
     let pressures = text.split(',').map(|part| part.trim().parse().map_err(|_| format!("\"{part}\" is not a number")));
     let pressures = pressures.collect::<Result<Vec<f64>, _>>()?;
-    pressures.try_into().map_err(|found: Vec<f64>| format!("{} pressures, expected {REGULATORS}", found.len()))
+    if pressures.len() > MAX_REGULATORS {
+        return Err(format!("{} pressures, a board has {MAX_REGULATORS} regulators at most", pressures.len()));
+    }
+    Ok(Pressures(pressures))
 }
 
 #[derive(Debug, Args)]

@@ -3,11 +3,11 @@
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use board_core::FULL_SCALE_PA;
+use board_table::MAX_FULL_SCALE_PA;
 use proprio_link::drive::{DriveError, Driver, PERIOD, Profile, Ramp};
 use proprio_link::{EventKind, FileRecorder, Subscription};
 use proprio_session::check_seconds;
-use telemetry::{Message, REGULATORS};
+use telemetry::Message;
 
 use super::link;
 use crate::args::DriveArgs;
@@ -35,11 +35,11 @@ pub fn run(args: &DriveArgs) -> Result<(), Error> {
     let shutdown = ShutdownGuard::new();
     let status = link::status(&link, &link.subscribe(), table.is_some())?;
     // The recording begins only with an armed board, which stays vented until the first set-points.
-    let mut driver = Driver::arm(&link, &status)?;
+    let mut driver = Driver::arm(&link, &status, profile.regulators())?;
     let recorder = args.output.as_deref().map(|path| link::recorder(path, &link, table.as_ref()));
     let mut drive = Session { recorder: recorder.transpose()?, events, screen: StatusLine::new(), board_kpa: None };
     drive.catch_up()?;
-    let driven = drive.follow(&mut driver, &profile, Ramp::new(args.ramp * 1e3), &shutdown);
+    let driven = drive.follow(&mut driver, &profile, Ramp::new(profile.regulators(), args.ramp * 1e3), &shutdown);
     // Vent first, also after an error.
     let vented = driver.vent();
     drop(link);
@@ -52,11 +52,11 @@ pub fn run(args: &DriveArgs) -> Result<(), Error> {
 
 fn profile(args: &DriveArgs) -> Result<Profile, Error> {
     args.seconds.map_or(Ok(()), check_seconds)?;
-    match (&args.profile, args.kpa) {
+    match (&args.profile, &args.kpa) {
         (Some(path), _) => Ok(Profile::read(path)?),
         (None, kpa) => {
-            let pressures_pa = kpa.unwrap_or_default().map(|kpa| kpa * 1e3);
-            match pressures_pa.iter().find(|pa| !(0.0..=f64::from(FULL_SCALE_PA)).contains(*pa)) {
+            let pressures_pa: Vec<f64> = kpa.iter().flat_map(|kpa| &kpa.0).map(|kpa| kpa * 1e3).collect();
+            match pressures_pa.iter().find(|pa| !(0.0..=f64::from(MAX_FULL_SCALE_PA)).contains(*pa)) {
                 Some(pa) => Err(Error::Pressure(pa / 1e3)),
                 None => Ok(Profile::constant(pressures_pa, args.seconds.unwrap_or(f64::INFINITY))),
             }
@@ -120,12 +120,12 @@ impl Session {
             let now = Instant::now();
             let step = (now - last).min(LONGEST_STEP);
             last = now;
-            let pressures_pa = ramp.step(profile.at(passed.as_secs_f64()), step.as_secs_f64());
+            let pressures_pa = ramp.step(&profile.at(passed.as_secs_f64()), step.as_secs_f64());
             let requested = driver.set(pressures_pa)?;
             if let Some(recorder) = &mut self.recorder {
                 recorder.set_points(&requested)?;
             }
-            self.show(passed, profile.end_s(), pressures_pa);
+            self.show(passed, profile.end_s(), &requested.pressures_pa);
             self.receive(driver, now + PERIOD)?;
         }
     }
@@ -139,7 +139,7 @@ impl Session {
             }
             match event.kind {
                 EventKind::Message(Message::Health(health)) => {
-                    self.board_kpa = Some(kpa(health.pressures_pa));
+                    self.board_kpa = Some(kpa(&health.pressures_pa));
                     driver.check(&health)?;
                 }
                 EventKind::Lost(reason) | EventKind::Ended(reason) => return Err(DriveError::Lost(reason).into()),
@@ -149,7 +149,7 @@ impl Session {
         }
     }
 
-    fn show(&self, passed: Duration, end_s: f64, requested_pa: [u32; REGULATORS]) {
+    fn show(&self, passed: Duration, end_s: f64, requested_pa: &[u32]) {
         let end =
             if end_s.is_finite() { format!(" of {}", time(Duration::from_secs_f64(end_s))) } else { String::new() };
         let board = self.board_kpa.as_deref().unwrap_or("–");
@@ -176,6 +176,6 @@ impl Session {
     }
 }
 
-fn kpa(pressures_pa: [u32; REGULATORS]) -> String {
-    pressures_pa.map(|pa| format!("{:.1}", f64::from(pa) / 1e3)).join(" ")
+fn kpa(pressures_pa: &[u32]) -> String {
+    pressures_pa.iter().map(|pa| format!("{:.1}", f64::from(*pa) / 1e3)).collect::<Vec<_>>().join(" ")
 }

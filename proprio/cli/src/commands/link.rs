@@ -32,7 +32,8 @@ fn open_by(args: &LinkArgs, start: Start) -> Result<(Option<LoadedTable<'_>>, Li
     let checksum = table.as_ref().map(|table| Ok::<_, Error>(table.compile::<Q>(TICK_HZ)?.checksum())).transpose()?;
     let source: Box<dyn Source> = if args.emulated {
         let flash = args.flash.clone().map_or_else(|| flash_with(table.as_ref()), |path| Ok(Flash::File(path)))?;
-        Box::new(VirtualDue { firmware: args.firmware.clone(), scenario: args.scenario, seed: args.seed, flash })
+        let arm = args.arm.clone().or_else(|| args.table.clone());
+        Box::new(VirtualDue { firmware: args.firmware.clone(), scenario: args.scenario, seed: args.seed, arm, flash })
     } else {
         Box::new(PortSource::new(args.port.clone(), args.baud))
     };
@@ -53,16 +54,16 @@ fn flash_with(table: Option<&LoadedTable>) -> Result<Flash, Error> {
         Some(table) => stored(table)?,
         None => ArmFile::parse(PLANAR_6_TABLE)
             .map_err(TableImageError::File)
-            .and_then(|file| StoredTable::new(&file, PLANAR_6_TABLE.as_bytes()))?,
+            .and_then(|file| StoredTable::new(&file, PLANAR_6_TABLE.as_bytes()))
+            .map_err(|source| Error::TableImage { name: "the reference arm's table".to_owned(), source })?,
     };
     Ok(Flash::Table(stored))
 }
 
 /// The form in which the board stores a table.
 pub fn stored(table: &LoadedTable) -> Result<StoredTable, Error> {
-    // An arm description is an error of its file.
-    table.required_columns()?;
-    Ok(StoredTable::new(&table.file, &table.toml()?)?)
+    StoredTable::new(&table.file, &table.toml()?)
+        .map_err(|source| Error::TableImage { name: table.path.display().to_string(), source })
 }
 
 /// Begins a recording of the link in a new file, with the table attached.

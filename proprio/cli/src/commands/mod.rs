@@ -9,6 +9,7 @@ mod drive;
 mod flash;
 mod link;
 mod monitor;
+mod new_arm;
 mod ports;
 mod record;
 mod recover;
@@ -17,6 +18,7 @@ mod report;
 mod simulate;
 mod status;
 mod table;
+mod tare;
 mod truth;
 mod tune;
 mod warnings;
@@ -32,6 +34,7 @@ impl Command {
         match self {
             Self::Check(args) => return check::run(&args),
             Self::Recover(args) => return recover::run(&args),
+            Self::NewArm(args) => new_arm::run(&args),
             Self::Align(args) => align::run(&args),
             Self::Calibrate(args) => calibrate::run(&args),
             Self::Tune(args) => tune::run(&args),
@@ -42,6 +45,7 @@ impl Command {
             Self::Table(args) => table::run(&args.command),
             Self::Ports(args) => ports::run(&args),
             Self::Status(args) => status::run(&args),
+            Self::Tare(args) => tare::run(&args),
             Self::Record(args) => record::run(&args),
             Self::Drive(args) => drive::run(&args),
             Self::Monitor(args) => monitor::run(&args),

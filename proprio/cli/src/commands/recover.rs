@@ -1,10 +1,11 @@
 //! `proprio recover`.
 
 use std::fs::File;
+use std::path::Path;
 use std::process::ExitCode;
 
-use proprio_session::recording::{RecoverError, Recovery, recover};
-use proprio_session::{OutputFile, SessionError, SessionProblem};
+use proprio_session::recording::{ReadError, RecoverError, Recovery, recover};
+use proprio_session::{ForeignFile, OutputFile, SessionError, SessionProblem};
 
 use crate::args::RecoverArgs;
 use crate::error::Error;
@@ -17,6 +18,7 @@ pub fn run(args: &RecoverArgs) -> Result<ExitCode, Error> {
     let mut file = OutputFile::create(&args.output, &[&args.input], args.force.existing())?;
     let recovery = recover(source, &mut file).map_err(|error| match error {
         RecoverError::Read(error) => fail(SessionProblem::Read(error)).into(),
+        RecoverError::Source(ReadError::NoMcap) => fail(not_a_recording(&args.input)).into(),
         RecoverError::Source(error) => fail(SessionProblem::Recording(error)).into(),
         RecoverError::Sink(error) => file.error(error),
     })?;
@@ -31,6 +33,11 @@ pub fn run(args: &RecoverArgs) -> Result<ExitCode, Error> {
         "{name}: {messages} messages of {seconds:.3} s, {source} ({bytes} bytes read)"
     ));
     Ok(ExitCode::from(u8::from(recovery.has_loss())))
+}
+
+/// The problem of a file that is no recording.
+fn not_a_recording(path: &Path) -> SessionProblem {
+    ForeignFile::of_file(path).map_or(SessionProblem::Recording(ReadError::NoMcap), SessionProblem::Foreign)
 }
 
 /// Names each damaged part.

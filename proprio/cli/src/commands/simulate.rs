@@ -3,9 +3,9 @@
 use std::io;
 use std::path::Path;
 
-use proprio_session::{OutputFile, Progress};
+use proprio_session::{LoadedTable, OutputFile, Progress};
 use proprio_simulation::{CameraWriter, ImuColumns, SessionWriter, Simulation};
-use rig_twin::{Camera, Motion, Scenario, Setup};
+use rig_twin::{Camera, Layout, Motion, Scenario, Setup};
 
 use crate::args::{ImuName, MotionName, ScenarioName, SimulateArgs};
 use crate::error::Error;
@@ -13,22 +13,27 @@ use crate::progress_bar::Bar;
 use crate::terminal;
 
 pub fn run(args: &SimulateArgs) -> Result<(), Error> {
-    let setup =
-        Setup { arm_seed: args.arm_seed, scenario: args.scenario.into(), motion: args.motion.into(), seed: args.seed };
+    let setup = Setup {
+        arm_seed: args.arm_seed,
+        layout: args.arm.as_deref().map_or_else(|| Ok(Layout::default()), layout)?,
+        scenario: args.scenario.into(),
+        motion: args.motion.into(),
+        seed: args.seed,
+    };
     let mut simulation = Simulation::of(&setup, args.seconds, args.rate)?;
     if args.camera.as_ref() == Some(&args.output) {
         return Err(Error::OutputTwice(args.output.clone()));
     }
     let file = OutputFile::create(&args.output, &[], args.force.existing())?;
     let mut session = match &args.camera {
-        None => SessionWriter::new(file, args.imu.into()),
-        Some(_) => SessionWriter::without_truth(file, args.imu.into()),
+        None => SessionWriter::new(file, &setup.layout, args.imu.into()),
+        Some(_) => SessionWriter::without_truth(file, &setup.layout, args.imu.into()),
     }
     .map_err(to_write(&args.output))?;
     let mut camera = None;
     if let Some(path) = &args.camera {
         let file = OutputFile::create(path, &[], args.force.existing())?;
-        camera = Some(CameraWriter::new(file).map_err(to_write(path))?);
+        camera = Some(CameraWriter::new(file, setup.layout.segments().len()).map_err(to_write(path))?);
         simulation = simulation.under(Camera::new(args.seed));
     }
 
@@ -48,6 +53,12 @@ pub fn run(args: &SimulateArgs) -> Result<(), Error> {
         terminal::eprint_line(&file.finish()?);
     }
     Ok(())
+}
+
+/// Layout of the arm of a file.
+fn layout(path: &Path) -> Result<Layout, Error> {
+    let arm = LoadedTable::load(path)?;
+    Layout::of_file(&arm.file).map_err(|source| Error::Layout { path: path.to_owned(), source })
 }
 
 /// The error of a file that cannot be written.

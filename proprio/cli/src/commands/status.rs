@@ -3,7 +3,7 @@
 use proprio_link::status::{KnownShape, Status};
 use proprio_session::Ellipse;
 use proprio_session::recording::chip_number;
-use telemetry::{Hello, SensorHealth, SensorState};
+use telemetry::{Hello, Rates, SensorHealth, SensorState, TICK_HZ, protocol_2};
 
 use super::link;
 use crate::error::Error;
@@ -24,21 +24,24 @@ fn screen(status: &Status) -> String {
         Some(false) => ", NOT the one given",
         None => "",
     };
-    let pressures = health.pressures_pa.map(|pressure_pa| format!("{:.1}", f64::from(pressure_pa) / 1e3)).join(" ");
+    let kpa = health.pressures_pa.iter().map(|pressure_pa| format!(" {:.1}", f64::from(*pressure_pa) / 1e3));
+    let pressures: String = kpa.collect();
     let lines = [
         ("line", format!("{}, {}", status.port, if status.answers { "answers" } else { "does NOT answer requests" })),
         ("firmware", format!("{} ({}), proprio {}", hello.firmware, hello.revision, status.proprio)),
         ("arm", arm(hello, table)),
+        ("wiring", wiring(hello)),
         ("chip", chip_number(&hello.chip)),
         ("boot", format!("number {} since power-on, by {:?}, {}", hello.boot, hello.reset, up(health.tick))),
         ("last panic", hello.last_panic.as_deref().unwrap_or("none").to_owned()),
         (
             "rates",
             format!(
-                "{:.1} samples/s, {:.1} estimates/s, {:.1} kB/s",
+                "{:.1} samples/s, {:.1} estimates/s, {:.1} kB/s{}",
                 rates.samples_hz,
                 rates.estimates_hz,
-                rates.bytes_per_s / 1e3
+                rates.bytes_per_s / 1e3,
+                slower(hello)
             ),
         ),
         ("received", format!("{} frames, {} damaged, {} lost", received.frames, received.damaged, received.lost)),
@@ -65,7 +68,7 @@ fn screen(status: &Status) -> String {
         ),
         ("tip", tip(status.shape.as_ref())),
         ("contact", contact(status.shape.as_ref())),
-        ("pressures", format!("{:?}, {pressures} kPa", health.actuation)),
+        ("pressures", format!("{:?},{pressures} kPa", health.actuation)),
         ("bend sensors", sensors(&health.bend, |i| format!("{}{}", i / 2 + 1, ['a', 'b'][i % 2]))),
         ("IMUs", sensors(&health.imu, |i| (i + 1).to_string())),
     ];
@@ -81,8 +84,23 @@ fn arm(hello: &Hello, compared: &str) -> String {
     format!("{}, table {:08x}{compared}", hello.arm, hello.table)
 }
 
+/// Numbers of what the arm has.
+fn wiring(hello: &Hello) -> String {
+    format!("{} segments, {} bend sensors, {} regulators", hello.segments, hello.bend_sensors, hello.regulators)
+}
+
+/// The reason of a rate of estimates that is lower than that of samples.
+fn slower(hello: &Hello) -> String {
+    let ticks = Rates::of_arm(hello.segments.into(), hello.regulators.into()).estimate;
+    if ticks <= 1 || hello.protocol == protocol_2::VERSION {
+        return String::new();
+    }
+    let rate_hz = TICK_HZ / f64::from(ticks);
+    format!("; estimates at {rate_hz:.0} Hz, as the line has no room for {TICK_HZ:.0}")
+}
+
 fn up(tick: u32) -> String {
-    format!("up for {:.1} s", f64::from(tick) / telemetry::TICK_HZ)
+    format!("up for {:.1} s", f64::from(tick) / TICK_HZ)
 }
 
 /// Uncertainty of the tip.
@@ -97,15 +115,57 @@ fn tip(shape: Option<&KnownShape>) -> String {
 
 /// Segments in contact.
 fn contact(shape: Option<&KnownShape>) -> String {
-    let touched = (1..).zip(shape.iter().flat_map(|shape| shape.touched)).filter(|(_, touched)| *touched);
+    let touched = (1..).zip(shape.iter().flat_map(|shape| &shape.touched)).filter(|(_, touched)| **touched);
     let numbers: Vec<String> = touched.map(|(number, _): (u32, _)| number.to_string()).collect();
     if numbers.is_empty() { "none".to_owned() } else { format!("segment {}", numbers.join(", ")) }
 }
 
-/// Number of the sensors that are ok; name, state and missed readings of each other one.
+/// Number of the wired sensors that are ok; name, state and missed readings of each other one.
 fn sensors(sensors: &[SensorHealth], name: impl Fn(usize) -> String) -> String {
-    let ok = sensors.iter().filter(|sensor| sensor.state == SensorState::Ok).count();
-    let others = sensors.iter().enumerate().filter(|(_, sensor)| sensor.state != SensorState::Ok);
+    let wired = sensors.iter().enumerate().filter(|(_, sensor)| sensor.state != SensorState::NotWired);
+    let count = wired.clone().count();
+    let ok = wired.clone().filter(|(_, sensor)| sensor.state == SensorState::Ok).count();
+    let others = wired.filter(|(_, sensor)| sensor.state != SensorState::Ok);
     let others = others.map(|(i, sensor)| format!("{} {} ({} missed)", name(i), sensor.state, sensor.missed));
-    [format!("{ok} of {} ok", sensors.len())].into_iter().chain(others).collect::<Vec<_>>().join(", ")
+    [format!("{ok} of {count} ok")].into_iter().chain(others).collect::<Vec<_>>().join(", ")
+}
+
+#[cfg(test)]
+mod tests {
+    use telemetry::{Hello, PROTOCOL_VERSION, ResetCause, SensorHealth, SensorState, Text, protocol_2};
+
+    use super::{sensors, slower, wiring};
+
+    fn hello(segments: u8) -> Hello {
+        Hello {
+            protocol: PROTOCOL_VERSION,
+            schema: 0,
+            firmware: Text::new(),
+            revision: Text::new(),
+            arm: Text::new(),
+            table: 0,
+            segments,
+            bend_sensors: segments,
+            regulators: 6,
+            chip: [0; 16],
+            reset: ResetCause::Pin,
+            boot: 1,
+            last_panic: None,
+        }
+    }
+
+    #[test]
+    fn the_line_has_no_room_for_the_estimates_of_seven_segments_at_100_hz() {
+        assert_eq!(wiring(&hello(7)), "7 segments, 7 bend sensors, 6 regulators");
+        let slow = "; estimates at 50 Hz, as the line has no room for 100";
+        assert_eq!([6, 7, 8].map(|segments| slower(&hello(segments))), ["", slow, slow]);
+        assert_eq!(slower(&Hello { protocol: protocol_2::VERSION, ..hello(7) }), "");
+    }
+
+    #[test]
+    fn sensors_that_are_not_wired_are_not_lost() {
+        let states = [SensorState::Ok, SensorState::NotWired, SensorState::NoResponse, SensorState::NotWired];
+        let health = states.map(|state| SensorHealth { state, missed: 3 });
+        assert_eq!(sensors(&health, |i| i.to_string()), "1 of 2 ok, 2 Off (3 missed)");
+    }
 }

@@ -27,12 +27,17 @@ pub fn run(command: &TableCommand) -> Result<(), Error> {
 }
 
 fn push_file(file: &Path, args: &LinkArgs) -> Result<(), Error> {
-    let stored = link::stored(&LoadedTable::load(file)?)?;
+    let table = LoadedTable::load(file)?;
+    let stored = link::stored(&table)?;
     let (_, link, _) = link::open(args)?;
     let hello = push(&link, &stored, &mut Bar::new())?;
     let bytes = stored.image.len() + stored.source.len();
     let (file, checksum, arm) = (file.display(), hello.table, hello.arm);
-    terminal::print(&format!("{file}: on the board and in use, table {checksum:08x} of arm {arm}, {bytes} bytes\n"))
+    terminal::print(&format!("{file}: on the board and in use, table {checksum:08x} of arm {arm}, {bytes} bytes\n"))?;
+    if table.file.is_description() {
+        terminal::print("it is an arm description: the board sends samples, and no shape until it has a table\n")?;
+    }
+    Ok(())
 }
 
 fn pull_into(output: &Path, existing: Existing, args: &LinkArgs) -> Result<(), Error> {

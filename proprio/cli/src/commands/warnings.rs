@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use proprio_calibration::Error as CalibrationError;
-use proprio_check::{Finding, check};
-use proprio_session::{FileDefects, LoadedTable};
+use proprio_check::{CheckedSession, Finding, check};
+use proprio_session::{FileDefects, LoadedTable, MissingHistory};
 
 use crate::error::Error;
 use crate::help::Help;
@@ -14,6 +14,13 @@ use crate::terminal;
 /// Warns of the defects of a session's file.
 pub fn warn_of_defects(path: &Path, defects: &FileDefects) {
     defects.warnings().for_each(|warning| terminal::warn(&format_args!("{}: {warning}", path.display())));
+}
+
+/// Warns of a recording without the samples since the board's last tare.
+pub fn warn_of_missing_history(path: &Path, history: MissingHistory) {
+    if history.is_any() {
+        terminal::warn(&format_args!("{}: {history}", path.display()));
+    }
 }
 
 /// Warns of the findings of the session check, each with its remedy.
@@ -40,7 +47,8 @@ pub fn checked<'t, T>(
     if !matches!(result, Err(CalibrationError::File(_))) {
         let table = table(result.as_ref().ok());
         for path in sessions.iter().filter(|path| path.is_file()) {
-            let mut findings = check(path, &table, &mut Bar::new())?.findings;
+            let CheckedSession { missing_history, mut findings, .. } = check(path, &table, &mut Bar::new())?;
+            warn_of_missing_history(path, missing_history);
             // These commands judge the truth themselves.
             findings.retain(|finding| !finding.sensor.is_truth() && matters(finding));
             warn_of_findings(path, &findings);

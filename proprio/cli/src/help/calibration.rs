@@ -50,6 +50,9 @@ impl Help for CalibrationError {
                 "check the multiplexer's wires and addresses, and that the program selects a channel for each IMU"
                     .to_owned()
             }
+            Self::RadianImu { segment } => {
+                format!("write its headings in degrees, or rename the column to imu{segment}_rad")
+            }
             Self::SwappedImu { .. } => "exchange the two mux channels, or the two columns".to_owned(),
             Self::UnrelatedImu { .. } => "check its mount, and that camera and IMUs share one clock".to_owned(),
         }

@@ -18,6 +18,10 @@ impl Help for Finding {
             (Kind::Constant | Kind::Frozen, _) => {
                 "restart the sensor or its driver, and check its wires; leave the cells of the repeats empty"
             }
+            (Kind::Held, Source::AllSensors) => {
+                "check the logger for pauses; leave the cells of the repeats empty, or remove their rows"
+            }
+            (Kind::Held, _) => "check the driver and its bus for failed readings; leave the cells of the repeats empty",
             (Kind::Zeros, _) => "leave the cell of a failed reading empty",
             (Kind::SameReadings, _) => {
                 "both readings are of one multiplexer channel: check the multiplexer's wires and addresses"
@@ -43,6 +47,9 @@ impl Help for Finding {
             (Kind::OnItsSide, _) => "mount the IMU level, with z up",
             (Kind::NotAbsolute, _) => {
                 "write the seconds at rest in the reference pose into tare.seconds of the table, or headings from the base's direction into the session"
+            }
+            (Kind::NewZero, Source::TwoImus { .. }) => {
+                "exchange the two columns from there on if the plugs were; otherwise check the IMUs' supply, and give these rows another number in column tare, where the arm is straight and at rest"
             }
             (Kind::NewZero, _) => {
                 "check the IMU's supply and plug; give the rows from there on another number in column tare, where the arm is straight and at rest"

@@ -2,9 +2,10 @@
 
 use std::io;
 
+use board_table::TableError;
 use proprio_link::drive::DriveError;
 use proprio_link::table::{TableImageError, TransferError};
-use proprio_link::{LinkError, RequestError};
+use proprio_link::{LinkError, RequestError, TareError};
 
 use super::Help;
 
@@ -51,6 +52,13 @@ impl Help for TableImageError {
     fn help(&self) -> String {
         match self {
             Self::File(error) => error.help(),
+            Self::Segments(_) | Self::BendSensors(_) => {
+                "a host alone can replay and monitor such an arm; the board needs a smaller one".to_owned()
+            }
+            Self::ReferencePins { .. } => {
+                "give each segment its pins in a section `[board]` (docs/how-to/wiring.md)".to_owned()
+            }
+            Self::Table(TableError::Wiring(_)) => "correct the section `[board]` (docs/how-to/wiring.md)".to_owned(),
             Self::Table(_) => "give a table of a smaller arm".to_owned(),
             Self::Source(_) => "write the table again".to_owned(),
         }
@@ -70,9 +78,21 @@ impl Help for TransferError {
     }
 }
 
+impl Help for TareError {
+    fn help(&self) -> String {
+        match self {
+            Self::Moving(_) => "let it rest, or use --force".to_owned(),
+            Self::Link(error) => error.help(),
+        }
+    }
+}
+
 impl Help for DriveError {
     fn help(&self) -> String {
         let help = match self {
+            Self::Regulators { .. } => {
+                "give one column of the profile, or one value of --kpa, for each regulator; `proprio status` shows their number"
+            }
             Self::OtherTable(_) => {
                 "store this table on the board with `proprio table push`, or give the board's (`proprio table pull`)"
             }

@@ -1,6 +1,7 @@
 //! Remedies of the errors that join those of the libraries.
 
 use super::Help;
+use crate::arm::NewArmError;
 use crate::error::Error;
 
 impl Help for Error {
@@ -13,13 +14,31 @@ impl Help for Error {
             Self::Link(error) => return error.help(),
             Self::Drive(error) => return error.help(),
             Self::Flash(error) => return error.help(),
-            Self::TableImage(error) => return error.help(),
+            Self::TableImage { source, .. } => return source.help(),
             Self::Transfer(error) => return error.help(),
+            Self::Tare(error) => return error.help(),
+            Self::Layout { .. } => "simulate an arm of 1 to 8 segments",
+            Self::NewArm(error) => return error.help(),
             Self::OutputTwice(_) => "give the output another name",
             Self::Stdout(_) => "write to a disk with free space, or use --out",
-            Self::SessionWithoutTable => "give the arm's table with --table",
+            Self::SessionWithoutTable | Self::CheckWithoutTable(_) => "give the arm's table with --table",
             Self::OneSession(_) => "replay the sessions one by one",
             Self::Simulation(_) | Self::Seconds(_) | Self::Pressure(_) | Self::Ramp(_) => "give a value in this range",
+        };
+        help.to_owned()
+    }
+}
+
+impl Help for NewArmError {
+    fn help(&self) -> String {
+        let help = match self {
+            Self::Missing(_) | Self::Answer { .. } => "give it, such as --lengths-mm 90,90,80 --bend 2,2,1",
+            Self::Number { .. } => "write numbers with commas between them, such as 90,90,80",
+            Self::BendSegments { .. } => "give a number for each segment, 0 where it has no bend sensor",
+            Self::Segments(_) | Self::BendSensors(_) | Self::Regulators(_) => {
+                "describe the part of the arm that the board has room for; a host alone can replay and monitor a larger one"
+            }
+            Self::Length { .. } | Self::SegmentSensors { .. } | Self::FullScale(_) => "give a value in this range",
         };
         help.to_owned()
     }

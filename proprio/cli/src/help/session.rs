@@ -1,7 +1,7 @@
 //! Remedies of errors of sessions.
 
 use proprio_session::recording::ReadError;
-use proprio_session::{FileContent, MissingColumn, MissingReason, SessionProblem, time_unit_of};
+use proprio_session::{FileContent, ForeignFile, MissingColumn, MissingReason, SessionProblem, time_unit_of};
 
 use super::Help;
 
@@ -21,12 +21,13 @@ impl Help for SessionProblem {
             Self::Directory => "name the .csv file in it",
             Self::NoHeader | Self::NoSamples | Self::NothingWhole => "record the session again, or take another",
             Self::LongLine => "end each row with a line end; is it a CSV? copy the file again, or take another",
+            Self::Foreign(of) => foreign_file(*of),
             Self::NotText => "save it as CSV in UTF-8",
             Self::MissingColumn(missing) => return missing.help(),
             Self::TimeUnit { rate_hz, factor, .. } => return time_unit(*rate_hz, *factor),
             Self::Backwards { from_s, to_s } => return backwards(*from_s, *to_s),
             Self::DuplicateColumn(_) => "remove or rename one of them",
-            Self::OtherArm { .. } | Self::RecordedSegments(_) => {
+            Self::OtherArm { .. } | Self::RecordedSegments { .. } => {
                 "take the arm description or table of the arm that was recorded"
             }
             Self::RowLength { .. } => {
@@ -37,6 +38,7 @@ impl Help for SessionProblem {
             Self::NoTime | Self::Time(_) | Self::Clock(_) => "give every row its time in seconds",
             Self::NoPressure => "give every regulator its pressure in every row; 0 is vented",
             Self::Pressure(_) => "write pressures over the atmosphere's: in kPa in _kpa, in Pa in _pa",
+            Self::TooManyRegulators(_) => "remove the columns of the regulators that the board does not have",
             Self::NoMoments => "give at least one row",
             Self::NotANumber(_) => "write numbers with a decimal point, and leave the cell of a missing reading empty",
             Self::NotFinite(_) => "leave the cell empty",
@@ -66,6 +68,17 @@ impl Help for SessionProblem {
             Self::PartialTruth => "leave all its cells empty where the camera did not see the segment",
         };
         help.to_owned()
+    }
+}
+
+/// Remedy of a file of another kind.
+fn foreign_file(foreign: ForeignFile) -> &'static str {
+    match foreign {
+        ForeignFile::Packed(_) => "unpack it first",
+        ForeignFile::Spreadsheet => "save it as CSV in UTF-8, with commas between the columns and decimal points",
+        ForeignFile::Data(_) => "write its readings to a CSV: docs/reference/files.md",
+        ForeignFile::Utf16 => "save it as UTF-8",
+        ForeignFile::Recording => "give a CSV; that of a recording's samples is made with `proprio convert`",
     }
 }
 
@@ -117,7 +130,7 @@ fn content(found: FileContent, expected: FileContent) -> &'static str {
             "remove the line, and write commas between the columns and decimal points in the numbers"
         }
         (FileContent::Html, _) => "download the file itself, as raw data",
-        (_, FileContent::Profile) => "a profile has time_s and pressure1_kpa to pressure6_kpa: docs/how-to/driving.md",
+        (_, FileContent::Profile) => "a profile has time_s and pressure1_kpa, pressure2_kpa, …: docs/how-to/driving.md",
         (_, FileContent::Camera) => {
             "a camera's file has time_s, and x, y and heading of each marker: docs/reference/files.md"
         }

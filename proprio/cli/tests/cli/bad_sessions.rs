@@ -158,13 +158,6 @@ fn a_header_that_is_not_utf8_is_refused() {
 }
 
 #[test]
-fn a_utf16_file_is_refused() {
-    let units = format!("\u{feff}{}", session());
-    let bytes: Vec<u8> = units.encode_utf16().flat_map(u16::to_le_bytes).collect();
-    assert!(refused(bytes).contains("is not UTF-8 text"));
-}
-
-#[test]
 fn a_quote_that_never_ends_is_refused() {
     let mut session = session();
     session.set(120, "bend1a_adc", "\"2000");

@@ -1,17 +1,21 @@
 //! A synthetic board: the firmware's estimator and frames, over the readings of the twin's sensors.
 
-use board_core::BoardEstimator;
+use board_estimator::BoardEstimator;
 use calibration_tables::ArmFile;
 use estimator_core::Q;
 use proprio_simulation::Simulation;
 use rig_twin::Scenario;
 use telemetry::{
-    Actuation, BEND_SENSORS, Encoder, Estimate, Health, Hello, MAX_FRAME, Message, PROTOCOL_VERSION, REGULATORS,
-    ResetCause, SCHEMA, SEGMENTS, Sample, SensorHealth, SensorState, TICK_HZ, Text,
+    Actuation, Encoder, Estimate, Health, Hello, MAX_FRAME, Message, PROTOCOL_VERSION, ResetCause, SCHEMA, Sample,
+    SensorHealth, SensorState, TICK_HZ, Text,
 };
 
 use super::common::table;
 
+/// Segments of the reference arm.
+const SEGMENTS: usize = 6;
+/// Bend sensors of the reference arm.
+const BEND_SENSORS: usize = 2 * SEGMENTS;
 /// Tick at which the IMUs come up.
 const IMUS_UP: u32 = 80;
 
@@ -48,7 +52,10 @@ impl SyntheticBoard {
         let read = self.simulation.next()?;
         let tick = self.tick;
         self.tick += 1;
-        let imu = if tick < IMUS_UP { [None; SEGMENTS] } else { read.quaternions };
+        let mut imu = read.quaternions;
+        if tick < IMUS_UP {
+            imu.fill(None);
+        }
         if self.estimator.needs_first_tare(tick, imu.iter().all(Option::is_some)) {
             self.estimator.tare();
         }
@@ -65,9 +72,9 @@ impl SyntheticBoard {
         };
         let estimate = self.estimator.update(&sample);
         let contact = self.estimator.contact_event(tick);
-        let mut messages = Vec::new();
+        let mut messages: Vec<Message> = Vec::new();
         messages.extend(tick.is_multiple_of(100).then(|| Message::Hello(self.hello())));
-        messages.extend([Message::Sample(sample), Message::Estimate(estimate)]);
+        messages.extend([Message::Sample(sample), Message::Estimate(estimate.clone())]);
         messages.extend(contact.map(Message::Event));
         messages.extend(tick.is_multiple_of(25).then(|| Message::Uncertainty(self.estimator.uncertainty(tick))));
         messages.extend(tick.is_multiple_of(20).then(|| Message::Health(health(tick))));
@@ -85,6 +92,9 @@ impl SyntheticBoard {
             revision: text("synthetic"),
             arm: Text::try_from("planar-6").expect("it is short"),
             table: self.table,
+            segments: SEGMENTS as u8,
+            bend_sensors: BEND_SENSORS as u8,
+            regulators: 6,
             chip: *b"a synthetic Due!",
             reset: ResetCause::Pin,
             boot: self.boot,
@@ -110,8 +120,8 @@ fn health(tick: u32) -> Health {
     let ok = SensorHealth { state: SensorState::Ok, missed: 0 };
     Health {
         tick,
-        bend: [ok; BEND_SENSORS],
-        imu: [ok; SEGMENTS],
+        bend: [ok; BEND_SENSORS].into_iter().collect(),
+        imu: [ok; SEGMENTS].into_iter().collect(),
         max_estimate_latency_us: 3000,
         longest_imu_read_us: 2000,
         load_permille: 100,
@@ -122,6 +132,6 @@ fn health(tick: u32) -> Health {
         bus_recoveries: 0,
         saturations: 0,
         actuation: Actuation::Disarmed,
-        pressures_pa: [0; REGULATORS],
+        pressures_pa: [0; 6].into_iter().collect(),
     }
 }

@@ -295,3 +295,32 @@ fn truth_with_a_mirrored_axis_is_refused() {
     });
     assert!(error.contains("the truth's points are"), "{error}");
 }
+
+fn in_radians(session: &mut Csv, imu: usize) {
+    session.map(&format!("imu{imu}_deg"), |_, cell| {
+        let degrees: f64 = cell.parse().expect("a number");
+        format!("{:.4}", degrees.to_radians())
+    });
+}
+
+#[test]
+fn an_imu_in_radians_is_blamed_and_no_exchange() {
+    for imu in [1, 3, 6] {
+        let error = refused(|session| in_radians(session, imu));
+        assert!(error.starts_with(&format!(": imu{imu} is in radians in a column of degrees")), "{error}");
+    }
+}
+
+#[test]
+fn an_imu_in_radians_is_found_in_the_one_session_that_has_it() {
+    let folder = Folder::with("good.csv", sweep().to_string());
+    folder.write("again.csv", sweep().to_string());
+    let mut session = sweep();
+    in_radians(&mut session, 3);
+    folder.write("radians.csv", session.to_string());
+    let command = ["calibrate", "good.csv", "again.csv", "radians.csv", "--arm", arm(), "-o", "table.toml"];
+    let error = folder.refused(&command);
+    assert!(error.starts_with("radians.csv: imu3 is in radians"), "{error}");
+    let stderr = folder.run(&command).stderr;
+    assert!(stderr.contains("rename the column to imu3_rad"), "{stderr}");
+}

@@ -107,12 +107,16 @@ fn what_cannot_be_converted_is_refused() {
     assert!(folder.refused(&["convert", "a.csv", "b.csv"]).contains("of this kind already"));
     assert!(folder.refused(&["convert", "a.csv", "b.txt"]).contains("ends with none of .csv"));
     assert!(folder.refused(&["convert", "none.csv", "b.mcap"]).contains("cannot be read"));
-    let mut eight = session();
-    for segment in [7, 8] {
+    let mut nine = session();
+    for segment in [7, 8, 9] {
         for column in ["imuK_deg", "truthK_x_mm", "truthK_y_mm", "truthK_heading_deg"] {
-            eight.push(&column.replace('K', &segment.to_string()), "0");
+            nine.push(&column.replace('K', &segment.to_string()), "0");
         }
     }
-    folder.write("eight.csv", eight.to_string());
-    assert!(folder.refused(&["convert", "eight.csv", "b.mcap"]).contains("has 8 segments"));
+    folder.write("nine.csv", nine.to_string());
+    assert!(
+        folder
+            .refused(&["convert", "nine.csv", "b.mcap"])
+            .contains("has 9 segments, a board and its recordings have 8 at most")
+    );
 }

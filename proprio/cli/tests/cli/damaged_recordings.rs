@@ -77,7 +77,8 @@ fn a_hole_in_a_recording_with_truth_is_named_by_calibrate_and_tune() {
     let folder = Folder::with("sweep.csv", sweep().to_string());
     folder.done(&["convert", "sweep.csv", "sweep.mcap"]);
     let whole = std::fs::read(folder.path("sweep.mcap")).expect("it was written");
-    folder.write("sweep.mcap", flipped(&whole, whole.len() / 2, 4));
+    // At the middle byte is the index of a chunk, whose damage is harmless.
+    folder.write("sweep.mcap", flipped(&whole, whole.len() / 2 + 1000, 4));
     let calibrate = ["calibrate", "sweep.mcap", "--arm", arm(), "-o", "table.toml"];
     let tune = ["tune", "sweep.mcap", "--table", "table.toml", "-o", "tuned.toml"];
     for command in [calibrate, tune] {
@@ -124,4 +125,29 @@ fn a_foreign_file_is_refused_with_its_topics() {
     writer.finish().expect("it can be written");
     let error = folder.refused(&["replay", "foreign.mcap", "--table", table()]);
     assert!(error.contains("/proprio/raw and /proprio/samples are missing, it has /tf"), "{error}");
+}
+
+#[test]
+fn commands_warn_of_a_recording_that_lacks_the_samples_since_the_tare() {
+    let mut session = sweep();
+    session.rows.truncate(1500);
+    let folder = Folder::with("sweep.csv", session.to_string());
+    folder.done(&["convert", "sweep.csv", "sweep.mcap"]);
+    let recording = std::fs::read(folder.path("sweep.mcap")).expect("it was written");
+    // In the first chunk, which has the first second.
+    folder.write("late.mcap", flipped(&recording, 3000, 2));
+    let warning = "warning: late.mcap: samples since the board's last tare are not in the recording, so that ";
+    let commands: [&[&str]; 3] = [
+        &["calibrate", "late.mcap", "--arm", arm(), "-o", "table.toml"],
+        &["check", "late.mcap", "--table", table()],
+        &["tune", "late.mcap", "--table", table(), "-o", "tuned.toml"],
+    ];
+    for command in commands {
+        let run = folder.run(command);
+        assert!(run.stderr.contains(warning), "{command:?}: {}", run.stderr);
+    }
+    let run = folder.run(&["check", "sweep.mcap", "--table", table()]);
+    assert!(!run.stderr.contains("last tare"), "{}", run.stderr);
+    let run = folder.done(&["convert", "late.mcap", "late.csv"]);
+    assert!(run.stderr.contains("have another tare or drift here than on the board"), "{}", run.stderr);
 }

@@ -15,8 +15,8 @@ fn a_bad_cell_is_named_by_its_line_and_column() {
     let cases = [
         ("0,0,0,0,0,0,0\n1,0,x,0,0,0,0\n", "line 3, column pressure2_kpa: \"x\" is not a number"),
         ("0,0,0,0,0,0,\n", "line 2, column pressure6_kpa: the cell is empty, expected a pressure"),
-        ("0,0,0,-1,0,0,0\n", "line 2, column pressure3_kpa: pressure -1, expected 0 to 280 kPa"),
-        ("0,281,0,0,0,0,0\n", "line 2, column pressure1_kpa: pressure 281, expected 0 to 280 kPa"),
+        ("0,0,0,-1,0,0,0\n", "line 2, column pressure3_kpa: pressure -1, expected 0 to 1000 kPa"),
+        ("0,1001,0,0,0,0,0\n", "line 2, column pressure1_kpa: pressure 1001, expected 0 to 1000 kPa"),
         ("0,0,0,0,0,nan,0\n", "line 2, column pressure5_kpa: nan is not finite; a missing reading is an empty cell"),
         ("1,0,0,0,0,0,0\n0.5,0,0,0,0,0,0\n", "line 3, column time_s: time goes backwards, from 1 s to 0.5 s"),
         (",0,0,0,0,0,0\n", "line 2, column time_s: the cell is empty, expected a time"),
@@ -45,16 +45,30 @@ fn a_good_profile_is_for_a_port_that_is_there() {
 
 #[test]
 fn pressures_in_pa_are_taken_as_well() {
-    let in_pa = HEADER.replace("kpa", "pa") + "0,0,0,0,0,0,280001\n";
-    assert_eq!(refused(&in_pa), "profile.csv, line 2, column pressure6_pa: pressure 280001, expected 0 to 280 kPa");
+    let in_pa = HEADER.replace("kpa", "pa") + "0,0,0,0,0,0,1000001\n";
+    assert_eq!(refused(&in_pa), "profile.csv, line 2, column pressure6_pa: pressure 1000001, expected 0 to 1000 kPa");
 }
 
 #[test]
 fn arguments_out_of_range_are_refused() {
     let folder = Folder::with("d.mcap", "another recording");
     let refused = |arguments: &[&str]| folder.refused(&[&["drive", "--port", "/dev/no-such-port"], arguments].concat());
-    assert_eq!(refused(&["--kpa", "0,0,0,300,0,0"]), "--kpa 300, expected 0 to 280");
+    assert_eq!(refused(&["--kpa", "0,0,0,1001,0,0"]), "--kpa 1001, expected 0 to 1000");
     assert_eq!(refused(&["--kpa", "0,0,0,0,0,0", "--ramp", "0"]), "--ramp 0 kPa/s, expected more than 0");
     assert!(refused(&["--kpa", "0,0,0,0,0,0", "--seconds", "-1"]).starts_with("--seconds -1, expected more than 0"));
     assert!(refused(&["--kpa", "0,0,0,0,0,0", "-o", "d.mcap"]).contains("d.mcap: is there already"));
+}
+
+#[test]
+fn a_profile_has_as_many_regulators_as_its_columns() {
+    let error = refused("time_s,pressure1_kpa,pressure2_kpa\n0,0,0\n");
+    assert!(error.starts_with("/dev/no-such-port: cannot be opened"), "{error}");
+    let nine = (1..=9).map(|i| format!(",pressure{i}_kpa")).collect::<Vec<_>>().concat();
+    let error = refused(&format!("time_s{nine}\n0{}\n", ",0".repeat(9)));
+    assert_eq!(error, "profile.csv, line 1: has pressures of 9 regulators, a board has 8 at most");
+    let error = refused("time_s,pressure_kpa\n0,0\n");
+    assert!(error.starts_with("profile.csv, line 1: column pressure1_kpa is missing"), "{error}");
+    let folder = Folder::new();
+    let run = folder.run(&["drive", "--port", "/dev/no-such-port", "--kpa", "0,0,0,0,0,0,0,0,0"]);
+    assert!(run.stderr.contains("9 pressures, a board has 8 regulators at most"), "{}", run.stderr);
 }

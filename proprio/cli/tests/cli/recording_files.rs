@@ -5,7 +5,7 @@ use proprio_session::recording::Recorder;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 use serde_json::Value;
-use telemetry::{Decoder, Encoder, Event, MAX_FRAME, Message, SEGMENTS};
+use telemetry::{Decoder, Encoder, Event, MAX_FRAME, Message};
 
 use super::board::SyntheticBoard;
 use super::common::{Folder, error_of, estimates, json, table};
@@ -136,7 +136,7 @@ fn a_recorded_contact_that_the_replay_lacks_is_reported() {
         if let Message::Health(health) = message
             && health.tick == 340
         {
-            *message = Message::Event(Event::Contact(health.tick, [true; SEGMENTS]));
+            *message = Message::Event(Event::Contact(health.tick, 0b11_1111));
         }
     });
     let compared = &recorded["contacts"];
@@ -255,7 +255,7 @@ fn a_recording_of_a_longer_arm_is_refused() {
     long += "[[segment]]\nlength_mm = 80.0\noffset_mm = 17.0\noffset_at = \"end\"\nbend = []\n";
     folder.write("long.toml", long);
     let error = folder.refused(&["replay", "session.mcap", "--table", "long.toml"]);
-    assert!(error.contains("the arm has 7"), "{error}");
+    assert!(error.contains("a board with 6 segments, the arm has 7"), "{error}");
 }
 
 #[test]
@@ -306,7 +306,7 @@ fn a_recording_of_another_protocol_version_is_refused_with_both_versions() {
     let frame = [[6, 1].as_slice(), &0xa505_df1b_u32.to_le_bytes(), &[0]].concat();
     let folder = Folder::with("old.mcap", record([frame]));
     let error = folder.refused(&["replay", "old.mcap", "--table", table()]);
-    assert!(error.contains("its board used protocol version 1, and this proprio reads version 2"), "{error}");
+    assert!(error.contains("its board used protocol version 1, and this proprio reads versions 2 and 3"), "{error}");
 }
 
 #[test]

@@ -78,7 +78,7 @@ fn a_session_in_place_of_a_profile_or_of_a_camera_s_file_is_named() {
     session.remove("truth");
     let folder = Folder::with("session.csv", session.to_string());
     let driven = refused(&folder, &["drive", "session.csv", "--port", "/dev/no-such-port"]);
-    assert_remedy(driven, "the file is a session", "pressure1_kpa to pressure6_kpa");
+    assert_remedy(driven, "the file is a session", "pressure1_kpa, pressure2_kpa");
     let align = ["align", "session.csv", "--camera", "session.csv", "--arm", arm(), "-o", "aligned.csv"];
     assert_remedy(refused(&folder, &align), "the file is a session", "x, y and heading of each marker");
 }
@@ -138,4 +138,51 @@ fn time_that_goes_backwards_has_the_remedy_of_its_reason() {
     );
     let (_, help) = replayed(&set.to_string());
     assert!(help.contains("split it here; do not sort"), "{help}");
+}
+
+/// Error and help of a check of a file with these bytes.
+fn checked(name: &str, bytes: &[u8]) -> (String, String) {
+    let folder = Folder::with(name, bytes);
+    refused(&folder, &["check", name, "--table", table()])
+}
+
+#[test]
+fn packed_files_and_those_of_other_programs_are_named() {
+    let padded = |begin: &[u8]| [begin, &[0xa5; 200]].concat();
+    assert_remedy(checked("session.csv.gz", &padded(b"\x1f\x8b\x08\0")), "is a packed file (gzip)", "unpack it first");
+    // By the content, not by the name.
+    assert_remedy(checked("session.csv", &padded(b"PK\x03\x04")), "is a packed file (zip)", "unpack it first");
+    assert_remedy(checked("session.xlsx", &padded(b"PK\x03\x04")), "is a spreadsheet", "save it as CSV in UTF-8");
+    assert_remedy(
+        checked("session.db3", &padded(b"SQLite format 3\0")),
+        "bags of ROS 2",
+        "write its readings to a CSV",
+    );
+    let folder = Folder::with("session.mcap.gz", padded(b"\x1f\x8b\x08\0"));
+    let recover = ["recover", "session.mcap.gz", "-o", "whole.mcap"];
+    assert_remedy(refused(&folder, &recover), "is a packed file (gzip)", "unpack it first");
+}
+
+#[test]
+fn text_in_utf_16_is_named_with_and_without_its_mark() {
+    let text = session().to_string();
+    let units = |to: fn(u16) -> [u8; 2]| text.encode_utf16().flat_map(to).collect::<Vec<u8>>();
+    let (little, big) = (units(u16::to_le_bytes), units(u16::to_be_bytes));
+    let marked = [&[0xff, 0xfe], &little[..]].concat();
+    for bytes in [little, big, marked] {
+        assert_remedy(checked("session.csv", &bytes), "is text in UTF-16", "save it as UTF-8");
+    }
+    // The mark of UTF-8 is read over.
+    let folder = Folder::with("session.csv", format!("\u{feff}{text}"));
+    folder.done(&["check", "session.csv", "--table", table()]);
+}
+
+#[test]
+fn a_recording_in_place_of_a_camera_s_file_is_named() {
+    let mut session = session();
+    session.remove("truth");
+    let folder = Folder::with("session.csv", session.to_string());
+    folder.done(&["convert", "session.csv", "session.mcap"]);
+    let align = ["align", "session.csv", "--camera", "session.mcap", "--arm", arm(), "-o", "aligned.csv"];
+    assert_remedy(refused(&folder, &align), "is a recording, expected a CSV", "`proprio convert`");
 }

@@ -175,3 +175,10 @@ fn every_cell_of_a_session_at_rest_may_be_repeated() {
     let run = Calibration::of(&session).run;
     assert!(!run.stderr.contains("repeated"), "{}", run.stderr);
 }
+
+#[test]
+fn markers_that_are_exchanged_in_the_whole_session_are_blamed_and_not_the_arm() {
+    let error = refused(|session| exchange(session, [5, 6], 0..6000));
+    assert!(error.contains("truth5 and truth6, rows 1 to 6000"), "{error}");
+    assert!(error.contains("each has the pose of the other in 100.00 % of the rows"), "{error}");
+}

@@ -196,3 +196,12 @@ fn truth_without_headings_is_checked_for_zeros_and_distances() {
     assert!(found.len() == 1 && found[0].name == "truth2 truth_misplaced", "{found:?}");
     assert_eq!(found[0].count, 20);
 }
+
+#[test]
+fn markers_that_are_exchanged_in_the_whole_session_are_found() {
+    for pair in [[5, 6], [1, 2], [3, 6]] {
+        let name = format!("truth{} and truth{} truth_exchanged", pair[0], pair[1]);
+        let found = found(|session| exchange(session, pair, 0..1200), &name);
+        assert_eq!((found.count, found.figure), (1200, 100.0));
+    }
+}

@@ -84,7 +84,7 @@ fn the_token_is_needed_to_drive_the_board() {
     assert_eq!(control(&right, r#""arm""#), 200);
     assert_eq!(control(&right, r#"{"set_pressures":{"kpa":[1,0,0,2.5,0,-7]}}"#), 200);
     assert_eq!(control(&right, r#""vent""#), 200);
-    let pressures = SetPressures { pressures_pa: [1000, 0, 0, 2500, 0, 0], valid_ms: 500 };
+    let pressures = SetPressures { pressures_pa: [1000, 0, 0, 2500, 0, 0].into_iter().collect(), valid_ms: 500 };
     let done = line.board().done.clone();
     let done: Vec<_> = done.iter().filter(|command| **command != Command::Ping).collect();
     assert_eq!(done, [&Command::Arm, &Command::SetPressures(pressures), &Command::Disarm]);
@@ -97,7 +97,7 @@ fn the_board_s_refusal_is_returned() {
     let page = Page::of(&line, Some(token.clone()));
     line.board().restart(1);
     page.wait_for_status(|status| status["answers"] == true);
-    line.board().refuses = true;
+    line.board().refuses = Some(telemetry::Refusal::Disarmed);
     let (host, origin, token) = (page.host(), page.origin(), format!("Bearer {token}"));
     let headers = [("Host", &*host), ("Origin", &*origin), ("Authorization", &*token)];
     let answer = page.request("POST", "/control", &headers, r#""arm""#);

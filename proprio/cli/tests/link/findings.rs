@@ -18,12 +18,12 @@ const TABLE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../calibration-tabl
 fn send_one_channel(line: &Line, ticks: std::ops::Range<u32>, tare_epoch: u8, is_one_channel: bool) {
     let simulation = Simulation::new(Scenario::FreeSwing, 7, 20.0, 100.0).expect("a valid run");
     for (tick, read) in ticks.zip(simulation) {
-        let mut imu = read.quaternions;
+        let (bend, mut imu) = (read.counts, read.quaternions);
         if is_one_channel {
             imu[3] = imu[2];
         }
         let time_us = u64::from(tick) * 10_000;
-        line.board().send(&Message::Sample(Sample { tick, time_us, tare_epoch, bend: read.counts, imu }));
+        line.board().send(&Message::Sample(Sample { tick, time_us, tare_epoch, bend, imu }));
     }
 }
 

@@ -159,6 +159,16 @@ impl Socket {
         }
     }
 
+    /// The description of the arm, once the board has sent its number of segments.
+    pub fn arm(&mut self) -> Value {
+        loop {
+            let arm = self.next("arm");
+            if arm["segments"] != 0 {
+                return arm;
+            }
+        }
+    }
+
     pub fn send(&mut self, text: &str) {
         self.0.send(Message::from(text)).expect("it listens");
     }

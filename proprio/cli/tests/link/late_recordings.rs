@@ -11,10 +11,13 @@ use proprio_session::{HostClock, SessionReader};
 use proprio_simulation::Simulation;
 use rig_twin::Scenario;
 use serde_json::Value;
-use telemetry::{Estimate, Message, SEGMENTS, Sample, TICK_HZ};
+use telemetry::{Estimate, Message, Sample, TICK_HZ};
 
 use super::http::Page;
 use super::line::{Line, hello, wait_for};
+
+/// Segments of the reference arm.
+const SEGMENTS: usize = 6;
 
 fn table() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../calibration-tables/planar-6.toml")

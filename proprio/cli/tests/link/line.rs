@@ -7,8 +7,11 @@ use std::time::{Duration, Instant};
 
 use proprio_link::{EventKind, LinkError, LinkEvent, Source, Subscription, Transport};
 use telemetry::{
-    Command, Decoder, Encoder, Hello, MAX_FRAME, Message, PROTOCOL_VERSION, Request, ResetCause, SCHEMA, Sample, Text,
+    Command, Decoder, Encoder, Hello, MAX_FRAME, Message, PROTOCOL_VERSION, Refusal, Request, ResetCause, SCHEMA,
+    Sample, TareReport, Text, protocol_2,
 };
+
+use super::older;
 
 /// Long enough for what comes at all.
 pub const PATIENCE: Duration = Duration::from_secs(20);
@@ -18,10 +21,18 @@ pub struct Board {
     encoder: Encoder,
     requests: Decoder<Request>,
     server: board_core::CommandServer,
+    /// Version of the protocol that it uses.
+    pub protocol: u8,
+    /// The received bytes since the last zero, of a board of protocol 2.
+    block: Vec<u8>,
+    /// Received frames of another version.
+    pub other_version: usize,
     /// Answers that are lost on their way.
     pub answers_lost: usize,
-    /// Commands are refused.
-    pub refuses: bool,
+    /// Reason for which commands are refused.
+    pub refuses: Option<Refusal>,
+    /// Report that goes before the reply to a request to tare.
+    pub pose: Option<TareReport>,
     /// Executed commands, in order.
     pub done: Vec<Command>,
     /// All received requests, executed or not.
@@ -36,7 +47,16 @@ impl Board {
     pub fn send(&mut self, message: &Message) {
         let mut buffer = [0; MAX_FRAME];
         let frame = self.encoder.encode(message, &mut buffer).expect("it fits");
-        self.to_host.extend(frame);
+        if self.protocol == protocol_2::VERSION {
+            self.to_host.extend(older::reply(frame));
+        } else {
+            self.to_host.extend(frame);
+        }
+    }
+
+    /// Sends bytes as they are.
+    pub fn send_bytes(&mut self, bytes: &[u8]) {
+        self.to_host.extend(bytes);
     }
 
     /// Sends a frame that is lost on its way.
@@ -53,18 +73,35 @@ impl Board {
     }
 
     fn receive(&mut self, byte: u8) {
+        if self.protocol != protocol_2::VERSION {
+            return self.decode(byte);
+        }
+        if byte != 0 {
+            return self.block.push(byte);
+        }
+        let block = std::mem::take(&mut self.block);
+        match older::request(&block) {
+            Some(newer) => newer.into_iter().for_each(|byte| self.decode(byte)),
+            None => self.other_version += usize::from(!block.is_empty()),
+        }
+    }
+
+    fn decode(&mut self, byte: u8) {
         let Some(Ok(request)) = self.requests.push(byte) else { return };
         self.received.push(request.clone());
         let tick = (self.began.elapsed().as_millis() / 10) as u32;
         let (done, refuses) = (&mut self.done, self.refuses);
         let reply = self.server.answer(&request, tick, |command| {
-            if refuses && *command != Command::Ping {
-                return Err(telemetry::Refusal::Disarmed);
+            if let Some(refusal) = refuses.filter(|_| *command != Command::Ping) {
+                return Err(refusal);
             }
             done.push(command.clone());
             Ok(board_core::Execution::Done)
         });
         let Some(reply) = reply else { return };
+        if let Some(pose) = self.pose.filter(|_| matches!(request.command, Command::Tare(_))) {
+            self.send(&Message::Tare(TareReport { id: request.id, ..pose }));
+        }
         if self.answers_lost > 0 {
             self.answers_lost -= 1;
         } else {
@@ -86,8 +123,12 @@ impl Line {
             encoder: Encoder::new(),
             requests: Decoder::new(),
             server: board_core::CommandServer::new(),
+            protocol: PROTOCOL_VERSION,
+            block: Vec::new(),
+            other_version: 0,
             answers_lost: 0,
-            refuses: false,
+            refuses: None,
+            pose: None,
             done: Vec::new(),
             received: Vec::new(),
             to_host: VecDeque::new(),
@@ -146,6 +187,9 @@ pub fn hello(boot: u32) -> Hello {
         revision: text("abc"),
         arm: text("planar-6"),
         table: 7,
+        segments: 6,
+        bend_sensors: 12,
+        regulators: 6,
         chip: [1; 16],
         reset: ResetCause::Pin,
         boot,
@@ -157,8 +201,13 @@ pub fn text<const N: usize>(text: &str) -> Text<N> {
     Text::try_from(text).expect("it is short")
 }
 
-/// A sample whose readings depend on its tick.
+/// A sample of six segments whose readings depend on its tick.
 pub fn sample(tick: u32) -> Sample {
+    sample_of(6, tick)
+}
+
+/// The same of so many segments.
+pub fn sample_of(segments: u32, tick: u32) -> Sample {
     let time_us = u64::from(tick) * 10_000;
     let counts = |i: u32| Some(((tick * 7 + i) % 4096) as u16);
     let quaternion = |i: u32| Some([tick, i, tick / 3, 0].map(|part| (part % 16_384) as i16));
@@ -166,8 +215,8 @@ pub fn sample(tick: u32) -> Sample {
         tick,
         time_us,
         tare_epoch: 0,
-        bend: [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11].map(counts),
-        imu: [0, 1, 2, 3, 4, 5].map(quaternion),
+        bend: (0..2 * segments).map(counts).collect(),
+        imu: (0..segments).map(quaternion).collect(),
     }
 }
 

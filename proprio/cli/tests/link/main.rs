@@ -2,6 +2,7 @@
 //! live page of it.
 
 mod access;
+mod any_arm;
 mod findings;
 mod flashed;
 mod http;
@@ -9,8 +10,10 @@ mod late_recordings;
 mod line;
 mod mismatches;
 mod noise;
+mod older;
 mod page;
 mod reconnect;
 mod requests;
 mod sessions;
+mod tare;
 mod uncertainty;

@@ -7,10 +7,7 @@ use proprio_monitor::Plain;
 use proprio_session::{HostClock, LoadedTable};
 use proprio_simulation::Simulation;
 use rig_twin::Scenario;
-use telemetry::{
-    Actuation, BEND_SENSORS, Estimate, Health, Message, REGULATORS, SEGMENTS, Sample, SegmentEstimate, SensorHealth,
-    SensorState,
-};
+use telemetry::{Actuation, Estimate, Health, Message, Sample, SegmentEstimate, SensorHealth, SensorState};
 
 use super::http::Page;
 use super::line::{Line, sample, wait_for};
@@ -22,17 +19,17 @@ fn bits(value: f64) -> i32 {
 
 fn estimate(tick: u32) -> Estimate {
     let segment = |i: usize| SegmentEstimate { theta: bits(0.1 * i as f64), end: [bits(0.01 * i as f64), bits(0.1)] };
-    Estimate { tick, segments: std::array::from_fn(|i| Some(segment(i))) }
+    Estimate { tick, segments: (0..6).map(|i| Some(segment(i))).collect() }
 }
 
 pub fn health(tick: u32, imu_3: SensorState) -> Health {
     let sensor = |state| SensorHealth { state, missed: 5 };
-    let mut imu = [sensor(SensorState::Ok); SEGMENTS];
+    let mut imu = [sensor(SensorState::Ok); 6];
     imu[2] = sensor(imu_3);
     Health {
         tick,
-        bend: [sensor(SensorState::Ok); BEND_SENSORS],
-        imu,
+        bend: [sensor(SensorState::Ok); 12].into_iter().collect(),
+        imu: imu.into_iter().collect(),
         max_estimate_latency_us: 5000,
         longest_imu_read_us: 2000,
         load_permille: 123,
@@ -43,7 +40,7 @@ pub fn health(tick: u32, imu_3: SensorState) -> Health {
         bus_recoveries: 0,
         saturations: 0,
         actuation: Actuation::Disarmed,
-        pressures_pa: [0; REGULATORS],
+        pressures_pa: [0; 6].into_iter().collect(),
     }
 }
 
@@ -85,7 +82,7 @@ fn samples_and_estimates_come_as_rows_with_named_columns() {
     let page = Page::of(&line, None);
     line.board().restart(1);
     let mut socket = page.socket(Some(&page.origin())).expect("its own page");
-    let arm = socket.next("arm");
+    let arm = socket.arm();
     send_ticks(&line, 0..1);
     let rows = socket.next("rows");
     let value = |name: &str| {
@@ -109,7 +106,7 @@ fn the_status_has_the_state_of_every_sensor_and_the_board_s_load() {
     line.board().restart(1);
     line.board().send(&Message::Health(health(0, SensorState::NoResponse)));
     let status = page.wait_for_status(|status| status["sensors"][14]["state"] == "Off");
-    assert_eq!(status["sensors"].as_array().map(Vec::len), Some(BEND_SENSORS + SEGMENTS));
+    assert_eq!(status["sensors"].as_array().map(Vec::len), Some(12 + 6));
     assert_eq!(status["sensors"][14]["reason"], "does not answer, or reads at a rail");
     assert_eq!((&status["sensors"][0]["state"], &status["health"]["load_percent"]), (&"Ok".into(), &12.3.into()));
 

@@ -1,9 +1,11 @@
 //! A cable that comes and goes.
 
 use proprio_link::{EventKind, Link, LinkError, RequestError};
-use telemetry::{Command, Message};
+use telemetry::{Command, Message, TareMode};
 
 use super::line::{Line, hello, sample, wait_for};
+
+const TARE: Command = Command::Tare(TareMode::IfStill);
 
 fn opened(what: &EventKind) -> Option<String> {
     match what {
@@ -30,14 +32,14 @@ fn a_line_that_comes_back_is_opened_again_under_its_new_name() {
     });
     assert!(reason.starts_with("line 1: "), "{reason}");
     assert_eq!(link.state().port, None);
-    let asked = link.request(Command::Tare);
+    let asked = link.request(TARE);
     assert!(matches!(asked, Err(LinkError::Request(RequestError::Interrupted))), "{asked:?}");
 
     line.board().restart(2);
     line.board().unplugged = false;
     assert_eq!(wait_for(&events, opened), "line 2");
     wait_for(&events, |what| matches!(what, EventKind::Restarted).then_some(()));
-    link.request(Command::Tare).expect("it is is_connected and answers");
+    link.request(TARE).expect("it is is_connected and answers");
     let state = link.state();
     assert_eq!((state.port.as_deref(), state.reopened, state.restarts), (Some("line 2"), 1, 1));
     // The frames of both openings, and none of between.
@@ -64,7 +66,7 @@ fn a_board_that_lost_its_power_with_the_cable_has_restarted_however_short_it_ran
     line.board().unplugged = false;
     wait_for(&events, |what| matches!(what, EventKind::Restarted).then_some(()));
     wait_for(&events, |what| matches!(what, EventKind::Message(Message::Sample(last)) if last.tick == 4).then_some(()));
-    link.request(Command::Tare).expect("it is is_connected and answers");
+    link.request(TARE).expect("it is is_connected and answers");
     assert_eq!((link.state().restarts, link.state().counts.lost), (1, 0));
 }
 

@@ -3,9 +3,11 @@
 use std::time::{Duration, Instant};
 
 use proprio_link::{EventKind, Link, LinkError, RequestError};
-use telemetry::{Command, Message, Refusal};
+use telemetry::{Command, Message, Refusal, TareMode};
 
 use super::line::{Line, PATIENCE, hello, sample, wait_for};
+
+const TARE: Command = Command::Tare(TareMode::IfStill);
 
 fn wait_until(is_so: impl Fn() -> bool) {
     let end = Instant::now() + PATIENCE;
@@ -24,9 +26,9 @@ fn a_link_begins_with_a_ping_and_repeats_it_until_it_is_acknowledged() {
     let line = Line::new();
     line.board().answers_lost = 3;
     let (link, _events) = start(&line);
-    link.request(Command::Tare).expect("it is done");
+    link.request(TARE).expect("it is done");
     let board = line.board();
-    assert_eq!(board.done, [Command::Ping, Command::Tare]);
+    assert_eq!(board.done, [Command::Ping, TARE]);
     let pings = board.received.iter().filter(|request| request.command == Command::Ping);
     assert_eq!(pings.map(|request| request.id).collect::<Vec<_>>(), [1; 4]);
     drop(board);
@@ -39,16 +41,16 @@ fn a_request_whose_answer_was_lost_is_sent_again_and_acts_once() {
     let (link, _events) = start(&line);
     link.request(Command::Ping).expect("it is done");
     line.board().answers_lost = 2;
-    link.request(Command::Tare).expect("it is done");
+    link.request(TARE).expect("it is done");
     let board = line.board();
-    assert_eq!(board.received.iter().filter(|request| request.command == Command::Tare).count(), 3);
-    assert_eq!(board.done.iter().filter(|command| **command == Command::Tare).count(), 1);
+    assert_eq!(board.received.iter().filter(|request| request.command == TARE).count(), 3);
+    assert_eq!(board.done.iter().filter(|command| **command == TARE).count(), 1);
 }
 
 #[test]
 fn a_refusal_is_returned_with_its_reason() {
     let line = Line::new();
-    line.board().refuses = true;
+    line.board().refuses = Some(Refusal::Disarmed);
     let (link, _events) = start(&line);
     let refused = link.request(Command::Arm);
     assert!(matches!(refused, Err(LinkError::Request(RequestError::Refused(Refusal::Disarmed)))), "{refused:?}");
@@ -60,7 +62,7 @@ fn a_board_that_does_not_answer_is_given_up() {
     let (link, _events) = start(&line);
     link.request(Command::Ping).expect("it is done");
     line.board().answers_lost = usize::MAX;
-    let given_up = link.request(Command::Tare);
+    let given_up = link.request(TARE);
     assert!(matches!(given_up, Err(LinkError::Request(RequestError::NoAnswer))), "{given_up:?}");
 }
 
@@ -73,11 +75,8 @@ fn a_request_that_was_given_up_does_not_reach_a_board_that_answers_later() {
     assert!(matches!(given_up, Err(LinkError::Request(RequestError::NoAnswer))), "{given_up:?}");
     line.board().answers_lost = 0;
     wait_until(|| link.state().is_connected);
-    link.request(Command::Tare).expect("it is done");
-    assert_eq!(
-        line.board().done.iter().filter(|command| **command != Command::Ping).collect::<Vec<_>>(),
-        [&Command::Tare]
-    );
+    link.request(TARE).expect("it is done");
+    assert_eq!(line.board().done.iter().filter(|command| **command != Command::Ping).collect::<Vec<_>>(), [&TARE]);
 }
 
 /// To arm must not outlive the run of the board that it was meant for.
@@ -101,7 +100,7 @@ fn a_request_does_not_outlive_a_restart() {
     let arms = || line.board().received.iter().filter(|request| request.command == Command::Arm).count();
     let before = arms();
     line.board().answers_lost = 0;
-    link.request(Command::Tare).expect("the new run is is_connected and answers");
+    link.request(TARE).expect("the new run is is_connected and answers");
     assert_eq!(arms(), before);
 }
 
@@ -111,7 +110,7 @@ fn a_board_that_has_seen_higher_ids_is_greeted_after_its_pause() {
     let line = Line::new();
     let (first, _events) = start(&line);
     for _ in 0..5 {
-        first.request(Command::Tare).expect("it is done");
+        first.request(TARE).expect("it is done");
     }
     drop(first);
     let (second, _events) = start(&line);

@@ -4,7 +4,7 @@ use proprio_link::Link;
 use proprio_link::status::Status;
 use proprio_session::CHI2_2_95;
 use serde_json::{Value, json};
-use telemetry::{Event, Message, SEGMENTS, SegmentUncertainty, Uncertainty};
+use telemetry::{Event, Message, SegmentUncertainty, Uncertainty};
 
 use super::http::Page;
 use super::line::{Line, sample};
@@ -15,11 +15,11 @@ fn uncertainty(tick: u32) -> Message {
     // mm² in units of 2⁻³² m², and 0.01 rad² in as many of rad².
     let end = [4295, 0, 4 * 4295];
     let segment = SegmentUncertainty { theta: Some(42_949_673), end: Some(end), contact_percent: 3, in_contact: false };
-    Message::Uncertainty(Uncertainty { tick, segments: [segment; SEGMENTS] })
+    Message::Uncertainty(Uncertainty { tick, segments: [segment; 6].into_iter().collect() })
 }
 
-const NONE: [bool; SEGMENTS] = [false; SEGMENTS];
-const SECOND: [bool; SEGMENTS] = [false, true, false, false, false, false];
+const NONE: [bool; 6] = [false; 6];
+const SECOND: [bool; 6] = [false, true, false, false, false, false];
 
 #[test]
 fn the_page_receives_the_board_s_covariances_and_contact_before_the_next_of_them() {
@@ -37,11 +37,11 @@ fn the_page_receives_the_board_s_covariances_and_contact_before_the_next_of_them
     send_ticks(&line, 1..2);
     let rows = socket.next("rows");
     let ends = rows["uncertainty"]["ends_m2"].as_array().expect("ends");
-    assert_eq!((ends.len(), &rows["contact"]), (SEGMENTS, &json!(NONE)));
+    assert_eq!((ends.len(), &rows["contact"]), (6, &json!(NONE)));
     let is_near = |value: &Value, square_mm: f64| (value.as_f64().expect("a number") * 1e6 - square_mm).abs() < 1e-3;
     assert!(is_near(&ends[5][0], 1.0) && is_near(&ends[5][1], 0.0) && is_near(&ends[5][2], 4.0), "{rows}");
 
-    line.board().send(&Message::Event(Event::Contact(2, SECOND)));
+    line.board().send(&Message::Event(Event::Contact(2, 0b10)));
     send_ticks(&line, 2..3);
     assert_eq!(socket.next("rows")["contact"], json!(SECOND));
 }
@@ -53,7 +53,7 @@ fn status_has_the_uncertainty_of_the_tip_and_the_contacts() {
     line.board().restart(1);
     line.board().send(&Message::Health(health(0, telemetry::SensorState::Ok)));
     line.board().send(&uncertainty(0));
-    line.board().send(&Message::Event(Event::Contact(1, SECOND)));
+    line.board().send(&Message::Event(Event::Contact(1, 0b10)));
     for tick in 0..200 {
         line.board().send(&Message::Sample(sample(tick)));
     }

@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 
-use telemetry::{Command, Health, REGULATORS, SensorState, SetPressures};
+use telemetry::{Command, Health, SensorState, SetPressures};
 
 use super::DriveError;
 use crate::status::Status;
@@ -28,31 +28,32 @@ const TOLERANCE_PA: u32 = 1000;
 #[derive(Debug)]
 pub struct Driver<'l> {
     link: &'l Link,
-    requested_pa: VecDeque<[u32; REGULATORS]>,
+    requested_pa: VecDeque<Vec<u32>>,
     is_armed: bool,
     /// Restarts of the board when it was armed.
     restarts: u32,
 }
 
 impl<'l> Driver<'l> {
-    /// Arms the pressures of a board without faults.
+    /// Arms the pressures of a board without faults that has so many regulators.
     ///
     /// # Errors
-    /// [`DriveError`]: the board has another table, has restarted after a crash, reads no IMU, or refuses.
-    pub fn arm(link: &'l Link, status: &Status) -> Result<Self, DriveError> {
-        check(link, status)?;
+    /// [`DriveError`]: the board has another number of regulators or another table, has restarted after a crash, reads no IMU, or
+    /// refuses.
+    pub fn arm(link: &'l Link, status: &Status, regulators: usize) -> Result<Self, DriveError> {
+        check(link, status, regulators)?;
         let driver = Self { link, requested_pa: VecDeque::new(), is_armed: true, restarts: link.state().restarts };
         link.request(Command::Arm)?;
         Ok(driver)
     }
 
-    /// Sets the pressures, Pa, waits until the board has acknowledged them, and returns the request.
+    /// Sets the pressures of all regulators, Pa, waits until the board has acknowledged them, and returns the request.
     ///
     /// # Errors
     /// [`DriveError::Restarted`], after which the board is not armed; [`DriveError::Link`].
-    pub fn set(&mut self, pressures_pa: [u32; REGULATORS]) -> Result<SetPressures, DriveError> {
-        let requested = SetPressures { pressures_pa, valid_ms: VALID_MS };
-        match self.link.request(Command::SetPressures(requested)) {
+    pub fn set(&mut self, pressures_pa: Vec<u32>) -> Result<SetPressures, DriveError> {
+        let requested = SetPressures { pressures_pa: pressures_pa.iter().copied().collect(), valid_ms: VALID_MS };
+        match self.link.request(Command::SetPressures(requested.clone())) {
             Err(LinkError::Request(_)) if self.has_restarted() => return Err(DriveError::Restarted),
             done => done?,
         }
@@ -86,9 +87,10 @@ impl<'l> Driver<'l> {
             return Ok(());
         }
         for (i, board_pa) in health.pressures_pa.iter().enumerate() {
-            let requested_pa = self.requested_pa.iter().map(|pressures_pa| pressures_pa[i]).min().unwrap_or(0);
-            if board_pa + TOLERANCE_PA < requested_pa {
-                let [board_kpa, requested_kpa] = [*board_pa, requested_pa].map(|pa| f64::from(pa) / 1e3);
+            let requested_pa =
+                self.requested_pa.iter().filter_map(|pressures_pa| pressures_pa.get(i)).min().unwrap_or(&0);
+            if board_pa + TOLERANCE_PA < *requested_pa {
+                let [board_kpa, requested_kpa] = [*board_pa, *requested_pa].map(|pa| f64::from(pa) / 1e3);
                 return Err(DriveError::HeldBack { regulator: i + 1, board_kpa, requested_kpa });
             }
         }
@@ -114,8 +116,12 @@ impl Drop for Driver<'_> {
     }
 }
 
-/// Checks that the board may be driven.
-fn check(link: &Link, status: &Status) -> Result<(), DriveError> {
+/// Checks that the board may be driven by pressures of so many regulators.
+fn check(link: &Link, status: &Status, regulators: usize) -> Result<(), DriveError> {
+    let board = usize::from(status.hello.regulators);
+    if regulators != board {
+        return Err(DriveError::Regulators { given: regulators, board });
+    }
     let mismatches = link.state().mismatches;
     if let Some(table) = mismatches.iter().find(|mismatch| matches!(mismatch, Mismatch::Table { .. })) {
         return Err(DriveError::OtherTable(table.to_string()));

@@ -5,6 +5,14 @@ use crate::LinkError;
 /// An error that keeps pressures from being driven.
 #[derive(Debug, thiserror::Error)]
 pub enum DriveError {
+    /// The pressures are for another number of regulators.
+    #[error("the pressures stay vented: there are pressures for {given} regulators, and the board's arm has {board}")]
+    Regulators {
+        /// Regulators of the given pressures.
+        given: usize,
+        /// Regulators of the board's arm.
+        board: usize,
+    },
     /// The board has another table than the one that was given.
     #[error("the pressures stay vented: {0}")]
     OtherTable(String),

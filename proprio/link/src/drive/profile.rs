@@ -3,7 +3,6 @@
 use std::path::Path;
 
 use proprio_session::{PressurePoint, SessionError, read_pressures};
-use telemetry::REGULATORS;
 
 /// Pressures over time, linear between points.
 #[derive(Debug, Clone, PartialEq)]
@@ -26,8 +25,14 @@ impl Profile {
 
     /// The same pressures until `end_s`, which may be infinite.
     #[must_use]
-    pub fn constant(pressures_pa: [f64; REGULATORS], end_s: f64) -> Self {
+    pub fn constant(pressures_pa: Vec<f64>, end_s: f64) -> Self {
         Self { points: vec![PressurePoint { time_s: 0.0, pressures_pa }], end_s }
+    }
+
+    /// Number of its regulators.
+    #[must_use]
+    pub fn regulators(&self) -> usize {
+        self.points.first().map_or(0, |first| first.pressures_pa.len())
     }
 
     /// Time of its end, s.
@@ -39,18 +44,20 @@ impl Profile {
     /// The pressures at a time, Pa: before the first point those of that point, from the end on 0. Of two points of the same
     /// time, which are a step, the second counts.
     #[must_use]
-    pub fn at(&self, time_s: f64) -> [f64; REGULATORS] {
+    pub fn at(&self, time_s: f64) -> Vec<f64> {
+        let vented = vec![0.0; self.regulators()];
         if time_s >= self.end_s {
-            return [0.0; REGULATORS];
+            return vented;
         }
         let next = self.points.partition_point(|moment| moment.time_s <= time_s);
         match (next.checked_sub(1).and_then(|last| self.points.get(last)), self.points.get(next)) {
             (Some(from), Some(to)) => {
                 let share = (time_s - from.time_s) / (to.time_s - from.time_s);
-                std::array::from_fn(|i| from.pressures_pa[i] + (to.pressures_pa[i] - from.pressures_pa[i]) * share)
+                let pairs = from.pressures_pa.iter().zip(&to.pressures_pa);
+                pairs.map(|(from, to)| from + (to - from) * share).collect()
             }
-            (Some(only), None) | (None, Some(only)) => only.pressures_pa,
-            (None, None) => [0.0; REGULATORS],
+            (Some(only), None) | (None, Some(only)) => only.pressures_pa.clone(),
+            (None, None) => vented,
         }
     }
 
@@ -74,25 +81,25 @@ mod tests {
     /// A ramp to 10 kPa within 2 s, a step to 30 kPa, and 1 s of that.
     fn profile() -> Profile {
         let points = [(1.0, 0.0), (3.0, 1e4), (3.0, 3e4), (4.0, 3e4)];
-        let points = points.map(|(time_s, pa)| PressurePoint { time_s, pressures_pa: [pa, 0.0, 0.0, 0.0, 0.0, pa] });
+        let points = points.map(|(time_s, pa)| PressurePoint { time_s, pressures_pa: vec![pa, 0.0, pa] });
         Profile { points: points.to_vec(), end_s: 4.0 }
     }
 
     #[test]
     fn pressures_are_linear_between_points_and_end_vented() {
-        let at = [0.0, 1.0, 2.0, 2.999, 3.0, 3.999, 4.0, 9.0].map(|time_s| profile().at(time_s)[5].round() as u32);
+        let at = [0.0, 1.0, 2.0, 2.999, 3.0, 3.999, 4.0, 9.0].map(|time_s| profile().at(time_s)[2].round() as u32);
         assert_eq!(at, [0, 0, 5_000, 9_995, 30_000, 30_000, 0, 0]);
     }
 
     #[test]
     fn the_steepest_change_is_the_step() {
         assert_eq!(profile().steepest(), Some((f64::INFINITY, 3)));
-        assert_eq!(Profile::constant([1e4; 6], f64::INFINITY).steepest(), None);
+        assert_eq!(Profile::constant(vec![1e4; 6], f64::INFINITY).steepest(), None);
     }
 
     #[test]
     fn constant_pressures_last_until_their_end() {
-        let profile = Profile::constant([1e4; 6], 2.0);
+        let profile = Profile::constant(vec![1e4; 4], 2.0);
         assert_eq!([0.0, 1.9, 2.0].map(|time_s| profile.at(time_s)[3] as u32), [10_000, 10_000, 0]);
     }
 }

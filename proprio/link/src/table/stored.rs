@@ -3,7 +3,7 @@
 use std::io::{self, Read, Write};
 
 use board_table::{Announcement, STORE_BYTES, TableError, TableStore, body_crc, write_image};
-use calibration_tables::{ArmFile, FileError};
+use calibration_tables::ArmFile;
 use embedded_storage::{ReadStorage, Storage};
 use estimator_core::Q;
 use flate2::Compression;
@@ -11,25 +11,14 @@ use flate2::read::ZlibDecoder;
 use flate2::write::ZlibEncoder;
 use telemetry::{Command, TICK_HZ, TableAnnouncement};
 
+use super::error::TableImageError;
+use super::wiring::wiring;
+
 /// Room for an image, bytes: more than a slot of the board.
 const IMAGE_ROOM: usize = STORE_BYTES;
 
 /// Longest TOML file of a board, bytes. A damaged source is not expanded further.
 const LONGEST_SOURCE: u64 = 1 << 20;
-
-/// Reason why a table cannot be stored on a board.
-#[derive(Debug, thiserror::Error)]
-pub enum TableImageError {
-    /// The file is an arm description, or no table.
-    #[error(transparent)]
-    File(#[from] FileError),
-    /// It does not fit the board.
-    #[error(transparent)]
-    Table(#[from] TableError),
-    /// The source cannot be compressed or expanded.
-    #[error("the table's source: {0}")]
-    Source(#[from] io::Error),
-}
 
 /// A table as the board stores it.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -43,15 +32,21 @@ pub struct StoredTable {
 }
 
 impl StoredTable {
-    /// The stored form of a table and of its file's text.
+    /// The stored form of a table and of its file's text. An arm description gives the board its wiring, without any bend map:
+    /// the board then sends samples for a first sweep, and no shape.
     ///
     /// # Errors
-    /// [`TableImageError`] on an arm description.
+    /// [`TableImageError`] where some segments are calibrated and others are not, or on an arm that does not fit the board.
     pub fn new(file: &ArmFile, toml: &[u8]) -> Result<Self, TableImageError> {
-        let compiled = file.compile::<Q>(TICK_HZ)?;
+        let wiring = wiring(file)?;
+        let compiled = if file.is_description() {
+            file.without_bend_maps().compile::<Q>(TICK_HZ)?
+        } else {
+            file.compile::<Q>(TICK_HZ)?
+        };
         let checksum = compiled.checksum();
         let mut image = vec![0; IMAGE_ROOM];
-        let length = write_image(&file.arm, checksum, &compiled.config(), &mut image)?;
+        let length = write_image(&file.arm, checksum, &compiled.config(), Some(&wiring), &mut image)?;
         image.truncate(length);
         let mut encoder = ZlibEncoder::new(Vec::new(), Compression::best());
         encoder.write_all(toml)?;

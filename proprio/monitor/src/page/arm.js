@@ -5,8 +5,8 @@ import { minus } from './plot.js';
 const RAD = Math.PI / 180;
 /** Time of the tip's trail, s. */
 const TRAIL = 10;
-/** Length of an arm whose table is not known, mm. */
-const LENGTH = 600;
+/** Length of a segment whose table is not known, mm. */
+const LENGTH = 100;
 
 /** Segments of the arm in one row: ends, headings, and the line between them, mm. */
 export function shape(store, row, geometry) {
@@ -54,7 +54,7 @@ export function ellipse([xx, xy, yy], sigmas) {
 
 /** Draws the arm in one row onto a canvas or an SVG of this size. */
 export function drawArm(c, width, height, { store, row, geometry, uncertainty, ellipseSigmas, contact, colours }) {
-  const length = geometry?.reduce((sum, { length_mm, offset_mm }) => sum + length_mm + offset_mm, 0) ?? LENGTH;
+  const length = geometry?.reduce((sum, { length_mm, offset_mm }) => sum + length_mm + offset_mm, 0) ?? LENGTH * Math.max(1, store?.series('theta', '_deg').length ?? 0);
   const scale = Math.min(width / (2.1 * length), height / (1.6 * length));
   const to = ([x, y]) => [width / 2 + x * scale, height - 0.42 * length * scale - y * scale];
   grid(c, width, height, to, scale, colours);

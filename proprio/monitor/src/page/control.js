@@ -1,18 +1,22 @@
-// Control of the pressures, with the token.
+// Control of the board, with the token: pressures and tare.
 
 import { post } from './feed.js';
 
 /** Period of the set-points, ms; the board holds them for 500 ms. */
 const REFRESH = 150;
 const LARGEST_KPA = 280;
-const NAMES = ['module 1 right', 'module 1 left', 'module 2 right', 'module 2 left', 'module 3 right', 'module 3 left'];
+/** Time in which a second press tares an arm that moves, ms. */
+const ANYWAY = 5000;
 
 export class Control {
-  constructor(section, showError) {
+  constructor(section, showError, showNotice) {
     this.section = section;
     this.showError = showError;
+    this.showNotice = showNotice;
     this.part = (id) => section.querySelector(id);
     this.button = document.getElementById('vent');
+    this.tareButton = document.getElementById('tare');
+    this.tareButton.addEventListener('click', () => this.tare());
     this.takeToken();
     this.isDriving = false;
     this.part('#unlock').addEventListener('submit', (event) => {
@@ -21,7 +25,7 @@ export class Control {
     });
     this.part('#arm-pressures').addEventListener('click', () => this.arm());
     this.button.addEventListener('click', () => this.vent());
-    this.sliders = NAMES.map((name, i) => this.slider(name, i));
+    this.sliders = [];
     setInterval(() => this.refresh(), REFRESH);
   }
 
@@ -57,7 +61,14 @@ export class Control {
   lock() {
     this.part('#unlock').hidden = Boolean(this.token);
     this.part('#driving').hidden = !this.token;
-    this.button.disabled = !this.token;
+    this.button.disabled = this.tareButton.disabled = !this.token;
+  }
+
+  /** Makes a slider for each regulator of the board: two for each module, right and left. */
+  buildSliders(regulators) {
+    if (regulators === this.sliders.length) return;
+    this.part('#regulators').replaceChildren();
+    this.sliders = Array.from({ length: regulators }, (_, i) => this.slider(`module ${(i >> 1) + 1} ${i % 2 ? 'left' : 'right'}`, i));
   }
 
   slider(name, i) {
@@ -76,8 +87,9 @@ export class Control {
 
   /** Shows the board's status; pressures can be set only while it is armed. */
   status(arm, health) {
-    this.section.hidden = this.button.hidden = !arm.allows_control;
+    this.section.hidden = this.button.hidden = this.tareButton.hidden = !arm.allows_control;
     this.lock();
+    if (health) this.buildSliders(health.pressures_kpa.length);
     const state = health?.actuation ?? 'no board';
     this.part('#actuation').textContent = state.toLowerCase();
     this.part('#actuation').dataset.state = state === 'Armed' ? 'armed' : 'wait';
@@ -93,15 +105,32 @@ export class Control {
     this.show();
   }
 
-  async send(command) {
+  /** Sends a request to the board; returns its answer, or false after an error, which is shown. */
+  async send(command, path = '/control') {
     try {
-      await post('/control', command, this.token);
-      return true;
+      return (await post(path, command, this.token)) ?? true;
     } catch (error) {
       if (error.status === 401) this.setToken(null);
       this.showError(error.message);
       return false;
     }
+  }
+
+  /** Tares the board. It refuses while the arm moves; a second press within some seconds tares it anyway. */
+  async tare() {
+    const force = performance.now() < this.anywayUntil;
+    this.setAnyway(false);
+    const outcome = await this.send({ force }, '/tare');
+    if (!outcome) return;
+    this.setAnyway(outcome.is_moving);
+    this.showNotice(outcome.text);
+  }
+
+  setAnyway(isOffered) {
+    this.tareButton.textContent = isOffered ? 'Tare anyway' : 'Tare';
+    this.anywayUntil = isOffered ? performance.now() + ANYWAY : 0;
+    clearTimeout(this.anywayTimer);
+    if (isOffered) this.anywayTimer = setTimeout(() => this.setAnyway(false), ANYWAY);
   }
 
   async arm() {

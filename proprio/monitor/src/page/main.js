@@ -16,6 +16,8 @@ const $ = (id) => document.getElementById(id);
 
 /** Period of the parts that are not drawn with every row, ms. */
 const PERIOD = 100;
+/** Number of the segments' colours in style.css. */
+const SERIES = 8;
 
 const app = {
   arm: null, status: null, live: null, session: null,
@@ -36,7 +38,7 @@ const app = {
 const sensorList = new SensorList($('strips'));
 const findingList = new FindingList($('findings'));
 const boardPanel = new BoardPanel($('facts'), $('notes'));
-const control = new Control($('control'), showError);
+const control = new Control($('control'), showError, showNotice);
 const sessionPicker = new SessionPicker($('sessions'), () => app.arm?.opens_sessions, openSession);
 const plots = PLOTS.map(figure);
 
@@ -99,11 +101,15 @@ function recordState(isRecording, isPossible) {
 }
 
 /** Shows an error until the next action, or for some seconds. */
-function showError(message) {
+function showError(message) { showNotice(message, 'error'); }
+
+/** Shows a sentence in the same way. */
+function showNotice(message, kind = 'done') {
   text($('notice'), message);
+  $('notice').dataset.kind = kind;
   $('notice').hidden = !message;
-  clearTimeout(showError.timer);
-  if (message) showError.timer = setTimeout(() => showError(''), 8000);
+  clearTimeout(showNotice.timer);
+  if (message) showNotice.timer = setTimeout(() => showNotice(''), 8000);
 }
 
 /** Builds the parts for another arm: sensors, and the legend that shows and hides segments. */
@@ -113,7 +119,7 @@ function build() {
   app.hidden.clear();
   $('segments').replaceChildren(...Array.from({ length: segments }, (_, i) => {
     const button = Object.assign(document.createElement('button'), { textContent: `segment ${i + 1}` });
-    button.dataset.series = (i % 6) + 1;
+    button.dataset.series = (i % SERIES) + 1;
     button.setAttribute('aria-pressed', 'true');
     button.addEventListener('click', () => {
       if (!app.hidden.delete(i)) app.hidden.add(i);
@@ -217,7 +223,7 @@ function reset() {
 function colours() {
   const style = getComputedStyle(document.documentElement);
   const get = (name) => style.getPropertyValue(name).trim();
-  const series = [1, 2, 3, 4, 5, 6].map((i) => get(`--s${i}`));
+  const series = Array.from({ length: SERIES }, (_, i) => get(`--s${i + 1}`));
   return { series, ink: get('--ink'), faint: get('--faint'), grid: get('--grid'), paper: get('--card'), bad: get('--bad'), trail: get('--trail'), font: 'system-ui, sans-serif' };
 }
 
@@ -377,7 +383,7 @@ $('scrub').addEventListener('input', ({ target }) => {
   app.changed();
 });
 
-const KEYS = { ' ': 'pause', r: 'record', m: 'mark', o: 'open', 0: 'reset', c: 'csv', s: 'svg', f: 'fixed' };
+const KEYS = { ' ': 'pause', r: 'record', m: 'mark', t: 'tare', o: 'open', 0: 'reset', c: 'csv', s: 'svg', f: 'fixed' };
 document.addEventListener('keydown', (event) => {
   if (event.key === 'Escape' && app.arm?.allows_control) control.vent();
   const isTyping = event.target.closest('input:not([type=checkbox], [type=range]), select, dialog');

@@ -39,6 +39,8 @@ export class SensorList {
       text(sensor.value, !isRead ? '–' : sensor.kind === 'imu' ? `${minus(value.toFixed(1))}°` : `${value} counts`);
       text(sensor.state, state);
       text(sensor.reason, reason);
+      // The board has no such sensor.
+      sensor.item.hidden = state === 'NotWired';
       const look = LOOKS[state] ?? 'bad';
       if (sensor.item.dataset.look !== look) sensor.item.dataset.look = look;
     });

@@ -61,6 +61,8 @@ export class Store {
   load(buffer) {
     const head = headOf(buffer);
     const { about, offset } = head;
+    // The arm may have changed since the request.
+    if (about.columns !== this.columns.length) return about;
     this.clear();
     this.times.set(new Float64Array(buffer, offset, about.rows));
     const floats = new Float32Array(buffer, offset + 8 * about.rows);

@@ -10,7 +10,7 @@ use std::io::Write;
 use std::path::Path;
 
 use samples::Samples;
-use telemetry::{Encoder, MAX_FRAME, Message, SEGMENTS};
+use telemetry::{Encoder, MAX_FRAME, MAX_SEGMENTS, Message};
 
 use crate::recording::{Item, Reader};
 use crate::source::SessionFile;
@@ -43,7 +43,7 @@ pub fn convert(
     if header.kind == kind {
         return Err(Error::SameKind(input.to_owned()));
     }
-    if header.segments > SEGMENTS {
+    if header.segments > MAX_SEGMENTS {
         let problem = SessionProblem::TooManySegments(header.segments);
         return Err(SessionError { path: input.to_owned(), line: None, column: None, problem }.into());
     }

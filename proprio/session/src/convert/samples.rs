@@ -1,7 +1,7 @@
 //! The rows of a CSV as a board's samples.
 
 use estimator_core::ImuReading;
-use telemetry::{BEND_SENSORS, Encoder, MAX_FRAME, Message, SEGMENTS, Sample};
+use telemetry::{Encoder, MAX_FRAME, Message, Sample};
 
 use crate::{Error, Progress, Row, SessionReader};
 
@@ -34,17 +34,15 @@ impl<'p> Samples<'p> {
         if row.starts && self.tick > 0 {
             self.tare = self.tare.wrapping_add(1);
         }
-        let mut bend = [None; BEND_SENSORS];
-        let counts = row.sample.bend.as_flattened();
-        bend.iter_mut().zip(counts).for_each(|(place, counts)| *place = *counts);
-        let mut imu = [None; SEGMENTS];
-        for (place, reading) in imu.iter_mut().zip(row.sample.imu) {
-            *place = reading.map(|reading| self.quaternion(reading));
-        }
+        let segments = self.reader.bend_sensors().count();
+        let bend = row.sample.bend.iter().take(segments).flatten().copied().collect();
+        let readings = row.sample.imu.iter().take(segments);
+        let imu = readings.map(|reading| reading.map(|reading| self.quaternion(reading))).collect();
         let sample = Sample { tick: self.tick, time_us: row.sample.time_us, tare_epoch: self.tare, bend, imu };
         self.tick += 1;
         let mut buffer = [0; MAX_FRAME];
-        let frame = self.encoder.encode(&Message::Sample(sample), &mut buffer).expect("every sample fits a frame");
+        let frame =
+            self.encoder.encode(&Message::Sample(sample.clone()), &mut buffer).expect("every sample fits a frame");
         Ok(Some((frame.to_vec(), sample, row)))
     }
 

@@ -6,7 +6,7 @@ use estimator_core::{ImuReading, SENSORS_PER_SEGMENT};
 
 use super::samples::WORK;
 use crate::recording::HoleTimes;
-use crate::{Error, FileFormat, OutputFile, Progress, Row, SENSOR_NAMES, SessionReader, TARE, Truth};
+use crate::{Error, FileFormat, MissingHistory, OutputFile, Progress, Row, SENSOR_NAMES, SessionReader, TARE, Truth};
 
 /// The columns of the file.
 struct Layout {
@@ -21,15 +21,17 @@ pub fn write(
     mut file: OutputFile,
     progress: &mut dyn Progress,
 ) -> Result<(OutputFile, Vec<String>), Error> {
-    let bend_sensors = reader.bend_sensors().take(reader.segments_read()).collect();
+    let bend_sensors = reader.bend_sensors().take(reader.segments()).collect();
     let (has_truth, has_true_headings) = (reader.has_truth(), reader.has_true_headings());
     let layout = Layout { bend_sensors, has_truth, has_true_headings };
     layout.write_header(&mut file).map_err(|error| file.error(error))?;
     let (mut starts, mut estimates, mut before) = (0_u64, 0_u64, 0_u64);
+    let mut missing_history = MissingHistory::default();
     while let Some(row) = reader.next_row()? {
+        missing_history.add(&row);
         starts += u64::from(row.starts);
         before += u64::from(!row.is_recorded());
-        estimates += u64::from(row.board.is_some_and(|board| board.estimate.is_some()));
+        estimates += u64::from(row.board.as_ref().is_some_and(|board| board.estimate.is_some()));
         layout.write_row(&mut file, &row, starts.saturating_sub(1)).map_err(|error| file.error(error))?;
         progress.advance(WORK, reader.progress());
     }
@@ -44,6 +46,7 @@ pub fn write(
             "the first {before} rows are from before the begin of the recording: the tare that its estimates need"
         ));
     }
+    left_out.extend(missing_history.is_any().then(|| missing_history.to_string()));
     left_out.extend(reader.defects().holes.iter().map(HoleTimes::to_string));
     Ok((file, left_out))
 }

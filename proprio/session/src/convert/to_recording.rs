@@ -20,15 +20,16 @@ pub fn of_samples(
     progress: &mut dyn Progress,
 ) -> Result<(OutputFile, Vec<String>), Error> {
     let failed = |source| Error::Output { path: path.to_owned(), source };
-    let (has_truth, segments) = (reader.has_truth(), reader.segments_read());
+    let (has_truth, segments) = (reader.has_truth(), reader.segments());
     let mut samples = Samples::new(reader, progress);
     let mut recorder = Recorder::new(file, HostNs(0), "CSV").map_err(failed)?;
     while let Some((frame, sample, row)) = samples.next()? {
         let at = HostNs(sample.time_us.saturating_mul(1000));
         recorder.bytes(at, &frame).map_err(failed)?;
+        let tick = sample.tick;
         recorder.message(at, &Message::Sample(sample)).map_err(failed)?;
         if has_truth {
-            recorder.truth(at, sample.tick, &row.truth[..segments]).map_err(failed)?;
+            recorder.truth(at, tick, &row.truth[..segments]).map_err(failed)?;
         }
     }
     let file = recorder.finish().map_err(failed)?;

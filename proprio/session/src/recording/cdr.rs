@@ -117,9 +117,19 @@ impl<'b> CdrReader<'b> {
         std::str::from_utf8(text.strip_suffix(&[0])?).ok()
     }
 
+    /// Length of a sequence, whose items follow.
+    pub fn length(&mut self) -> Option<usize> {
+        self.u32().map(|length| length as usize)
+    }
+
+    /// True where nothing is left.
+    pub fn is_at_end(&self) -> bool {
+        self.at == self.body.len()
+    }
+
     /// A sequence of floats.
     pub fn floats(&mut self) -> Option<Vec<f64>> {
-        let length = self.u32()?;
+        let length = self.length()?;
         (0..length).map(|_| self.take().map(f64::from_le_bytes)).collect()
     }
 }

@@ -4,7 +4,7 @@ use std::io::Cursor;
 
 use mcap::records::{Record, op};
 use ruzstd::encoding::{CompressionLevel, compress_to_vec};
-use telemetry::{BEND_SENSORS, Encoder, MAX_FRAME, Message, SEGMENTS, Sample};
+use telemetry::{Encoder, MAX_FRAME, Message, Sample};
 
 use super::form::{self, HEAD};
 use super::read_error::ReadError;
@@ -30,8 +30,8 @@ fn recording() -> Vec<u8> {
     let (mut encoder, mut buffer) = (Encoder::new(), [0; MAX_FRAME]);
     for tick in 0..SAMPLES {
         let at = HostNs(START_NS + u64::from(tick) * STEP_US * 1000);
-        let bend = [Some((tick % 4096) as u16); BEND_SENSORS];
-        let imu = [Some([16_384, tick as i16, 0, 0]); SEGMENTS];
+        let bend = [Some((tick % 4096) as u16); 12].into_iter().collect();
+        let imu = [Some([16_384, tick as i16, 0, 0]); 6].into_iter().collect();
         let message = Message::Sample(Sample { tick, time_us: u64::from(tick) * STEP_US, tare_epoch: 0, bend, imu });
         let frame = encoder.encode(&message, &mut buffer).expect("it fits");
         recorder.bytes(at, frame).expect("memory takes all");
@@ -151,7 +151,7 @@ fn a_hole_has_the_times_of_its_neighbours() {
     let (kept, holes) = rows(&damaged).expect("it is read");
     assert_eq!(holes, 1);
     let behind = kept.iter().find(|row| row.sample.time_us as f64 / 1e6 > from_s + 0.05).expect("rows follow");
-    assert!(!behind.board.expect("it is recorded").complete);
+    assert!(!behind.board.as_ref().expect("it is recorded").complete);
 }
 
 #[test]
@@ -262,6 +262,18 @@ fn a_recording_without_bytes_is_read_from_its_samples() {
 }
 
 #[test]
+fn samples_of_a_recording_of_version_0_2_are_read_without_its_bytes() {
+    let recording = include_bytes!("../../../../host-tests/recordings/earlier-schema-hash.mcap");
+    let readings = |recording: &[u8]| {
+        let rows = rows(recording).expect("it is whole").0.into_iter();
+        rows.map(|row| row.sample).collect::<Vec<_>>()
+    };
+    let whole = readings(recording);
+    assert_eq!(whole.len(), 300);
+    assert_eq!(readings(&with_topics(recording, |topic| topic != RAW)), whole);
+}
+
+#[test]
 fn a_foreign_file_is_refused_with_its_topics() {
     let foreign = with_topics(&recording(), |_| false);
     let error = rows(&foreign).expect_err("it has no samples").to_string();
@@ -310,4 +322,37 @@ fn a_file_that_is_cut_at_any_byte_has_no_hole_and_loses_its_end() {
         assert!(recovery.was_cut && !recovery.is_damaged(), "cut at {end}: {recovery:?}");
         assert_eq!(recovery.has_loss(), end < index, "cut at {end}, the index begins at {index}: {recovery:?}");
     }
+}
+
+/// The channels' records are in the first chunk and in the index alone.
+#[test]
+fn a_cut_file_whose_first_chunk_is_damaged_loses_that_chunk_and_its_end() {
+    let recording = recording();
+    let records = records(&recording);
+    let chunks: Vec<usize> = records.iter().filter(|(opcode, _)| *opcode == op::CHUNK).map(|(_, at)| *at).collect();
+    let last = *chunks.last().expect("chunks");
+    let damaged = flipped(&recording[..last], chunks[0] + 200, 3);
+    let (recovery, copy) = recovered(&damaged).expect("chunks are whole");
+    assert!(recovery.was_cut && recovery.holes.len() == 1 && recovery.lost_messages == 0, "{recovery:?}");
+    let (saved, _) = rows(&copy).expect("the copy is whole");
+    // The table ends the first chunk, which has the channels alone; the others have 9 samples of 0.1 s, the last one 2 of the 200.
+    assert_eq!(saved.len(), 198);
+    for row in &saved {
+        assert_eq!(u64::from(row.board.as_ref().expect("a board's").tick) * STEP_US, row.sample.time_us);
+    }
+}
+
+/// Numbers of another program's channels mean other topics.
+#[test]
+fn the_channels_of_another_program_are_not_supposed() {
+    let recording = recording();
+    let records = records(&recording);
+    let metadata = records.iter().find(|(opcode, _)| *opcode == op::METADATA).expect("metadata").1;
+    let chunks: Vec<usize> = records.iter().filter(|(opcode, _)| *opcode == op::CHUNK).map(|(_, at)| *at).collect();
+    let mut foreign = flipped(&recording[..*chunks.last().expect("chunks")], chunks[0] + 200, 3);
+    // The name of its metadata, behind the length of the name.
+    foreign[metadata + HEAD + 4..metadata + HEAD + 11].copy_from_slice(b"another");
+    let (recovery, _) = recovered(&foreign).expect("chunks are whole");
+    assert_eq!(recovery.messages, 0);
+    assert!(recovery.lost_messages > 300, "{recovery:?}");
 }

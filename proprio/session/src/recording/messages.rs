@@ -4,7 +4,8 @@ use std::f64::consts::FRAC_PI_2;
 
 use estimator_core::Q;
 use telemetry::{
-    BEND_SENSORS, Estimate, Health, Hello, SEGMENTS, Sample, SensorHealth, SensorState, SetPressures, Uncertainty,
+    BEND_PER_SEGMENT, Estimate, Health, Hello, MAX_BEND_SENSORS, Sample, SensorHealth, SensorState, SetPressures,
+    Uncertainty,
 };
 
 use super::cdr::{CdrReader, CdrWriter};
@@ -12,6 +13,11 @@ use crate::{HostNs, SENSOR_NAMES, Truth};
 
 /// The frame of the arm's base, {W}: x to the right, y along the tangent, z up.
 const FRAME: &str = "arm_base";
+
+/// Segments in every sample of versions before 0.3.
+const EARLIER_SEGMENTS: usize = 6;
+/// Bend sensors in every sample of versions before 0.3.
+const EARLIER_SENSORS: usize = EARLIER_SEGMENTS * BEND_PER_SEGMENT;
 
 fn header(stamp: HostNs) -> CdrWriter {
     let mut cdr = CdrWriter::new();
@@ -29,29 +35,41 @@ pub fn sample(stamp: HostNs, sample: &Sample) -> Vec<u8> {
     cdr.u8(sample.tare_epoch);
     cdr.u16(mask(&sample.bend));
     cdr.u8(mask(&sample.imu) as u8);
+    cdr.length(sample.bend.len());
     sample.bend.iter().for_each(|counts| cdr.u16(counts.unwrap_or_default()));
+    cdr.length(4 * sample.imu.len());
     sample.imu.iter().flat_map(|quaternion| quaternion.unwrap_or_default()).for_each(|part| cdr.i16(part));
     cdr.into_bytes()
 }
 
 /// The sample in a `proprio_msgs/msg/Sample`; `None` where it cannot be decoded.
+///
+/// Versions before 0.3 have written arrays without their lengths: 78 bytes behind the board's time, where N segments with the
+/// lengths have 16 + 12 N.
 pub fn read_sample(message: &[u8]) -> Option<Sample> {
+    sample_with(message, CdrReader::length).or_else(|| {
+        let mut lengths = [EARLIER_SENSORS, 4 * EARLIER_SEGMENTS].into_iter();
+        sample_with(message, |_| lengths.next())
+    })
+}
+
+/// The sample in a message whose two arrays have the lengths that `length` reads.
+fn sample_with<'b>(message: &'b [u8], mut length: impl FnMut(&mut CdrReader<'b>) -> Option<usize>) -> Option<Sample> {
     let mut cdr = CdrReader::new(message)?;
     cdr.u32()?;
     cdr.u32()?;
     cdr.string()?;
     let (tick, time_us, tare_epoch) = (cdr.u32()?, cdr.u64()?, cdr.u8()?);
     let (bend_read, imu_read) = (cdr.u16()?, cdr.u8()?);
-    let (mut bend, mut imu) = ([None; BEND_SENSORS], [None; SEGMENTS]);
-    for (i, place) in bend.iter_mut().enumerate() {
-        let counts = cdr.u16()?;
-        *place = (bend_read >> i & 1 == 1).then_some(counts);
+    let sensors = length(&mut cdr).filter(|sensors| *sensors <= MAX_BEND_SENSORS)?;
+    let bend = (0..sensors).map(|i| Some((bend_read >> i & 1 == 1).then_some(cdr.u16()?))).collect::<Option<_>>()?;
+    let segments = sensors / BEND_PER_SEGMENT;
+    if length(&mut cdr)? != 4 * segments || sensors % BEND_PER_SEGMENT != 0 {
+        return None;
     }
-    for (i, place) in imu.iter_mut().enumerate() {
-        let quaternion = [cdr.i16()?, cdr.i16()?, cdr.i16()?, cdr.i16()?];
-        *place = (imu_read >> i & 1 == 1).then_some(quaternion);
-    }
-    Some(Sample { tick, time_us, tare_epoch, bend, imu })
+    let mut quaternion = || Some([cdr.i16()?, cdr.i16()?, cdr.i16()?, cdr.i16()?]);
+    let imu = (0..segments).map(|i| Some((imu_read >> i & 1 == 1).then_some(quaternion()?))).collect::<Option<_>>()?;
+    cdr.is_at_end().then_some(Sample { tick, time_us, tare_epoch, bend, imu })
 }
 
 /// Bit mask of the values that are present.
@@ -61,11 +79,14 @@ fn mask<T>(values: &[Option<T>]) -> u16 {
 
 /// `sensor_msgs/msg/JointState`: bend angles, rad; NaN where not known.
 pub fn joint_state(stamp: HostNs, estimate: &Estimate) -> Vec<u8> {
+    let segments = estimate.segments.len();
     let mut cdr = header(stamp);
-    cdr.length(SEGMENTS);
-    (1..=SEGMENTS).for_each(|i| cdr.string(&format!("theta{i}")));
-    cdr.length(SEGMENTS);
-    cdr.floats(&estimate.segments.map(|segment| segment.map_or(f64::NAN, |segment| value(segment.theta))));
+    cdr.length(segments);
+    (1..=segments).for_each(|i| cdr.string(&format!("theta{i}")));
+    cdr.length(segments);
+    for segment in &estimate.segments {
+        cdr.f64(segment.map_or(f64::NAN, |segment| value(segment.theta)));
+    }
     // No velocity, no effort.
     cdr.length(0);
     cdr.length(0);
@@ -75,9 +96,9 @@ pub fn joint_state(stamp: HostNs, estimate: &Estimate) -> Vec<u8> {
 /// `geometry_msgs/msg/PoseArray`: the end of each segment, x along its tangent; NaN where not known.
 pub fn pose_array(stamp: HostNs, estimate: &Estimate) -> Vec<u8> {
     let mut cdr = header(stamp);
-    cdr.length(SEGMENTS);
+    cdr.length(estimate.segments.len());
     let mut heading = 0.0;
-    for segment in estimate.segments {
+    for segment in &estimate.segments {
         let [x, y] = segment.map_or([f64::NAN; 2], |segment| segment.end.map(value));
         heading += segment.map_or(f64::NAN, |segment| value(segment.theta));
         // Headings count clockwise from y, turns about z counter-clockwise from x.
@@ -89,24 +110,28 @@ pub fn pose_array(stamp: HostNs, estimate: &Estimate) -> Vec<u8> {
 
 /// `proprio_msgs/msg/Uncertainty`: NaN where not known.
 pub fn uncertainty(stamp: HostNs, of: &Uncertainty) -> Vec<u8> {
+    let segments = of.segments.len();
     let mut cdr = header(stamp);
+    cdr.length(segments);
     for segment in &of.segments {
         cdr.f64(segment.theta_rad2().unwrap_or(f64::NAN));
     }
+    cdr.length(3 * segments);
     for segment in &of.segments {
         cdr.floats(&segment.end_m2().unwrap_or([f64::NAN; 3]));
     }
+    cdr.length(segments);
     of.segments.iter().for_each(|segment| cdr.u8(segment.contact_percent));
+    cdr.length(segments);
     of.segments.iter().for_each(|segment| cdr.u8(segment.in_contact.into()));
     cdr.into_bytes()
 }
 
-/// `proprio_msgs/msg/Contact`.
-pub fn contact(stamp: HostNs, touched: [bool; SEGMENTS]) -> Vec<u8> {
+/// `proprio_msgs/msg/Contact` of so many segments; bit i of `mask` is the contact of segment i, from 0.
+pub fn contact(stamp: HostNs, mask: u8, segments: usize) -> Vec<u8> {
     let mut cdr = header(stamp);
-    for touched in touched {
-        cdr.u8(touched.into());
-    }
+    cdr.length(segments);
+    (0..segments).for_each(|i| cdr.u8(mask >> i & 1));
     cdr.into_bytes()
 }
 
@@ -115,17 +140,18 @@ fn value(bits: i32) -> f64 {
     Q::from_bits(bits).to_f64()
 }
 
-/// `diagnostic_msgs/msg/DiagnosticArray`: the board, then each sensor.
+/// `diagnostic_msgs/msg/DiagnosticArray`: the board, then each sensor that is wired.
 pub fn diagnostics(stamp: HostNs, health: &Health, hello: Option<&Hello>) -> Vec<u8> {
     let chip = hello.map(|hello| chip_number(&hello.chip)).unwrap_or_default();
+    let bend = health.bend.iter().enumerate();
+    let bend = bend.map(|(i, sensor)| (format!("bend {}{}", i / 2 + 1, SENSOR_NAMES[i % 2]), *sensor));
+    let imu = (1..).zip(&health.imu).map(|(i, sensor)| (format!("imu {i}"), *sensor));
+    let sensors: Vec<_> = bend.chain(imu).filter(|(_, sensor)| sensor.state != SensorState::NotWired).collect();
     let mut cdr = header(stamp);
-    cdr.length(1 + BEND_SENSORS + SEGMENTS);
+    cdr.length(1 + sensors.len());
     board(&mut cdr, health, hello, &chip);
-    for (i, sensor) in health.bend.iter().enumerate() {
-        sensor_status(&mut cdr, &format!("bend {}{}", i / 2 + 1, SENSOR_NAMES[i % 2]), *sensor, &chip);
-    }
-    for (i, sensor) in health.imu.iter().enumerate() {
-        sensor_status(&mut cdr, &format!("imu {}", i + 1), *sensor, &chip);
+    for (name, sensor) in sensors {
+        sensor_status(&mut cdr, &name, sensor, &chip);
     }
     cdr.into_bytes()
 }
@@ -160,7 +186,7 @@ fn board(cdr: &mut CdrWriter, health: &Health, hello: Option<&Hello>, chip: &str
         ("bus_recoveries", health.bus_recoveries.to_string()),
         ("saturations", health.saturations.to_string()),
         ("actuation", format!("{:?}", health.actuation)),
-        ("pressures_pa", health.pressures_pa.map(|pressure| pressure.to_string()).join(" ")),
+        ("pressures_pa", health.pressures_pa.iter().map(u32::to_string).collect::<Vec<_>>().join(" ")),
     ];
     if let Some(hello) = hello {
         values.push(("firmware", hello.firmware.as_str().to_owned()));
@@ -204,6 +230,7 @@ fn status(cdr: &mut CdrWriter, level: Level, name: &str, message: &str, chip: &s
 /// `proprio_msgs/msg/SetPoints`.
 pub fn set_points(stamp: HostNs, requested: &SetPressures) -> Vec<u8> {
     let mut cdr = header(stamp);
+    cdr.length(requested.pressures_pa.len());
     requested.pressures_pa.iter().for_each(|pressure_pa| cdr.u32(*pressure_pa));
     cdr.u16(requested.valid_ms);
     cdr.into_bytes()
@@ -239,18 +266,44 @@ pub fn read_truth(message: &[u8]) -> Option<Vec<Option<Truth>>> {
 
 #[cfg(test)]
 mod tests {
-    use telemetry::{BEND_SENSORS, SEGMENTS, Sample};
+    use telemetry::Sample;
 
-    use super::{HostNs, Truth, read_sample, read_truth, sample, truth};
+    use super::{CdrWriter, HostNs, Truth, header, read_sample, read_truth, sample, truth};
+
+    /// Readings of so many segments; the first sensor and the last IMU are missing.
+    fn sent(segments: u16) -> Sample {
+        let bend = (0..2 * segments).map(|i| (i > 0).then_some(4095 - i)).collect();
+        let imu = (1..=segments).map(|i| (i < segments).then_some([16_384, i as i16, -1, i16::MIN])).collect();
+        Sample { tick: 7, time_us: 1 << 40, tare_epoch: 255, bend, imu }
+    }
 
     #[test]
-    fn a_sample_is_read_back_to_the_bit() {
-        let mut bend = [None; BEND_SENSORS];
-        (bend[0], bend[11]) = (Some(4095), Some(0));
-        let mut imu = [None; SEGMENTS];
-        (imu[0], imu[5]) = (Some([16384, 0, -1, i16::MIN]), Some([0; 4]));
-        let sent = Sample { tick: 7, time_us: 1 << 40, tare_epoch: 255, bend, imu };
-        assert_eq!(read_sample(&sample(HostNs(5), &sent)), Some(sent));
+    fn samples_of_arms_of_any_length_are_read_back_to_the_bit() {
+        for segments in 0..=8 {
+            let sent = sent(segments);
+            assert_eq!(read_sample(&sample(HostNs(5), &sent)), Some(sent));
+        }
+    }
+
+    #[test]
+    fn a_sample_without_lengths_is_one_of_six_segments() {
+        let sent = sent(6);
+        let mut cdr: CdrWriter = header(HostNs(5));
+        cdr.u32(sent.tick);
+        cdr.u64(sent.time_us);
+        cdr.u8(sent.tare_epoch);
+        cdr.u16(0b1111_1111_1110);
+        cdr.u8(0b01_1111);
+        sent.bend.iter().for_each(|counts| cdr.u16(counts.unwrap_or(0)));
+        sent.imu.iter().flat_map(|imu| imu.unwrap_or([0; 4])).for_each(|part| cdr.i16(part));
+        assert_eq!(read_sample(&cdr.into_bytes()), Some(sent));
+    }
+
+    #[test]
+    fn a_sample_that_is_cut_or_longer_is_not_read() {
+        let whole = sample(HostNs(5), &sent(3));
+        assert!((0..whole.len()).all(|length| read_sample(&whole[..length]).is_none()));
+        assert_eq!(read_sample(&[&whole[..], &[0]].concat()), None);
     }
 
     #[test]

@@ -10,6 +10,7 @@
 //! | `rows.rs` | the rows of a recording |
 //! | `recover.rs` | recovery of a file that was cut or damaged |
 //! | `scanner.rs`, `window.rs`, `form.rs`, `hole.rs` | whole records of a damaged file, and its holes |
+//! | `own_channels.rs` | the channels of every recording of proprio |
 //! | `decompress.rs`, `summary.rs` | compressed chunks; the index at a file's end |
 //! | `messages.rs`, `schema.rs`, `cdr.rs` | ROS 2 messages |
 
@@ -20,6 +21,7 @@ mod decompress;
 mod form;
 mod hole;
 mod messages;
+mod own_channels;
 mod read_error;
 mod reader;
 mod recover;

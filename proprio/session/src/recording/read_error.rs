@@ -2,7 +2,7 @@
 
 use std::io;
 
-use telemetry::PROTOCOL_VERSION;
+use telemetry::{PROTOCOL_VERSION, protocol_2};
 
 use super::topics::{RAW, SAMPLES};
 
@@ -25,7 +25,7 @@ pub enum ReadError {
     #[error("the messages of its firmware, version {0}, have another form than this proprio reads")]
     OtherForm(String),
     /// It is of a board that used another version of the protocol.
-    #[error("its board used protocol version {0}, and this proprio reads version {PROTOCOL_VERSION}")]
+    #[error("its board used protocol version {0}, and this proprio reads versions {oldest} and {PROTOCOL_VERSION}", oldest = protocol_2::VERSION)]
     OtherProtocol(u8),
     /// It is damaged, or no recording of proprio.
     #[error("the recording is damaged: {0}")]

@@ -9,6 +9,7 @@ use telemetry::Sample;
 use super::form;
 use super::hole::Hole;
 use super::messages;
+use super::own_channels::{OWN_CHANNELS, are_own};
 use super::read_error::ReadError;
 use super::scanner::{Part, Scanner};
 use super::summary::Summary;
@@ -52,6 +53,8 @@ pub struct Reader<R> {
     scanner: Scanner<R>,
     /// Topics of the channels.
     topics: BTreeMap<u16, String>,
+    /// Topics that a recording of proprio has in any case.
+    own: Vec<(u16, &'static str)>,
     has_messages: bool,
     has_damage: bool,
     at_end: bool,
@@ -66,7 +69,14 @@ impl<R: Read> Reader<R> {
     /// Begins at the file's first byte. `summary` has the channels where the first chunk is damaged.
     pub(crate) fn with_summary(source: R, summary: Summary) -> Self {
         let topics = summary.channels.into_iter().map(|(id, channel)| (id, channel.topic)).collect();
-        Self { scanner: Scanner::new(source), topics, has_messages: false, has_damage: false, at_end: false }
+        Self {
+            scanner: Scanner::new(source),
+            topics,
+            own: Vec::new(),
+            has_messages: false,
+            has_damage: false,
+            at_end: false,
+        }
     }
 
     fn next_item(&mut self) -> Result<Option<Item>, ReadError> {
@@ -75,15 +85,22 @@ impl<R: Read> Reader<R> {
                 Part::Record(opcode, body) => (opcode, self.scanner.body(body)),
                 Part::Hole(hole) => {
                     self.has_damage = true;
+                    // Their records may be in it.
+                    for (id, topic) in std::mem::take(&mut self.own) {
+                        self.topics.entry(id).or_insert_with(|| topic.to_owned());
+                    }
                     return Ok(Some(Item::Hole(hole)));
                 }
                 // No part of the session.
                 Part::DamagedAbout => continue,
             };
-            if !matches!(opcode, op::CHANNEL | op::MESSAGE) {
+            if !matches!(opcode, op::CHANNEL | op::MESSAGE | op::METADATA) {
                 continue;
             }
             match mcap::parse_record(opcode, body) {
+                Ok(Record::Metadata(metadata)) if are_own(&metadata) => {
+                    self.own = (1..).zip(OWN_CHANNELS.map(|(topic, _)| topic)).collect();
+                }
                 Ok(Record::Channel(channel)) => {
                     self.topics.insert(channel.id, channel.topic);
                 }

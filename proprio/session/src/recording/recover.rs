@@ -8,6 +8,7 @@ use mcap::write::NoSeek;
 use mcap::{Attachment, McapError, WriteOptions};
 
 use super::hole::Hole;
+use super::own_channels::are_own;
 use super::read_error::ReadError;
 use super::scanner::{Part, Scanner};
 use super::summary::Summary;
@@ -88,7 +89,7 @@ pub fn recover(mut source: impl Read + Seek, sink: impl Write) -> Result<Recover
     let recorded = statistics.map(|statistics| statistics.message_count);
     let start_ns = statistics.map(|statistics| statistics.message_start_time);
     let done = Recovery { recorded, ..Recovery::default() };
-    let mut copy = Copy { mcap, summary, channels: BTreeSet::new(), done };
+    let mut copy = Copy { mcap, summary, is_own: false, channels: BTreeSet::new(), done };
     let mut scanner = Scanner::new(source);
     while let Some(part) = scanner.next_part().map_err(source_error)? {
         match part {
@@ -96,7 +97,13 @@ pub fn recover(mut source: impl Read + Seek, sink: impl Write) -> Result<Recover
                 Ok(record) => copy.record(record).map_err(sink_error)?,
                 Err(_) => copy.done.lost_messages += 1,
             },
-            Part::Hole(hole) => copy.done.holes.push(hole),
+            Part::Hole(hole) => {
+                copy.done.holes.push(hole);
+                if copy.is_own {
+                    // Their records may be in it.
+                    copy.summary.add_own_channels();
+                }
+            }
             Part::DamagedAbout => copy.done.lost_attachments += 1,
         }
     }
@@ -124,6 +131,8 @@ fn sink_error(error: McapError) -> RecoverError {
 struct Copy<W: Write> {
     mcap: mcap::Writer<NoSeek<W>>,
     summary: Summary,
+    /// The source is a recording of proprio.
+    is_own: bool,
     /// The channels of the copy.
     channels: BTreeSet<u16>,
     done: Recovery,
@@ -157,7 +166,10 @@ impl<W: Write> Copy<W> {
                 media_type: header.media_type,
                 data,
             }),
-            Record::Metadata(metadata) => self.mcap.write_metadata(&metadata),
+            Record::Metadata(metadata) => {
+                self.is_own |= are_own(&metadata);
+                self.mcap.write_metadata(&metadata)
+            }
             _ => Ok(()),
         }
     }

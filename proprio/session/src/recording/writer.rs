@@ -7,13 +7,12 @@ use std::io::{self, Write};
 use mcap::records::{MessageHeader, Metadata};
 use mcap::write::NoSeek;
 use mcap::{Attachment, McapError, WriteOptions};
-use telemetry::{Estimate, Hello, Message, SCHEMA, SEGMENTS, Sample, SetPressures};
+use telemetry::{Estimate, Hello, Message, SCHEMA, Sample, SetPressures};
 
 use super::messages;
+use super::own_channels::{BYTES, CDR, METADATA, OWN_CHANNELS, ROS2_MESSAGE};
 use super::schema::{self, Schema};
-use super::topics::{
-    CONTACT, DIAGNOSTICS, HISTORY, JOINT_STATES, MARKS, RAW, SAMPLES, SET_POINTS, SHAPE, TRUTH, UNCERTAINTY,
-};
+use super::topics::{CONTACT, HISTORY, MARKS, SET_POINTS, TRUTH};
 use crate::{ClockSync, HostNs, Truth};
 
 /// Longest time before data is written, ns. A file that is cut loses no more than that.
@@ -30,6 +29,8 @@ pub struct Recorder<W: Write> {
     hello: Option<Hello>,
     /// Tick and time of the last sample, which its estimate follows at once.
     sample: Option<(u32, HostNs)>,
+    /// Segments of the board's arm.
+    segments: usize,
     flushed: HostNs,
     raw_messages: u32,
     /// Bytes of the history since the last flush.
@@ -80,14 +81,22 @@ impl<W: Write> Recorder<W> {
             ("schema", format!("{SCHEMA:08x}")),
         ];
         let metadata = about.into_iter().map(|(key, value)| (key.to_owned(), value)).collect();
-        mcap.write_metadata(&Metadata { name: "proprio".to_owned(), metadata }).map_err(io_error)?;
+        mcap.write_metadata(&Metadata { name: METADATA.to_owned(), metadata }).map_err(io_error)?;
+        let mut ids = [0; OWN_CHANNELS.len()];
+        for (id, (topic, schema)) in ids.iter_mut().zip(OWN_CHANNELS) {
+            *id = match schema {
+                Some(schema) => channel(&mut mcap, topic, schema)?,
+                None => mcap.add_channel(0, topic, BYTES, &BTreeMap::new()).map_err(io_error)?,
+            };
+        }
+        let [raw, samples, joint_states, shape, diagnostics, uncertainty] = ids;
         let channels = Channels {
-            raw: mcap.add_channel(0, RAW, "application/octet-stream", &BTreeMap::new()).map_err(io_error)?,
-            samples: channel(&mut mcap, SAMPLES, &schema::SAMPLE)?,
-            joint_states: channel(&mut mcap, JOINT_STATES, &schema::JOINT_STATE)?,
-            shape: channel(&mut mcap, SHAPE, &schema::POSE_ARRAY)?,
-            diagnostics: channel(&mut mcap, DIAGNOSTICS, &schema::DIAGNOSTIC_ARRAY)?,
-            uncertainty: channel(&mut mcap, UNCERTAINTY, &schema::UNCERTAINTY)?,
+            raw,
+            samples,
+            joint_states,
+            shape,
+            diagnostics,
+            uncertainty,
             history: None,
             contact: None,
             set_points: None,
@@ -101,6 +110,7 @@ impl<W: Write> Recorder<W> {
             clock,
             hello: None,
             sample: None,
+            segments: 0,
             flushed: at,
             raw_messages: 0,
             history_bytes: 0,
@@ -148,7 +158,7 @@ impl<W: Write> Recorder<W> {
         let channel = if let Some(channel) = self.channels.history {
             channel
         } else {
-            let id = self.mcap.add_channel(0, HISTORY, "application/octet-stream", &BTreeMap::new());
+            let id = self.mcap.add_channel(0, HISTORY, BYTES, &BTreeMap::new());
             *self.channels.history.insert(id.map_err(io_error)?)
         };
         self.raw_messages = self.raw_messages.wrapping_add(1);
@@ -180,14 +190,16 @@ impl<W: Write> Recorder<W> {
                 self.write(self.channels.uncertainty, of.tick, at, stamp, &messages::uncertainty(stamp, of))
             }
             Message::Event(telemetry::Event::Contact(tick, touched)) => self.contact(at, *tick, *touched),
-            Message::Event(_) | Message::Reply(_) | Message::Table(_) | Message::TableData(_) => Ok(()),
+            Message::Event(_) | Message::Reply(_) | Message::Table(_) | Message::TableData(_) | Message::Tare(_) => {
+                Ok(())
+            }
         }
     }
 
-    fn contact(&mut self, at: HostNs, tick: u32, touched: [bool; SEGMENTS]) -> io::Result<()> {
+    fn contact(&mut self, at: HostNs, tick: u32, mask: u8) -> io::Result<()> {
         let channel = channel_once(&mut self.channels.contact, &mut self.mcap, CONTACT, &schema::CONTACT)?;
         let stamp = self.stamp(tick, at);
-        self.write(channel, tick, at, stamp, &messages::contact(stamp, touched))
+        self.write(channel, tick, at, stamp, &messages::contact(stamp, mask, self.segments))
     }
 
     /// Writes the truth of the sample with this tick, which was written before.
@@ -256,6 +268,7 @@ impl<W: Write> Recorder<W> {
     fn sample(&mut self, at: HostNs, sample: &Sample) -> io::Result<()> {
         let stamp = self.clock.host_ns(at, sample.time_us);
         self.sample = Some((sample.tick, stamp));
+        self.segments = sample.imu.len();
         self.samples += 1;
         self.write(self.channels.samples, sample.tick, at, stamp, &messages::sample(stamp, sample))
     }
@@ -279,8 +292,8 @@ impl<W: Write> Recorder<W> {
 }
 
 fn channel<W: Write>(mcap: &mut mcap::Writer<NoSeek<W>>, topic: &str, schema: &Schema) -> io::Result<u16> {
-    let id = mcap.add_schema(schema.name, "ros2msg", schema.text().as_bytes()).map_err(io_error)?;
-    mcap.add_channel(id, topic, "cdr", &BTreeMap::new()).map_err(io_error)
+    let id = mcap.add_schema(schema.name, ROS2_MESSAGE, schema.text().as_bytes()).map_err(io_error)?;
+    mcap.add_channel(id, topic, CDR, &BTreeMap::new()).map_err(io_error)
 }
 
 /// A channel that is added with its first message.

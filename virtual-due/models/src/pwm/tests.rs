@@ -121,6 +121,18 @@ fn disabled_channel_finishes_its_period_and_rests_at_the_complement_of_its_polar
 }
 
 #[test]
+fn every_channel_drives_its_own_line() {
+    for (channel, line) in [2, 4, 6, 8, 21, 22, 23, 24].into_iter().enumerate() {
+        let mut bench = running(channel as u32, 0);
+        assert_eq!(last(&bench), (channel as u8, Some((25, 100)), 0), "channel {channel}");
+        let others = [2, 4, 6, 8, 21, 22, 23, 24].iter().filter(|other| **other != line);
+        let others = others.fold(0, |lines, other| lines | 1 << other);
+        bench.with(|pwm, context| pwm.signal(Signal::Pins { port: 2, a: 0, b: others }, context));
+        assert_eq!(last(&bench), (channel as u8, None, 0), "channel {channel}, line {line}");
+    }
+}
+
+#[test]
 fn pin_that_belongs_to_another_is_not_driven() {
     let mut bench = running(7, 0);
     bench.with(|pwm, context| pwm.signal(Signal::Pins { port: 2, a: 0, b: 0 }, context));

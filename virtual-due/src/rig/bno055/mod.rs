@@ -47,9 +47,6 @@ pub struct Bno055 {
 }
 
 impl Bno055 {
-    /// Its address with COM3 low.
-    pub const ADDRESS: u8 = 0x28;
-
     /// Power comes on at `now`.
     pub fn powered(now: Cycles) -> Self {
         Self {

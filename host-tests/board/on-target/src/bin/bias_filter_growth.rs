@@ -1,6 +1,6 @@
 //! The estimator's step with the bias filter and nothing else, as `bias_filter` has it, for an arm of eight segments.
 //!
-//! The estimator is a static: with that of eight segments, a stack of 32 KiB has no room for the step.
+//! The estimator is a static: with that of eight segments, the stack has no room for the step.
 #![no_std]
 #![no_main]
 

@@ -4,10 +4,10 @@
 #![no_std]
 #![no_main]
 
-use on_target_tests::step::{TABLES, alone, steps};
+use on_target_tests::step::{TABLES, TestedEstimator, alone, steps};
 
 #[cortex_m_rt::entry]
 fn main() -> ! {
-    let [_, _, six, _] = &TABLES;
-    alone(|| steps::<6>(six))
+    static mut SIX: TestedEstimator<6> = TestedEstimator::const_new(&TABLES[2]);
+    alone(|| steps(SIX))
 }

@@ -2,7 +2,7 @@
 
 use board_tests::{Board, UART};
 use rig_twin::Scenario;
-use telemetry::{Command, SetPressures};
+use telemetry::{Command, SetPressures, TareMode};
 use virtual_due::WiredRig;
 use virtual_due::rig::{HeldLow, ImuFault, MuxFault, Rail};
 
@@ -30,7 +30,7 @@ pub fn board(mut run_ms: impl FnMut(&mut Board, u64)) -> Board {
             14 => faults.mux = Some(MuxFault::Silent),
             16 => faults.bend[0] = Some(Rail::High),
             6 | 17 => (0..FLOOD).for_each(|_| {
-                board.send(Command::Tare);
+                board.send(Command::Tare(TareMode::Force));
             }),
             18 => {
                 let now = board.machine.now();
@@ -38,9 +38,9 @@ pub fn board(mut run_ms: impl FnMut(&mut Board, u64)) -> Board {
             }
             _ => {}
         }
-        let pressures_pa = [second * 10_000; 6];
+        let pressures_pa = [second * 10_000; 6].into_iter().collect();
         let set = Command::SetPressures(SetPressures { pressures_pa, valid_ms: 500 });
-        for command in [Command::Arm, set, Command::Ping, Command::Tare] {
+        for command in [Command::Arm, set, Command::Ping, Command::Tare(TareMode::Force)] {
             board.send(command);
             run_ms(&mut board, 250);
         }

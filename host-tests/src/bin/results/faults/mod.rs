@@ -11,7 +11,7 @@ use host_tests::faults::Spoiler;
 use host_tests::parallel::in_parallel;
 use host_tests::twin::TwinSession;
 use proprio_simulation::Simulation;
-use rig_twin::{Motion, SEGMENTS, Scenario, Setup};
+use rig_twin::{Motion, Scenario, Setup};
 use trace::Trace;
 
 use crate::arm::{Problem, SESSION_S, Tables, setup};
@@ -117,7 +117,7 @@ impl Clean {
 
     /// Index of the first sample after `time_s` in which contact has just bent a segment by over 10°.
     fn contact_after(&self, time_s: f64) -> Option<usize> {
-        let is_strong = |bends: &[f64; SEGMENTS]| bends.iter().any(|bend| bend.abs() > CONTACT_RAD);
+        let is_strong = |bends: &[f64]| bends.iter().any(|bend| bend.abs() > CONTACT_RAD);
         let bends = &self.session.contact_bends_rad;
         (self.session.index(time_s).max(1)..bends.len()).find(|k| is_strong(&bends[*k]) && !is_strong(&bends[k - 1]))
     }
@@ -144,7 +144,9 @@ impl Spoiled {
             Course::SpoiledInContact(spoil) => clean
                 .contact_after(at_s)
                 .and_then(|k| from(clean.spoiled(k, spoil), clean.session.samples[k].time_us as f64 / 1e6)),
-            Course::Moves(motion) => from(TwinSession::of(simulated(&Setup { motion, ..*setup })?, rate_hz), at_s),
+            Course::Moves(motion) => {
+                from(TwinSession::of(simulated(&Setup { motion, ..setup.clone() })?, rate_hz), at_s)
+            }
             Course::Rest | Course::AfterRest => {
                 let simulation = Simulation::of(setup, SESSION_S + REST_S, rate_hz)?.with_rest(at_s, REST_S);
                 let session = TwinSession::of(simulation, rate_hz);

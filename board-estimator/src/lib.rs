@@ -1,7 +1,10 @@
 //! The estimator between sensors and telemetry: samples in, estimates out; the first tare and each later restart.
+//!
+//! It is a crate of its own, as the firmware builds it for speed and the rest of the board's work for size.
+#![no_std]
 
 use estimator_core::{ArmConfig, Estimator, Q};
-use telemetry::{Estimate, Event, SEGMENTS, Sample, Uncertainty};
+use telemetry::{Estimate, Event, MAX_SEGMENTS, Sample, Uncertainty};
 
 /// Ticks of 10 ms until the first tare if an IMU does not start.
 pub const TARE_TICKS: u32 = 200;
@@ -14,7 +17,8 @@ pub const WINDOW: usize = 100;
 /// It is large: make it as a static, and [start](Self::start) it there.
 #[derive(Debug)]
 pub struct BoardEstimator {
-    estimator: Estimator<'static, Q, SEGMENTS, WINDOW>,
+    estimator: Estimator<'static, Q, MAX_SEGMENTS, WINDOW>,
+    segments: usize,
     tare_epoch: u8,
     tared: bool,
     /// Contact that was reported last, one bit per segment.
@@ -24,7 +28,13 @@ pub struct BoardEstimator {
 impl BoardEstimator {
     /// An estimator that is not started and estimates nothing. Without segments in `table` it never estimates.
     pub const fn new(table: &'static ArmConfig<'static, Q>) -> Self {
-        Self { estimator: Estimator::const_new(table), tare_epoch: 0, tared: false, contact_mask: 0 }
+        Self {
+            estimator: Estimator::const_new(table),
+            segments: table.segments.len(),
+            tare_epoch: 0,
+            tared: false,
+            contact_mask: 0,
+        }
     }
 
     /// Starts the estimator at boot. A table with more segments or a longer window than the capacity gives no estimate;
@@ -57,15 +67,23 @@ impl BoardEstimator {
         Estimate::of(sample.tick, self.estimator.update(&sample.into()))
     }
 
+    /// Segment, counted from 0, with the largest bend angle by its bend sensors in the latest sample, and that angle in units
+    /// of 2⁻²⁶ rad; `None`: no bend sensor was read.
+    pub fn most_bent(&self) -> Option<(u8, i32)> {
+        let angles = (0..).zip(self.estimator.bend_angles());
+        let angles = angles.filter_map(|(segment, angle)| angle.map(|angle| (segment, angle.to_bits())));
+        angles.max_by_key(|(_, angle)| angle.unsigned_abs())
+    }
+
     /// Returns an event if contact began or ended with the latest sample, which was that of this tick.
     pub fn contact_event(&mut self, tick: u32) -> Option<Event> {
         let mask = self.estimator.contact_mask();
         let has_changed = core::mem::replace(&mut self.contact_mask, mask) != mask;
-        has_changed.then(|| Event::Contact(tick, core::array::from_fn(|i| mask >> i & 1 != 0)))
+        has_changed.then_some(Event::Contact(tick, mask as u8))
     }
 
     /// Covariance of the latest estimate, which was that of this tick, as computed within the last ticks.
     pub fn uncertainty(&self, tick: u32) -> Uncertainty {
-        Uncertainty::of(tick, &self.estimator.uncertainties(), &self.estimator.contacts())
+        Uncertainty::of(tick, self.segments, &self.estimator.uncertainties(), &self.estimator.contacts())
     }
 }

@@ -1,11 +1,13 @@
 //! Tares of the estimator, contact events and uncertainties.
 
-use board_core::{BoardEstimator, TARE_TICKS};
+use board_estimator::{BoardEstimator, TARE_TICKS};
 use estimator_core::{
     ArmConfig, BendMap, BendSensorConfig, ContactConfig, Q, QuadraticMap, SegmentConfig, Turns, UncertaintyConfig,
     VARIANCE_SCALE,
 };
-use telemetry::{BEND_SENSORS, Event, SEGMENTS, Sample};
+use telemetry::{Event, Sample};
+
+const SEGMENTS: usize = 6;
 
 /// Six segments without bend sensors, whose headings are absolute.
 fn table() -> &'static ArmConfig<'static, Q> {
@@ -19,8 +21,8 @@ fn sample(tick: u32) -> Sample {
         tick,
         time_us: u64::from(tick) * 10_000,
         tare_epoch: 0,
-        bend: [None; BEND_SENSORS],
-        imu: [Some([16_384, 0, 0, 0]); SEGMENTS],
+        bend: [None; 2 * SEGMENTS].into_iter().collect(),
+        imu: [Some([16_384, 0, 0, 0]); SEGMENTS].into_iter().collect(),
     }
 }
 
@@ -86,7 +88,11 @@ fn full_table() -> &'static ArmConfig<'static, Q> {
 fn turned(tick: u32, degrees: f64) -> Sample {
     let half = degrees.to_radians() / 2.0;
     let imu = [half.cos(), 0.0, 0.0, half.sin()].map(|component| (component * 16384.0).round() as i16);
-    Sample { bend: [Some(1861); BEND_SENSORS], imu: [Some(imu); SEGMENTS], ..sample(tick) }
+    Sample {
+        bend: [Some(1861); 2 * SEGMENTS].into_iter().collect(),
+        imu: [Some(imu); SEGMENTS].into_iter().collect(),
+        ..sample(tick)
+    }
 }
 
 #[test]
@@ -99,11 +105,10 @@ fn contact_has_one_event_at_its_begin_and_one_when_a_tare_ends_it() {
     };
     assert!((0..20).all(|tick| contact_after(&mut estimator, tick, 0.0).is_none()));
     // The IMUs turn and the bend sensors do not: the first segment is in contact.
-    let first_alone = [true, false, false, false, false, false];
-    assert_eq!(contact_after(&mut estimator, 20, 20.0), Some(Event::Contact(20, first_alone)));
+    assert_eq!(contact_after(&mut estimator, 20, 20.0), Some(Event::Contact(20, 0b1)));
     assert!((21..30).all(|tick| contact_after(&mut estimator, tick, 20.0).is_none()));
     estimator.tare();
-    assert_eq!(contact_after(&mut estimator, 30, 20.0), Some(Event::Contact(30, [false; SEGMENTS])));
+    assert_eq!(contact_after(&mut estimator, 30, 20.0), Some(Event::Contact(30, 0)));
 }
 
 #[test]
@@ -120,4 +125,21 @@ fn an_uncertainty_is_of_the_latest_estimate() {
     assert!(!free.segments[0].in_contact && touched.segments[0].in_contact);
     assert!(touched.segments[0].theta > free.segments[0].theta && free.segments[0].theta.is_some());
     assert!(touched.segments[5].end.is_some());
+}
+
+#[test]
+fn the_segment_that_is_bent_most_is_found_by_its_bend_sensors() {
+    let mut estimator = BoardEstimator::new(full_table());
+    estimator.start();
+    assert_eq!(estimator.most_bent(), None);
+    // θ = V − 1.5 rad: 2600 counts are 2.095 V, 1200 counts 0.967 V.
+    let mut bent = turned(0, 0.0);
+    for (segment, counts) in [(1, 2600), (4, 1200)] {
+        bent.bend[2 * segment] = Some(counts);
+        bent.bend[2 * segment + 1] = Some(counts);
+    }
+    estimator.update(&bent);
+    let (segment, angle) = estimator.most_bent().expect("all sensors were read");
+    assert_eq!(segment, 1);
+    assert!((Q::from_bits(angle).to_f64() - 0.595).abs() < 0.001);
 }

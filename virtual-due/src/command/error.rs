@@ -1,0 +1,53 @@
+//! Errors of the command line.
+
+use calibration_tables::FileError;
+use rig_twin::{LayoutError, MAX_SEGMENTS};
+use virtual_due::ImageError;
+
+/// Reason why the firmware cannot be run.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    /// The firmware cannot be read.
+    #[error("{path}: {error}; build the firmware first, and give the path of its ELF file")]
+    Firmware {
+        /// The path as it was given.
+        path: String,
+        /// The system's error.
+        error: std::io::Error,
+    },
+    /// It is not a firmware for the Due.
+    #[error("{path}: {error}")]
+    Elf {
+        /// The path as it was given.
+        path: String,
+        /// The reason.
+        error: ImageError,
+    },
+    /// The arm's file is no arm description and no table.
+    #[error("{path}: {error}; --arm takes the arm's description or table")]
+    Arm {
+        /// The path as it was given.
+        path: String,
+        /// The reason.
+        error: FileError,
+    },
+    /// The arm is larger than the board has room for.
+    #[error("{path}: {error}; simulate an arm of 1 to {MAX_SEGMENTS} segments")]
+    Layout {
+        /// The path as it was given.
+        path: String,
+        /// The reason.
+        error: LayoutError,
+    },
+    /// The file of the flash cannot be read or written.
+    #[error("{path}: {error}; --flash takes a file of 512 KiB, or the name of a new one")]
+    Flash {
+        /// The path as it was given.
+        path: String,
+        /// The system's error.
+        error: std::io::Error,
+    },
+    /// The serial port cannot be opened.
+    #[error("serial port: {0}")]
+    Serial(#[from] std::io::Error),
+}
