@@ -58,9 +58,14 @@ impl CompiledTable<Q> {
     /// CRC-32 of the parameters, equal for tables with the same parameters.
     ///
     /// It is computed over the text of [`to_rust`](Self::to_rust), which contains every bit of the parameters in a
-    /// fixed form.
+    /// fixed form, and of the wiring where the table has one.
     #[must_use]
     pub fn checksum(&self) -> u32 {
-        CRC_32.checksum(self.to_rust().as_bytes())
+        let mut digest = CRC_32.digest();
+        digest.update(self.to_rust().as_bytes());
+        if let Some(wiring) = &self.wiring {
+            digest.update(format!("{wiring:?}").as_bytes());
+        }
+        digest.finalize()
     }
 }

@@ -1,10 +1,12 @@
 //! From the file's units to the estimator's configuration, for one sample rate.
 
+use board_table::Wiring;
 use estimator_core::{
     AnchorConfig, ArmConfig, BiasFilterConfig, ContactConfig, FusedOps, SegmentConfig, Turns, UncertaintyConfig,
 };
 
 use crate::arm::ArmFile;
+use crate::board::BoardToml;
 use crate::contact::ContactToml;
 use crate::drift::DriftToml;
 use crate::error::FileError;
@@ -19,13 +21,15 @@ pub struct CompiledTable<S> {
     bias_filter: Option<BiasFilterConfig>,
     contact: Option<ContactConfig>,
     uncertainty: Option<UncertaintyConfig>,
+    /// The wiring of the section `[board]`, if there is one.
+    pub(crate) wiring: Option<Wiring>,
 }
 
 impl<S> CompiledTable<S> {
     /// The estimator's configuration.
     #[must_use]
     pub fn config(&self) -> ArmConfig<'_, S> {
-        let Self { segments, tare_samples, anchor, bias_filter, contact, uncertainty } = self;
+        let Self { segments, tare_samples, anchor, bias_filter, contact, uncertainty, wiring: _ } = self;
         ArmConfig {
             segments,
             tare_samples: *tare_samples,
@@ -62,6 +66,7 @@ impl ArmFile {
             bias_filter: self.bias_filter().map(DriftToml::compile),
             contact: self.contact.as_ref().map(ContactToml::compile),
             uncertainty: self.uncertainty.as_ref().map(UncertaintyToml::compile),
+            wiring: self.board.as_ref().and_then(BoardToml::wiring),
         })
     }
 }

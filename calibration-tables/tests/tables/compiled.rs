@@ -1,6 +1,8 @@
 //! From a table to the estimator's parameters.
 
-use calibration_tables::{ArmFile, FileError};
+use calibration_tables::{
+    AnalogPin, ArmFile, BoardSegmentToml, BoardToml, DigitalPin, FileError, ImuToml, RegulatorToml,
+};
 use estimator_core::{
     BiasFilterConfig, Estimator, ImuReading, Method, OffsetAt, Q, SENSORS_PER_SEGMENT, Sample, SegmentConfig,
     VARIANCE_SCALE,
@@ -209,6 +211,26 @@ fn the_checksum_tells_the_smallest_change_of_a_parameter() {
     // Half a micrometre: 33 steps of fixed point.
     let longer = parse(&edited("length_mm = 80.0", "length_mm = 80.0005")).compile::<Q>(100.0).unwrap().checksum();
     assert!(whole != other_rate && whole != longer && other_rate != longer);
+}
+
+#[test]
+fn the_checksum_tells_another_wiring() {
+    let wired = |full_scale_kpa: f64, first_pin: u8| {
+        let mut table = parse(TABLE);
+        let segment = |i: u8| BoardSegmentToml {
+            bend: vec![AnalogPin(if i == 0 { first_pin } else { 2 * i }), AnalogPin(2 * i + 1)],
+            imu: Some(ImuToml { channel: i, address: 0x28 }),
+        };
+        let regulators = vec![RegulatorToml { pin: DigitalPin(6), full_scale_kpa }];
+        table.board = Some(BoardToml { segments: (0..6).map(segment).collect(), regulators });
+        table.compile::<Q>(100.0).expect("a table").checksum()
+    };
+    let plain = parse(TABLE).compile::<Q>(100.0).expect("a table").checksum();
+    let checksums = [plain, wired(280.0, 0), wired(100.0, 0), wired(280.0, 11)];
+    for (i, checksum) in checksums.iter().enumerate() {
+        assert!(!checksums[..i].contains(checksum), "{i}");
+    }
+    assert_eq!(wired(280.0, 0), checksums[1]);
 }
 
 /// The bias filter of the table with `[drift]` of these lines.

@@ -144,6 +144,10 @@ impl StreamDecoder {
         }
         // Firmware of version 0.1 has another checksum of the same table.
         let is_comparable = !is_version_0_1(&hello.firmware);
+        if self.table == Some(hello.table) {
+            // A table that was stored since.
+            self.mismatches.retain(|mismatch| !matches!(mismatch, Mismatch::Table { .. }));
+        }
         if let Some(given) = self.table.filter(|given| is_comparable && *given != hello.table) {
             let arm = hello.arm.as_str().to_owned();
             self.mismatch(Mismatch::Table { arm, board: hello.table, given }, publish);

@@ -10,6 +10,7 @@ use axum::http::header::{CONTENT_TYPE, HeaderName};
 use axum::http::{HeaderMap, StatusCode};
 use axum::response::{IntoResponse, Response};
 use proprio_link::TareError;
+use proprio_session::NoProgress;
 use serde::Deserialize;
 use telemetry::{Command, MAX_REGULATORS, SetPressures, TareMode};
 
@@ -205,4 +206,19 @@ pub(super) async fn tare(State(state): State<AppState>, headers: HeaderMap, body
         Err(TareError::Link(error)) => return Err(state.failure(&error.into())),
     };
     Ok(Json(outcome).into_response())
+}
+
+/// Stores the monitor's table on the board, which restarts with it.
+pub(super) async fn push_table(State(state): State<AppState>, headers: HeaderMap) -> Answer<Json<String>> {
+    check_token(&state, &headers).map_err(Refused::into_response)?;
+    let shared = Arc::clone(&state.monitor);
+    let pushed = run_blocking(move || {
+        let Some((link, table)) = shared.link.as_ref().zip(shared.sessions.stored_table()?) else { return Ok(None) };
+        Ok(Some(proprio_link::table::push(link, &table, &mut NoProgress)?))
+    });
+    match pushed.await? {
+        Ok(Some(hello)) => Ok(Json(format!("the board has table {:08x} of arm {}", hello.table, hello.arm))),
+        Ok(None) => Err(Refused::ReadOnly.into_response()),
+        Err(error) => Err(state.failure(&error)),
+    }
 }

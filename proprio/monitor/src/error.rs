@@ -15,6 +15,12 @@ pub enum Error {
     /// A request to the board.
     #[error(transparent)]
     Link(#[from] proprio_link::LinkError),
+    /// The monitor's table cannot be stored on a board.
+    #[error(transparent)]
+    TableImage(#[from] proprio_link::table::TableImageError),
+    /// The transfer of the table to the board.
+    #[error(transparent)]
+    Transfer(#[from] proprio_link::table::TransferError),
     /// The port cannot be opened.
     #[error("port {port} of 127.0.0.1 cannot be listened on: {source}")]
     Listen {

@@ -126,6 +126,8 @@ pub(super) struct PageStatus {
     pub port: Option<String>,
     pub answers: bool,
     pub board: Option<BoardInfo>,
+    /// The board has another table than the monitor, or none.
+    pub offers_table: bool,
     pub health: Option<BoardHealth>,
     pub sensors: Vec<SensorStatus>,
     #[serde(flatten)]
@@ -156,6 +158,8 @@ pub(super) struct BoardInfo {
     /// Bend sensors that are wired.
     bend_sensors: u8,
     regulators: u8,
+    /// Checksum of its table; `None` without a table.
+    table: Option<String>,
     firmware: String,
     boot: u32,
     reset: telemetry::ResetCause,
@@ -223,13 +227,16 @@ pub(super) struct BoardTime {
 }
 
 impl PageStatus {
-    /// The status of the link; the other fields are empty.
-    pub fn new(link: LinkState, rates: MessageRates) -> Self {
+    /// The status of the link; the other fields are empty. `table` is the checksum of the monitor's table.
+    pub fn new(link: LinkState, table: Option<u32>, rates: MessageRates) -> Self {
+        let of_board = link.hello.as_ref().map(|hello| hello.table);
+        let offers_table = of_board.zip(table).is_some_and(|(of_board, given)| of_board != given);
         let board = link.hello.map(|hello| BoardInfo {
             arm: hello.arm.as_str().to_owned(),
             segments: hello.segments,
             bend_sensors: hello.bend_sensors,
             regulators: hello.regulators,
+            table: (hello.table != 0).then(|| format!("{:08x}", hello.table)),
             firmware: hello.firmware.as_str().to_owned(),
             boot: hello.boot,
             reset: hello.reset,
@@ -239,6 +246,7 @@ impl PageStatus {
             port: link.port,
             answers: link.is_connected,
             board,
+            offers_table,
             health: None,
             sensors: Vec::new(),
             rates,

@@ -64,6 +64,7 @@ pub(super) fn router(state: AppState) -> Router {
         .route("/unlock", post(actions::unlock))
         .route("/control", post(actions::control))
         .route("/tare", post(actions::tare))
+        .route("/table", post(actions::push_table))
         .layer(middleware::from_fn_with_state(state.clone(), guard))
         .with_state(state)
 }

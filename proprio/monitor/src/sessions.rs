@@ -9,6 +9,7 @@ use std::sync::{Mutex, PoisonError};
 use calibration_tables::ArmFile;
 use estimator_core::Q;
 use proprio_check::{Finding, SessionCheck};
+use proprio_link::table::StoredTable;
 use proprio_session::{LoadedTable, Mark, SessionError, SessionReader};
 use serde::Serialize;
 use tempfile::TempPath;
@@ -86,6 +87,12 @@ impl Sessions {
     /// The text of the table's file.
     pub fn table_toml(&self) -> Result<Option<Vec<u8>>, Error> {
         Ok(self.table().map(|table| table.toml()).transpose()?)
+    }
+
+    /// The table as a board stores it; `None` without a table.
+    pub fn stored_table(&self) -> Result<Option<StoredTable>, Error> {
+        let Some(table) = self.table() else { return Ok(None) };
+        Ok(Some(StoredTable::new(&table.file, &table.toml()?)?))
     }
 
     /// A session check with the table; `None` without a table.

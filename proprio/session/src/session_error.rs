@@ -148,7 +148,7 @@ pub enum SessionProblem {
     /// A recording of which nothing can be recovered.
     #[error("nothing in it is whole: no message can be read")]
     NothingWhole,
-    /// A recording of a board with fewer segments than the arm.
+    /// A recording of a board with another number of segments than the arm.
     #[error("is a recording of a board with {board} segments, the arm has {arm}")]
     RecordedSegments {
         /// Segments of the board's arm.

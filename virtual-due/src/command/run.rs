@@ -71,8 +71,8 @@ impl Run {
             inject(self.machine.world_mut());
             now = end.min(now + SLICE);
             self.machine.run_until(now);
-            self.print_reports();
-            if now.is_multiple_of(FLASH_PERIOD) {
+            // After a reset the board may say what its flash holds: the file must hold it, too.
+            if self.print_reports() || now.is_multiple_of(FLASH_PERIOD) {
                 self.keep_flash()?;
             }
             let sent: Vec<u8> =
@@ -99,14 +99,16 @@ impl Run {
         now - *self.locked_up.get_or_insert(now) > LOCKED_UP_TOO_LONG
     }
 
-    fn print_reports(&mut self) {
+    /// Prints what has happened; returns true if there was a reset.
+    fn print_reports(&mut self) -> bool {
         for report in self.machine.reports() {
             eprintln!("{report}");
         }
         for reset in &self.machine.resets()[self.resets_printed..] {
             eprintln!("reset at {:.6} s: {:?}", seconds(reset.at), reset.cause);
         }
-        self.resets_printed = self.machine.resets().len();
+        let before = std::mem::replace(&mut self.resets_printed, self.machine.resets().len());
+        before < self.resets_printed
     }
 
     /// Waits until real time has reached virtual time `now`.

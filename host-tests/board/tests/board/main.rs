@@ -15,6 +15,7 @@ mod late_recording;
 mod link;
 #[cfg(unix)]
 mod noise;
+mod page_table;
 mod pressures;
 #[cfg(unix)]
 mod recording;

@@ -88,6 +88,8 @@ impl Help for proprio_monitor::Error {
         match self {
             Self::File(error) => error.help(),
             Self::Link(error) => error.help(),
+            Self::TableImage(error) => error.help(),
+            Self::Transfer(error) => error.help(),
             Self::RecorderPanicked(_) => {
                 "save it with `proprio recover`, and report the fault, with the message above and the command"
                     .to_owned()

@@ -86,6 +86,17 @@ fn arms_of_three_and_eight_segments_are_read_from_a_recording_to_the_bit() {
 }
 
 #[test]
+fn a_recording_of_another_number_of_segments_than_the_arm_is_refused_with_both() {
+    for (segments, arm) in [(3, 8), (8, 3)] {
+        let folder = Folder::with("session.mcap", recording(segments, &samples(segments)));
+        let needs = RequiredColumns { bend: vec![None; arm], truth: false };
+        let error = SessionReader::open(folder.path("session.mcap").as_ref(), &needs).err().expect("another arm");
+        let expected = format!("is a recording of a board with {segments} segments, the arm has {arm}");
+        assert!(error.to_string().ends_with(&expected), "{error}");
+    }
+}
+
+#[test]
 fn a_csv_has_the_columns_of_the_arm_s_segments_and_comes_back_to_the_bit() {
     for segments in [3_u8, 8] {
         let sent = samples(segments);

@@ -125,9 +125,7 @@ pub fn pull(link: &Link, progress: &mut dyn Progress) -> Result<PulledTable, Tra
     let length = (state.image_bytes + state.source_bytes) as usize;
     let mut body = Vec::with_capacity(length);
     while body.len() < length {
-        let offset = body.len() as u32;
-        link.request(Command::TableRead(offset))?;
-        let chunk = next_chunk(&events, offset)?;
+        let chunk = read(link, &events, body.len() as u32)?;
         if chunk.bytes.is_empty() {
             return Err(TransferError::Damaged);
         }
@@ -139,6 +137,18 @@ pub fn pull(link: &Link, progress: &mut dyn Progress) -> Result<PulledTable, Tra
         return Err(TransferError::Damaged);
     }
     Ok(PulledTable { toml: expand(source)?, generation: state.generation })
+}
+
+/// Reads the piece of the table at an offset, again where the line or a full buffer of the board has lost it.
+fn read(link: &Link, events: &Subscription, offset: u32) -> Result<TableChunk, TransferError> {
+    let mut attempts = 0;
+    loop {
+        link.request(Command::TableRead(offset))?;
+        match next_chunk(events, offset) {
+            Err(TransferError::NoState) if attempts < RESUMPTIONS => attempts += 1,
+            result => return result,
+        }
+    }
 }
 
 /// Requests the state of the table on a board.

@@ -7,6 +7,7 @@ import { text } from './sensors.js';
 const VALUES = [
   ['line', 'Line', (s) => (s.port ? `${s.port}${s.answers ? '' : ', no answer to requests'}` : 'gone')],
   ['who', 'Board', (s) => s.board && `arm ${s.board.arm} (${s.board.segments} segments, ${s.board.bend_sensors} bend sensors, ${s.board.regulators} regulators), firmware ${s.board.firmware}, boot ${s.board.boot} by ${s.board.reset}`],
+  ['table', 'Table', (s) => s.board && (s.board.table ? `${s.board.table}${s.offers_table ? ', not the one of this page' : ''}` : 'none')],
   ['panic', 'Last panic', (s) => s.board && (s.board.last_panic ?? 'none')],
   ['rates', 'Rates', (s) => `${s.samples_hz.toFixed(1)} samples/s, ${s.estimates_hz.toFixed(1)} estimates/s, ${(s.bytes_per_s / 1e3).toFixed(1)} kB/s`],
   ['received', 'Frames', (s) => `${s.frames} received, ${s.damaged} damaged, ${s.lost} lost`],

@@ -17,6 +17,8 @@ export class Control {
     this.button = document.getElementById('vent');
     this.tareButton = document.getElementById('tare');
     this.tareButton.addEventListener('click', () => this.tare());
+    this.tableButton = document.getElementById('push-table');
+    this.tableButton.addEventListener('click', () => this.pushTable());
     this.takeToken();
     this.isDriving = false;
     this.part('#unlock').addEventListener('submit', (event) => {
@@ -61,7 +63,7 @@ export class Control {
   lock() {
     this.part('#unlock').hidden = Boolean(this.token);
     this.part('#driving').hidden = !this.token;
-    this.button.disabled = this.tareButton.disabled = !this.token;
+    this.button.disabled = this.tareButton.disabled = this.tableButton.disabled = !this.token;
   }
 
   /** Makes a slider for each regulator of the board: two for each module, right and left. */
@@ -85,8 +87,9 @@ export class Control {
     for (const { input, output, board } of this.sliders) output.textContent = `${input.value} kPa, board ${board.toFixed(0)} kPa`;
   }
 
-  /** Shows the board's status; pressures can be set only while it is armed. */
-  status(arm, health) {
+  /** Shows the board's status; pressures can be set only while it is armed. `offersTable`: the board has another table. */
+  status(arm, health, offersTable) {
+    this.tableButton.hidden = !arm.allows_control || !offersTable;
     this.section.hidden = this.button.hidden = this.tareButton.hidden = !arm.allows_control;
     this.lock();
     if (health) this.buildSliders(health.pressures_kpa.length);
@@ -131,6 +134,12 @@ export class Control {
     this.anywayUntil = isOffered ? performance.now() + ANYWAY : 0;
     clearTimeout(this.anywayTimer);
     if (isOffered) this.anywayTimer = setTimeout(() => this.setAnyway(false), ANYWAY);
+  }
+
+  /** Stores the table of this page on the board, which restarts with it. */
+  async pushTable() {
+    const text = await this.send(null, '/table');
+    if (text) this.showNotice(text);
   }
 
   async arm() {

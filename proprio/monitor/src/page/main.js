@@ -75,7 +75,7 @@ const feed = new Feed({
     const load = status.health ? `, load ${status.health.load_percent.toFixed(1)} %` : '';
     text($('glance'), `${status.samples_hz.toFixed(0)} samples/s, ${status.lost} lost${load}`);
     recordState(Boolean(status.recording && !status.recording.failed), true);
-    control.status(app.arm, status.health);
+    control.status(app.arm, status.health, status.offers_table);
   },
   skipped(messages) { app.skipped += messages; },
   gone() {
@@ -83,7 +83,7 @@ const feed = new Feed({
     linkState('bad', 'monitor is not running');
     text($('glance'), '');
     recordState(false, false);
-    if (app.arm) control.status(app.arm, null);
+    if (app.arm) control.status(app.arm, null, false);
   },
 });
 
