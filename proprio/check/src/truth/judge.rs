@@ -132,10 +132,10 @@ impl Judge {
             own = self.residuals_of(&row);
         }
         self.holds.update(&original, self.usual.scale, faults);
-        for i in 0..self.chain.count() {
+        for (i, residual) in own.into_iter().enumerate().take(self.chain.count()) {
             self.was_wrong[i] = original.poses[i].is_some() && row.poses[i].is_none();
             self.good[i] = row.poses[i].or(self.good[i]);
-            let Some(residual) = own[i] else { continue };
+            let Some(residual) = residual else { continue };
             if let Some(last) = self.residuals[i].replace(residual) {
                 let change = (residual - last).norm().min(JUMP * self.length(i));
                 self.noise[i] += NOISE_WEIGHT * (change - self.noise[i]);
