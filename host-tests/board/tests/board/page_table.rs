@@ -35,7 +35,7 @@ impl Page {
 
     /// The page's status, once the board answers and `is_as_wanted`.
     fn wait_for_status(&self, is_as_wanted: impl Fn(&Value) -> bool) -> Value {
-        let end = Instant::now() + Duration::from_secs(60);
+        let end = Instant::now() + Duration::from_mins(1);
         loop {
             let (_, body) = self.request("GET", "/status");
             let status = body.split_once('{').and_then(|(_, rest)| {
