@@ -26,10 +26,12 @@ fn receive<P: Payload + Clone + PartialEq + Debug>(bytes: &[u8]) {
     assert_eq!(counts.received + counts.damaged + counts.wrong_version + counts.unknown, frames);
 
     // A fuzzer does not find a CRC-32: it writes bodies behind their topic.
-    if let Some((&topic, body)) = bytes.split_first()
-        && let Ok(payload) = P::read(topic, body)
-    {
-        repeat(&payload);
+    if let Some((&topic, body)) = bytes.split_first() {
+        for version in P::VERSIONS {
+            if let Ok(payload) = P::read(*version, topic, body) {
+                repeat(&payload);
+            }
+        }
     }
 }
 
