@@ -210,10 +210,12 @@ impl EstimationTask {
         }
     }
 
-    /// Returns whether the estimate is too poor to let the pressures rise: no IMU at all, or a segment whose bend sensors
-    /// are all lost.
+    /// Returns whether the estimate is too poor to let the pressures rise: all IMUs that the arm has are lost, or all bend
+    /// sensors of a segment.
     fn is_degraded(&self) -> bool {
-        let no_imu = self.sensors.imus.health().iter().all(|imu| imu.state != SensorState::Ok);
+        let imus = self.sensors.imus.health();
+        let mut wired = imus.iter().filter(|imu| imu.state != SensorState::NotWired).peekable();
+        let no_imu = wired.peek().is_some() && wired.all(|imu| imu.state != SensorState::Ok);
         let mut segments = self.config.segments.iter().enumerate();
         no_imu
             || segments

@@ -114,6 +114,19 @@ fn eight_segments_move_by_their_eight_regulators_and_every_estimate_is_the_hosts
 }
 
 #[test]
+fn an_arm_without_imus_is_driven() {
+    let mut wiring = Wiring::reference(2);
+    wiring.segments.iter_mut().for_each(|segment| segment.imu = None);
+    let mut board = running(&WiredArm::new(wiring));
+    let pressures_pa = [100_000; 6].into_iter().collect();
+    assert_eq!(board.request(Command::Arm), RequestOutcome::Ack);
+    let set = Command::SetPressures(SetPressures { pressures_pa, valid_ms: 500 });
+    assert_eq!(board.request(set), RequestOutcome::Ack);
+    let commanded = board.machine.world().set_points_pa();
+    assert!(commanded.iter().all(|found| (found - 100_000.0).abs() <= 67.0), "{commanded:?}");
+}
+
+#[test]
 fn set_points_go_to_the_wired_pins_in_the_regulators_own_scale() {
     let mut board = running(&one_segment());
     let set = |pressures_pa: &[u32]| {
