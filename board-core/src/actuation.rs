@@ -137,8 +137,9 @@ impl Actuator {
     /// Accepts new set-points.
     ///
     /// # Errors
-    /// [`Refusal::Disarmed`] if it is not armed, [`Refusal::Regulators`] if it has another number of set-points than there are
-    /// regulators, [`Refusal::OverRange`] if a pressure is over its regulator's full scale, [`Refusal::Deadline`] if `valid_ms` is not 1 to [`VALID_MS_MAX`]. The previous set-points are then unchanged.
+    /// [`Refusal::Disarmed`] if it is not armed, [`Refusal::Regulators`] if there are more or fewer set-points than
+    /// regulators, [`Refusal::OverRange`] if a pressure is over its regulator's full scale, [`Refusal::Deadline`] if
+    /// `valid_ms` is not 1 to [`VALID_MS_MAX`]. The previous set-points are then unchanged.
     pub fn set(&mut self, request: &SetPressures, now_us: u64) -> Result<(), Refusal> {
         self.advance(now_us);
         if self.state == Actuation::Disarmed {

@@ -85,8 +85,8 @@ impl Wiring {
     }
 
     /// The reference wiring of an arm of 1 to 8 segments, as in `docs/how-to/wiring.md`: bend sensors a and b of segment k,
-    /// from 0, on A(2k) and A(2k + 1) as far as there are pins, its IMU on channel k at 0x28, and six regulators. More
-    /// segments than the board has room for have no wiring.
+    /// from 0, on A(2k) and A(2k + 1), none past A11, its IMU on channel k at 0x28, and six regulators. More segments than
+    /// the board has room for have no wiring.
     pub fn reference(segments: usize) -> Self {
         let pin = |index: u8| (index < ANALOG_PINS).then_some(index);
         let [address, _] = IMU_ADDRESSES;
@@ -104,6 +104,11 @@ impl Wiring {
                 .map(|pin| RegulatorWiring { pin, full_scale_pa: REFERENCE_FULL_SCALE_PA })
                 .collect(),
         }
+    }
+
+    /// Number of bend sensors.
+    pub fn bend_sensors(&self) -> usize {
+        self.segments.iter().flat_map(|segment| segment.bend).flatten().count()
     }
 
     /// Checks that the board has every pin, channel and address, and each of them once.

@@ -29,7 +29,7 @@ pub fn enter_arm(hello: &mut Hello, table: &BoardTable<MAX_SEGMENTS>, wiring: &W
     hello.arm = text(table.arm());
     hello.table = table.checksum();
     hello.segments = wiring.segments.len() as u8;
-    hello.bend_sensors = wiring.segments.iter().flat_map(|segment| segment.bend).flatten().count() as u8;
+    hello.bend_sensors = wiring.bend_sensors() as u8;
     hello.regulators = wiring.regulators.len() as u8;
 }
 

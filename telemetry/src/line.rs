@@ -1,5 +1,6 @@
 //! Budget of the line: the lengths of the frames of an arm, and the rates at which they fit.
 
+use crate::constants::TICK_US;
 use crate::request::Rates;
 
 /// Bytes a second at 250 000 Bd; a byte takes ten bits with its start and stop bit.
@@ -12,7 +13,7 @@ pub const STREAM_BYTES_PER_SECOND: u32 = LINE_BYTES_PER_SECOND / 5 * 4;
 pub const HELLO_TICKS: u16 = 100;
 
 /// Ticks a second.
-const TICKS_PER_SECOND: u32 = 100;
+const TICKS_PER_SECOND: u32 = 1_000_000 / TICK_US as u32;
 
 /// Lengths of the longest frames of an arm, bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -78,6 +78,14 @@ pub enum Mismatch {
     },
 }
 
+impl Mismatch {
+    /// The board's table is not the one that was given.
+    #[must_use]
+    pub const fn is_table(&self) -> bool {
+        matches!(self, Self::Table { .. })
+    }
+}
+
 impl fmt::Display for Mismatch {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let host = env!("CARGO_PKG_VERSION");

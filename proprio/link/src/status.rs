@@ -119,7 +119,6 @@ impl Status {
             let state = link.state();
             if let (Some(hello), Some(health), Some(rates)) = (state.hello, &seen.health, seen.rates()) {
                 let is_comparable = !is_version_0_1(&hello.firmware);
-                let differs = |mismatch: &Mismatch| matches!(mismatch, Mismatch::Table { .. });
                 return Ok(Self {
                     port: state.port.unwrap_or_default(),
                     proprio: env!("CARGO_PKG_VERSION"),
@@ -133,7 +132,8 @@ impl Status {
                         lost: state.counts.lost,
                     },
                     answers: state.is_connected,
-                    table_matches: (table_given && is_comparable).then(|| !state.mismatches.iter().any(differs)),
+                    table_matches: (table_given && is_comparable)
+                        .then(|| !state.mismatches.iter().any(Mismatch::is_table)),
                     mismatches: state.mismatches.iter().map(ToString::to_string).collect(),
                 });
             }

@@ -146,7 +146,7 @@ impl StreamDecoder {
         let is_comparable = !is_version_0_1(&hello.firmware);
         if self.table == Some(hello.table) {
             // A table that was stored since.
-            self.mismatches.retain(|mismatch| !matches!(mismatch, Mismatch::Table { .. }));
+            self.mismatches.retain(|mismatch| !mismatch.is_table());
         }
         if let Some(given) = self.table.filter(|given| is_comparable && *given != hello.table) {
             let arm = hello.arm.as_str().to_owned();

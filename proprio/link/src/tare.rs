@@ -12,7 +12,7 @@ use crate::handle::Link;
 use crate::requests::RequestError;
 use crate::shared::Subscription;
 
-/// Longest wait for the report beside the reply.
+/// Longest wait for the report after the reply.
 const REPORT: Duration = Duration::from_secs(2);
 
 /// Pose of the arm at a tare; unknown of a board of protocol 2, which reports none.
@@ -46,7 +46,7 @@ pub fn tare(link: &Link, mode: TareMode) -> Result<Tared, TareError> {
     }
 }
 
-/// The report beside the reply.
+/// The report after the reply.
 fn report(events: &Subscription) -> Option<TareReport> {
     let end = Instant::now() + REPORT;
     loop {

@@ -141,7 +141,8 @@ impl From<Control> for Command {
             Control::Arm => Self::Arm,
             Control::Vent => Self::Disarm,
             Control::SetPressures { kpa } => {
-                // The cast saturates; the board refuses pressures over its regulators' range, and another number of them than it has.
+                // The cast saturates. The board refuses a pressure over its regulator's full scale, and more or fewer
+                // pressures than it has regulators.
                 let pressures_pa = kpa.iter().map(|kpa| (kpa * 1e3).round() as u32);
                 Self::SetPressures(SetPressures { pressures_pa: pressures_pa.collect(), valid_ms: VALID_MS })
             }

@@ -1,8 +1,8 @@
 //! Messages to the page, as JSON.
 
 use calibration_tables::{ArmFile, Side};
-use proprio_link::LinkState;
 use proprio_link::status::MessageRates;
+use proprio_link::{LinkState, Mismatch};
 use proprio_session::{CHI2_2_95, ClockDrift};
 use serde::Serialize;
 use telemetry::{Actuation, Health, SegmentUncertainty, SensorHealth, SensorState};
@@ -227,10 +227,8 @@ pub(super) struct BoardTime {
 }
 
 impl PageStatus {
-    /// The status of the link; the other fields are empty. `table` is the checksum of the monitor's table.
-    pub fn new(link: LinkState, table: Option<u32>, rates: MessageRates) -> Self {
-        let of_board = link.hello.as_ref().map(|hello| hello.table);
-        let offers_table = of_board.zip(table).is_some_and(|(of_board, given)| of_board != given);
+    /// The status of the link; the other fields are empty.
+    pub fn new(link: LinkState, rates: MessageRates) -> Self {
         let board = link.hello.map(|hello| BoardInfo {
             arm: hello.arm.as_str().to_owned(),
             segments: hello.segments,
@@ -246,7 +244,7 @@ impl PageStatus {
             port: link.port,
             answers: link.is_connected,
             board,
-            offers_table,
+            offers_table: link.mismatches.iter().any(Mismatch::is_table),
             health: None,
             sensors: Vec::new(),
             rates,

@@ -127,7 +127,7 @@ impl<'t> Hub<'t> {
 
     fn send_status(&mut self, link: &Link) {
         let rates = self.live.rates(self.shared.clock.now());
-        let mut status = PageStatus::new(link.state(), self.shared.table, rates);
+        let mut status = PageStatus::new(link.state(), rates);
         status.health = self.live.health.as_ref().map(Into::into);
         status.sensors = self.live.sensors().into_iter().map(Into::into).collect();
         status.dropped_events = self.events.dropped();

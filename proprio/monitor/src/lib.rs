@@ -100,8 +100,7 @@ impl Monitor {
         let address = listener.local_addr().map_err(failed)?;
         let compiled = options.table.as_ref().map(|table| table.compile::<Q>(TICK_HZ)).transpose()?;
         let (link, events) = live.unzip();
-        let checksum = compiled.as_ref().map(CompiledTable::checksum);
-        let shared = Arc::new(shared(link, checksum, options));
+        let shared = Arc::new(shared(link, options));
         let stop = Arc::new(AtomicBool::new(false));
         let (stop_server, stopped) = tokio::sync::oneshot::channel();
         let mut monitor = Self { address, shared, stop, stop_server: Some(stop_server), threads: Vec::new() };
@@ -166,7 +165,7 @@ impl Drop for Monitor {
 }
 
 /// The state that the threads share.
-fn shared(link: Option<Link>, checksum: Option<u32>, options: Options) -> MonitorState {
+fn shared(link: Option<Link>, options: Options) -> MonitorState {
     let table = options.table.as_ref();
     // Until a board has sent its number of segments, the arm is that of the table.
     let segments = table.map_or(0, |table| table.file.segments.len());
@@ -174,7 +173,7 @@ fn shared(link: Option<Link>, checksum: Option<u32>, options: Options) -> Monito
     (arm.is_live, arm.allows_control) = (link.is_some(), options.token.is_some());
     let sessions = Sessions::new(options.folder, table, options.session, options.finding_text);
     arm.session = sessions.given();
-    MonitorState::new(link, arm, options.token, sessions, checksum, options.help)
+    MonitorState::new(link, arm, options.token, sessions, options.help)
 }
 
 fn hub(shared: &Arc<MonitorState>, events: Subscription, compiled: Option<&CompiledTable<Q>>, stop: &AtomicBool) {

@@ -26,8 +26,6 @@ pub(super) struct MonitorState {
     arm: Mutex<ArmDescription>,
     pub token: Option<Token>,
     pub sessions: Sessions,
-    /// Checksum of the monitor's table.
-    pub table: Option<u32>,
     pub help: fn(&Error) -> String,
     pub feed: broadcast::Sender<Utf8Bytes>,
     history: Mutex<History>,
@@ -42,27 +40,13 @@ impl MonitorState {
         arm: ArmDescription,
         token: Option<Token>,
         sessions: Sessions,
-        table: Option<u32>,
         help: fn(&Error) -> String,
     ) -> Self {
         let history = Mutex::new(History::new(arm.columns.len()));
         let (status, latency, recording) = Default::default();
         let (feed, _) = broadcast::channel(CAPACITY);
         let arm = Mutex::new(arm);
-        Self {
-            link,
-            clock: HostClock::new(),
-            arm,
-            token,
-            sessions,
-            table,
-            help,
-            feed,
-            history,
-            status,
-            latency,
-            recording,
-        }
+        Self { link, clock: HostClock::new(), arm, token, sessions, help, feed, history, status, latency, recording }
     }
 
     pub fn arm(&self) -> MutexGuard<'_, ArmDescription> {

@@ -120,7 +120,7 @@ impl SessionReader {
         self.rate_rows = self.ahead.len();
         if matches!(self.rows, Rows::Recorded(..)) {
             let board = self.ahead.iter().filter_map(|row| Some(row.board.as_ref()?.segments)).max().unwrap_or(0);
-            // A board of protocol 2 has six segments in its messages, whatever its arm.
+            // A board of protocol 2 has six segments in its messages for every arm.
             let is_of_arm = self.hello().is_some_and(|hello| hello.protocol > protocol_2::VERSION);
             if needs.bend.len() > board || (is_of_arm && needs.bend.len() < board) {
                 let problem = SessionProblem::RecordedSegments { board, arm: needs.bend.len() };

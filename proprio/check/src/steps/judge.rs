@@ -14,7 +14,7 @@ const WHOLE_TURN_RAD: f64 = 6.284;
 const AGREES: f64 = 0.4;
 const FOLLOWS: f64 = 0.75;
 
-/// Facts about a session beside the fit.
+/// Readings of a session that the judge needs and the fit does not keep.
 #[derive(Debug, Clone)]
 pub(super) struct Facts {
     pub segments: usize,

@@ -102,7 +102,7 @@ mod tests {
         let file = ArmFile::parse(&description(&largest)).expect("it is an arm description");
         let wiring = proprio_link::table::wiring(&file).expect("it fits the board");
         assert_eq!(wiring.check(), Ok(()));
-        assert_eq!(wiring.segments.iter().flat_map(|segment| segment.bend).flatten().count(), 12);
+        assert_eq!(wiring.bend_sensors(), 12);
         assert_eq!((wiring.segments.len(), wiring.regulators.len()), (8, 8));
     }
 

@@ -5,7 +5,7 @@ use board_table::{ANALOG_PINS, MAX_FULL_SCALE_PA, MAX_REGULATORS, MAX_SEGMENTS};
 /// Reason why a description of a new arm cannot be made.
 #[derive(Debug, thiserror::Error)]
 pub enum NewArmError {
-    /// An option is missing, and there is nobody to ask.
+    /// An option is missing, and standard input is no terminal to ask for it.
     #[error("{0} is missing")]
     Missing(&'static str),
     /// Standard input cannot be read.

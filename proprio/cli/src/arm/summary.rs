@@ -35,7 +35,7 @@ impl ArmSummary {
             arm: file.arm.clone(),
             is_table: file.bend_sensors().is_ok(),
             segments,
-            bend_sensors: wiring.segments.iter().flat_map(|segment| segment.bend).flatten().count(),
+            bend_sensors: wiring.bend_sensors(),
             imus: wiring.segments.iter().filter(|segment| segment.imu.is_some()).count(),
             regulators,
             line_bytes_per_s: LineBudget::of(segments, regulators),

@@ -7,7 +7,7 @@ use telemetry::{Command, Health, SensorState, SetPressures};
 
 use super::DriveError;
 use crate::status::Status;
-use crate::{Link, LinkError, Mismatch};
+use crate::{Link, LinkError};
 
 /// Time from one set of pressures to the next.
 pub const PERIOD: Duration = Duration::from_millis(50);
@@ -123,7 +123,7 @@ fn check(link: &Link, status: &Status, regulators: usize) -> Result<(), DriveErr
         return Err(DriveError::Regulators { given: regulators, board });
     }
     let mismatches = link.state().mismatches;
-    if let Some(table) = mismatches.iter().find(|mismatch| matches!(mismatch, Mismatch::Table { .. })) {
+    if let Some(table) = mismatches.iter().find(|mismatch| mismatch.is_table()) {
         return Err(DriveError::OtherTable(table.to_string()));
     }
     if let Some(panic) = &status.hello.last_panic {
