@@ -36,10 +36,10 @@ pub const MAX_FULL_SCALE_PA: u32 = 1_000_000;
 /// Size of a segment's or a regulator's row in an image, bytes.
 const ROW_BYTES: usize = 4;
 
-/// Pin in a row, for a bend sensor that there is not.
+/// Pin in a row where there is no bend sensor.
 const NO_PIN: u8 = 0xFF;
 
-/// Address in a row, for an IMU that there is not.
+/// Address in a row where there is no IMU.
 const NO_ADDRESS: u8 = 0;
 
 /// Wiring of an arm to the board.

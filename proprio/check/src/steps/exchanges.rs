@@ -117,17 +117,16 @@ impl Exchanges {
 }
 
 impl Pair {
-    const fn new(segments: [usize; 2], are_imus: bool) -> Self {
-        let none = Rows { count: 0, first: 0, last: 0, from_s: 0.0, to_s: 0.0 };
+    fn new(segments: [usize; 2], are_imus: bool) -> Self {
         Self {
             segments,
             are_imus,
             in_order: 0,
             exchanged: 0,
             explained: 0.0,
-            rows: none,
+            rows: Rows::default(),
             is_exchanged: false,
-            unknown: none,
+            unknown: Rows::default(),
         }
     }
 

@@ -34,6 +34,12 @@ impl Sums {
     fn mean(&self) -> Matrix {
         std::array::from_fn(|i| std::array::from_fn(|j| self.sum[i][j] / self.count[i][j].max(1.0)))
     }
+
+    /// The means of a symmetric matrix of which the lower half was added.
+    fn symmetric_mean(&self) -> Matrix {
+        let half = self.mean();
+        std::array::from_fn(|i| std::array::from_fn(|j| half[i.max(j)][i.min(j)]))
+    }
 }
 
 impl Moments {
@@ -60,8 +66,7 @@ impl Moments {
 
     /// Mean products of IMUs by IMUs.
     pub fn imu_imu(&self) -> Matrix {
-        let half = self.imu_imu.mean();
-        std::array::from_fn(|i| std::array::from_fn(|j| half[i.max(j)][i.min(j)]))
+        self.imu_imu.symmetric_mean()
     }
 
     /// Mean products of IMUs by bend angles.
@@ -71,7 +76,6 @@ impl Moments {
 
     /// Mean products of bend angles.
     pub fn bend_bend(&self) -> Matrix {
-        let half = self.bend_bend.mean();
-        std::array::from_fn(|i| std::array::from_fn(|j| half[i.max(j)][i.min(j)]))
+        self.bend_bend.symmetric_mean()
     }
 }
