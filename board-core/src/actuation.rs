@@ -72,6 +72,15 @@ pub struct Actuator {
     degraded: bool,
 }
 
+/// Limit of accepted set-points.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Limit {
+    /// They are as requested.
+    None,
+    /// Those that would rise stay as they are.
+    NoRise,
+}
+
 /// Set-points from their acceptance to the vented arm.
 #[derive(Debug, Clone)]
 struct SetpointLease {
@@ -128,19 +137,19 @@ impl Actuator {
 
     /// Sets whether the shape estimate is degraded: all IMUs, or all bend sensors of a segment, are lost.
     ///
-    /// While degraded, set-points are accepted but limited to the present pressures. So the arm can be lowered and vented
-    /// under control, but no pressure rises.
+    /// While degraded, set-points are accepted but limited to the present pressures ([`Limit::NoRise`]). So the arm can be
+    /// lowered and vented under control, but no pressure rises.
     pub fn set_degraded(&mut self, degraded: bool) {
         self.degraded = degraded;
     }
 
-    /// Accepts new set-points.
+    /// Accepts new set-points, and returns whether they were limited.
     ///
     /// # Errors
     /// [`Refusal::Disarmed`] if it is not armed, [`Refusal::Regulators`] if there are more or fewer set-points than
     /// regulators, [`Refusal::OverRange`] if a pressure is over its regulator's full scale, [`Refusal::Deadline`] if
     /// `valid_ms` is not 1 to [`VALID_MS_MAX`]. The previous set-points are then unchanged.
-    pub fn set(&mut self, request: &SetPressures, now_us: u64) -> Result<(), Refusal> {
+    pub fn set(&mut self, request: &SetPressures, now_us: u64) -> Result<Limit, Refusal> {
         self.advance(now_us);
         if self.state == Actuation::Disarmed {
             return Err(Refusal::Disarmed);
@@ -160,9 +169,10 @@ impl Actuator {
                 *pressure = (*now).min(*pressure);
             }
         }
+        let limit = if pressures_pa == request.pressures_pa { Limit::None } else { Limit::NoRise };
         self.lease = Some(SetpointLease { pressures_pa, accepted_us: now_us, valid_ms: request.valid_ms });
         self.advance(now_us);
-        Ok(())
+        Ok(limit)
     }
 
     /// Advances state and pressures to this time; called every tick.

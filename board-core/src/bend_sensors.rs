@@ -7,14 +7,17 @@
 //!
 //! | reading of a tick | input of the estimator | state |
 //! |---|---|---|
-//! | counts between the bands | the counts, if the state is ok | ok again after [`RETURN_TICKS`] in a row |
-//! | counts in a band, or not read | none | no response after [`LOSS_TICKS`] in a row |
+//! | counts between the bands | the counts, if it responds | responds again after [`RETURN_TICKS`] in a row |
+//! | counts in a band, or not read | none | no response after [`LOSS_TICKS`] in a row, intermittent if more than one in twenty |
+//! | counts that the estimator finds implausible | the counts | inconsistent |
 //!
 //! A scan that was late or out of order counts as not read, for all sensors. Sensors start as ok.
 
 use board_table::{ANALOG_PINS, Wiring};
 use heapless::Vec;
 use telemetry::{BEND_PER_SEGMENT, Event, MAX_BEND_SENSORS, SensorHealth, SensorState};
+
+use crate::gap_counter::GapCounter;
 
 /// Width of the bands at both ends of the converter's range, counts.
 pub const RAIL_COUNTS: u16 = 32;
@@ -43,7 +46,7 @@ const MAX_COUNTS: u16 = 4095;
 /// let mut monitor = BendSensorMonitor::new(&Wiring::reference(6));
 /// let mut scan = [2000; 12];
 /// scan[4] = 4095; // 3a is open
-/// let counts = monitor.step(Some(&scan), |_| {});
+/// let counts = monitor.step(Some(&scan), 0, |_| {});
 /// assert_eq!((counts[3], counts[4]), (Some(2000), None));
 /// ```
 #[derive(Debug)]
@@ -54,19 +57,24 @@ pub struct BendSensorMonitor {
 impl BendSensorMonitor {
     /// A monitor of the sensors that are wired, all ok.
     pub fn new(wiring: &Wiring) -> Self {
-        let ok = SensorHealth { state: SensorState::Ok, missed: 0 };
         let pins = wiring.segments.iter().flat_map(|segment| segment.bend);
-        Self { sensors: pins.map(|pin| pin.map(|pin| Sensor { pin, health: ok, debounce: 0 })).collect() }
+        Self { sensors: pins.map(|pin| pin.map(Sensor::new)).collect() }
     }
 
-    /// Checks the scan of a tick, `None` if it was late or out of order. Returns the valid counts and reports each change
-    /// of a sensor's state.
-    pub fn step(&mut self, scan: Option<&Scan>, mut report: impl FnMut(Event)) -> Vec<Option<u16>, MAX_BEND_SENSORS> {
+    /// Checks the scan of a tick, `None` if it was late or out of order. Bit i of `implausible` is set if the estimator
+    /// leaves sensor i out. Returns the valid counts and reports each change of a sensor's state.
+    pub fn step(
+        &mut self,
+        scan: Option<&Scan>,
+        implausible: u16,
+        mut report: impl FnMut(Event),
+    ) -> Vec<Option<u16>, MAX_BEND_SENSORS> {
         let sensors = self.sensors.iter_mut().zip(0..);
         let counts = sensors.map(|(sensor, index)| {
             let sensor = sensor.as_mut()?;
             let before = sensor.health.state;
-            let counts = sensor.step(scan.and_then(|scan| scan.get(usize::from(sensor.pin)).copied()));
+            let counts = scan.and_then(|scan| scan.get(usize::from(sensor.pin)).copied());
+            let counts = sensor.step(counts, implausible >> index & 1 != 0);
             if sensor.health.state != before {
                 report(Event::Bend(index, sensor.health.state));
             }
@@ -92,24 +100,36 @@ struct Sensor {
     /// Analog pin.
     pin: u8,
     health: SensorHealth,
-    /// Debounce counter: ticks in a row whose reading contradicts the state.
+    responds: bool,
+    /// Debounce counter: ticks in a row whose reading contradicts `responds`.
     debounce: u8,
+    /// Gaps while it responds.
+    gaps: GapCounter,
 }
 
 impl Sensor {
-    fn step(&mut self, counts: Option<u16>) -> Option<u16> {
+    fn new(pin: u8) -> Self {
+        let health = SensorHealth { state: SensorState::Ok, missed: 0 };
+        Self { pin, health, responds: true, debounce: 0, gaps: GapCounter::default() }
+    }
+
+    fn step(&mut self, counts: Option<u16>, is_implausible: bool) -> Option<u16> {
         let good = counts.filter(|counts| (RAIL_COUNTS..=MAX_COUNTS - RAIL_COUNTS).contains(counts));
-        let (other, ticks) = match self.health.state {
-            SensorState::NoResponse => (SensorState::Ok, RETURN_TICKS),
-            _ => (SensorState::NoResponse, LOSS_TICKS),
-        };
-        let contradicts = good.is_some() == (other == SensorState::Ok);
+        let contradicts = good.is_some() != self.responds;
         self.debounce = if contradicts { self.debounce.saturating_add(1) } else { 0 };
-        if self.debounce >= ticks {
-            self.health.state = other;
-            self.debounce = 0;
+        if self.debounce >= if self.responds { LOSS_TICKS } else { RETURN_TICKS } {
+            (self.responds, self.debounce, self.gaps) = (!self.responds, 0, GapCounter::default());
         }
-        let valid = good.filter(|_| self.health.state == SensorState::Ok);
+        self.health.state = if !self.responds {
+            SensorState::NoResponse
+        } else if self.gaps.update(good.is_some()) {
+            SensorState::Intermittent
+        } else if is_implausible {
+            SensorState::Inconsistent
+        } else {
+            SensorState::Ok
+        };
+        let valid = good.filter(|_| self.responds);
         if valid.is_none() {
             self.health.missed = self.health.missed.saturating_add(1);
         }

@@ -20,6 +20,9 @@
 //! | the tick ended in an IMU's transaction | the bus is recovered; polled again after 25 ticks | `Timeout` after three ticks |
 //! | bus error, or a multiplexer that fails | [`BusRecovery`], multiplexer reset, then the rest of the tick | `NoResponse` after three ticks |
 //! | the same reading while another IMU turns | readings are rejected until one differs | `Stuck` after 50 ticks |
+//! | the same readings as another IMU, while they change | those of both are rejected until they differ | `Invalid` after 5 changes |
+//! | more than one reading in twenty is missing | those that are read pass | `Intermittent` |
+//! | readings that the estimator finds implausible | they pass: it leaves them out until it has the new zero | `Inconsistent` after three ticks |
 //!
 //! An IMU that was `NoResponse` may have restarted, and its heading with it: a user of headings aligns them again after
 //! an [`Event::Imu`] with `NoResponse`. After a supply dip the chip does not answer for 650 ms; it is polled at most 250 ms
@@ -27,6 +30,7 @@
 
 mod bus;
 mod channel;
+mod copies;
 mod stuck;
 
 use crate::bend_sensors::NOT_WIRED;
@@ -35,6 +39,7 @@ use board_table::Wiring;
 use bus::Bus;
 pub use bus::{BusRecovery, BusStuck};
 use channel::ImuChannel;
+use copies::CopyDetector;
 use embedded_hal::digital::OutputPin;
 use embedded_hal_async::i2c::I2c;
 use heapless::Vec;
@@ -69,7 +74,7 @@ impl ImuReadings {
 /// /// Called every 10 ms; an application bounds the time of `read`.
 /// async fn tick<I: I2c + BusRecovery, R: OutputPin>(imus: &mut Imus<I, R>, tick: u32) -> ImuReadings {
 ///     imus.read(tick).await;
-///     imus.validate()
+///     imus.validate(0)
 /// }
 /// ```
 #[derive(Debug)]
@@ -77,13 +82,14 @@ pub struct Imus<I, R> {
     bus: Bus<I, R>,
     /// Each segment's; `None`: it has none.
     imus: Vec<Option<ImuChannel>, MAX_SEGMENTS>,
+    copies: CopyDetector,
 }
 
 impl<I: I2c + BusRecovery, R: OutputPin> Imus<I, R> {
     /// The IMUs that are wired, not read yet. Makes no transaction.
     pub fn new(i2c: I, mux: Tca9548a<R>, wiring: &Wiring) -> Self {
         let imus = wiring.segments.iter().map(|segment| segment.imu.and_then(ImuChannel::new));
-        Self { bus: Bus::new(i2c, mux), imus: imus.collect() }
+        Self { bus: Bus::new(i2c, mux), imus: imus.collect(), copies: CopyDetector::new() }
     }
 
     /// Reads each IMU that is due in tick number `tick`, once a tick. The future may be dropped at any await; readings
@@ -107,8 +113,9 @@ impl<I: I2c + BusRecovery, R: OutputPin> Imus<I, R> {
         }
     }
 
-    /// Validates the readings of the last [`read`](Self::read); once a tick, also if that was cut off.
-    pub fn validate(&mut self) -> ImuReadings {
+    /// Validates the readings of the last [`read`](Self::read); once a tick, also if that was cut off. Bit i of
+    /// `implausible` is set if the estimator leaves out what IMU i reads.
+    pub fn validate(&mut self, implausible: u8) -> ImuReadings {
         let mut quaternions = [None; MAX_SEGMENTS];
         for (quaternion, imu) in quaternions.iter_mut().zip(&self.imus) {
             *quaternion = imu.as_ref().and_then(ImuChannel::quaternion);
@@ -118,11 +125,12 @@ impl<I: I2c + BusRecovery, R: OutputPin> Imus<I, R> {
         if self.bus.take_recovery() {
             let _ = events.push(Event::BusRecovery);
         }
-        let imus = self.imus.iter_mut().zip(0..);
-        let readings = imus.map(|(imu, k)| {
+        let copies = self.copies.update(&quaternions);
+        let imus = self.imus.iter_mut().zip(copies).zip(0..);
+        let readings = imus.map(|((imu, is_copy), k)| {
             let imu = imu.as_mut()?;
             let before = imu.health().state;
-            let valid = imu.validate(&quaternions);
+            let valid = imu.validate(&quaternions, is_copy, implausible >> k & 1 != 0);
             let state = imu.health().state;
             if state != before {
                 let _ = events.push(Event::Imu(k, state));

@@ -29,7 +29,7 @@ fn run(monitor: &mut BendSensorMonitor, scan: Option<&Scan>, ticks: u8) -> (Opti
     let mut events = Vec::new();
     let mut last = None;
     for _ in 0..ticks {
-        last = monitor.step(scan, |event| events.push(event)).get(BROKEN).copied().flatten();
+        last = monitor.step(scan, 0, |event| events.push(event)).get(BROKEN).copied().flatten();
     }
     (last, events)
 }
@@ -37,7 +37,7 @@ fn run(monitor: &mut BendSensorMonitor, scan: Option<&Scan>, ticks: u8) -> (Opti
 #[test]
 fn good_counts_pass_unchanged() {
     let mut monitor = monitor();
-    let counts = monitor.step(Some(&GOOD), |event| panic!("{event:?}"));
+    let counts = monitor.step(Some(&GOOD), 0, |event| panic!("{event:?}"));
     assert_eq!(counts, GOOD.map(Some));
     assert!(monitor.health().iter().all(|health| health.state == SensorState::Ok && health.missed == 0));
 }
@@ -45,13 +45,13 @@ fn good_counts_pass_unchanged() {
 #[test]
 fn counts_at_a_rail_are_rejected_at_once_and_the_others_pass() {
     for counts in [0, RAIL_COUNTS - 1, 4096 - RAIL_COUNTS, 4095, u16::MAX] {
-        let given = monitor().step(Some(&scan(counts)), |_| {});
+        let given = monitor().step(Some(&scan(counts)), 0, |_| {});
         let mut expected = GOOD.map(Some);
         expected[BROKEN] = None;
         assert_eq!(given, expected, "{counts}");
     }
     for counts in [RAIL_COUNTS, 4095 - RAIL_COUNTS] {
-        assert_eq!(monitor().step(Some(&scan(counts)), |_| {})[BROKEN], Some(counts));
+        assert_eq!(monitor().step(Some(&scan(counts)), 0, |_| {})[BROKEN], Some(counts));
     }
 }
 
@@ -68,11 +68,11 @@ fn a_sensor_at_a_rail_has_no_response_after_three_ticks_and_one_event() {
 }
 
 #[test]
-fn shorter_readings_at_a_rail_do_not_change_the_state() {
+fn shorter_readings_at_a_rail_now_and_then_do_not_change_the_state() {
     let mut monitor = monitor();
     for _ in 0..100 {
         assert_eq!(run(&mut monitor, Some(&scan(0)), LOSS_TICKS - 1), (None, vec![]));
-        assert_eq!(run(&mut monitor, Some(&scan(2000)), 1), (Some(2000), vec![]));
+        assert_eq!(run(&mut monitor, Some(&scan(2000)), 50), (Some(2000), vec![]));
     }
 }
 
@@ -104,10 +104,63 @@ fn ticks_without_a_reading_are_counted_and_the_count_saturates() {
 #[test]
 fn a_stale_scan_has_no_readings_and_a_stalled_converter_is_detected() {
     let mut monitor = monitor();
-    assert_eq!(monitor.step(None, |event| panic!("{event:?}")), [None; BEND_SENSORS]);
-    assert_eq!(monitor.step(Some(&GOOD), |event| panic!("{event:?}")), GOOD.map(Some));
+    assert_eq!(monitor.step(None, 0, |event| panic!("{event:?}")), [None; BEND_SENSORS]);
+    assert_eq!(monitor.step(Some(&GOOD), 0, |event| panic!("{event:?}")), GOOD.map(Some));
     let (_, events) = run(&mut monitor, None, LOSS_TICKS);
     assert_eq!(events, core::array::from_fn::<_, BEND_SENSORS, _>(|i| Event::Bend(i as u8, SensorState::NoResponse)));
+}
+
+#[test]
+fn a_sensor_that_loses_every_other_reading_is_intermittent_within_200_ms() {
+    let mut monitor = monitor();
+    let mut events = Vec::new();
+    for _ in 0..10 {
+        events.extend(run(&mut monitor, Some(&scan(0)), 1).1);
+        let (read, returned) = run(&mut monitor, Some(&scan(2000)), 1);
+        assert_eq!(read, Some(2000));
+        events.extend(returned);
+    }
+    assert_eq!(events, [Event::Bend(BROKEN as u8, SensorState::Intermittent)]);
+}
+
+#[test]
+fn a_sensor_is_no_longer_intermittent_after_a_second_without_a_gap() {
+    let mut monitor = monitor();
+    for _ in 0..50 {
+        run(&mut monitor, Some(&scan(0)), 1);
+        run(&mut monitor, Some(&scan(2000)), 1);
+    }
+    assert_eq!(run(&mut monitor, Some(&GOOD), 90).1, []);
+    assert_eq!(run(&mut monitor, Some(&GOOD), 10).1, [Event::Bend(BROKEN as u8, SensorState::Ok)]);
+}
+
+#[test]
+fn a_missing_reading_in_a_second_is_no_intermittent_sensor() {
+    let mut monitor = monitor();
+    for _ in 0..100 {
+        assert_eq!(run(&mut monitor, Some(&scan(0)), 1).1, []);
+        assert_eq!(run(&mut monitor, Some(&GOOD), 99).1, []);
+    }
+}
+
+#[test]
+fn every_other_scan_lost_makes_all_sensors_intermittent() {
+    let mut monitor = monitor();
+    for _ in 0..10 {
+        run(&mut monitor, None, 1);
+        run(&mut monitor, Some(&GOOD), 1);
+    }
+    assert!(monitor.health().iter().all(|health| health.state == SensorState::Intermittent));
+}
+
+#[test]
+fn a_sensor_that_the_estimator_finds_implausible_is_inconsistent_and_its_counts_pass() {
+    let mut monitor = monitor();
+    let mut events = Vec::new();
+    let counts = monitor.step(Some(&GOOD), 1 << BROKEN, |event| events.push(event));
+    assert_eq!(counts, GOOD.map(Some));
+    assert_eq!(events, [Event::Bend(BROKEN as u8, SensorState::Inconsistent)]);
+    assert_eq!(run(&mut monitor, Some(&GOOD), 1).1, [Event::Bend(BROKEN as u8, SensorState::Ok)]);
 }
 
 #[test]
@@ -134,7 +187,7 @@ fn each_place_reads_its_own_pin_and_a_place_without_a_sensor_is_no_fault() {
     let mut scan = [4095; BEND_SENSORS];
     (scan[11], scan[0], scan[5]) = (1111, 1000, 1005);
     for _ in 0..200 {
-        let counts = monitor.step(Some(&scan), |event| panic!("{event:?}"));
+        let counts = monitor.step(Some(&scan), 0, |event| panic!("{event:?}"));
         assert_eq!(counts, [Some(1111), None, None, None, Some(1000), Some(1005)]);
     }
     let states: Vec<_> = monitor.health().iter().map(|health| health.state).collect();

@@ -23,8 +23,8 @@ fn scheduled(segments: usize, rates: Rates) -> Schedule {
 }
 
 #[test]
-fn for_six_segments_all_is_sent_at_100_hz_health_at_5_hz_and_uncertainty_at_4_hz() {
-    assert_eq!(in_ten_seconds(Schedule::of_arm(6, 6)), [1000, 1000, 50, 40, 10]);
+fn for_six_segments_all_is_sent_at_100_hz_and_health_and_uncertainty_at_4_hz() {
+    assert_eq!(in_ten_seconds(Schedule::of_arm(6, 6)), [1000, 1000, 40, 40, 10]);
 }
 
 #[test]
@@ -41,9 +41,9 @@ fn samples_and_estimates_of_the_same_rate_are_of_the_same_ticks() {
 
 #[test]
 fn estimates_of_eight_segments_are_sent_every_second_tick_whatever_the_host_requests() {
-    assert_eq!(in_ten_seconds(Schedule::of_arm(8, 6)), [1000, 500, 50, 40, 10]);
-    let every_tick = Rates { sample: 1, estimate: 1, health: 20, uncertainty: 25 };
-    assert_eq!(in_ten_seconds(scheduled(8, every_tick)), [1000, 500, 50, 40, 10]);
-    assert_eq!(in_ten_seconds(scheduled(8, Rates { estimate: 0, ..every_tick })), [1000, 0, 50, 40, 10]);
-    assert_eq!(in_ten_seconds(scheduled(8, Rates { estimate: 10, ..every_tick })), [1000, 100, 50, 40, 10]);
+    assert_eq!(in_ten_seconds(Schedule::of_arm(8, 6)), [1000, 500, 40, 40, 10]);
+    let every_tick = Rates { sample: 1, estimate: 1, health: 25, uncertainty: 25 };
+    assert_eq!(in_ten_seconds(scheduled(8, every_tick)), [1000, 500, 40, 40, 10]);
+    assert_eq!(in_ten_seconds(scheduled(8, Rates { estimate: 0, ..every_tick })), [1000, 0, 40, 40, 10]);
+    assert_eq!(in_ten_seconds(scheduled(8, Rates { estimate: 10, ..every_tick })), [1000, 100, 40, 40, 10]);
 }

@@ -4,13 +4,26 @@
 #![no_std]
 
 use estimator_core::{ArmConfig, Estimator, Q};
-use telemetry::{Estimate, Event, MAX_SEGMENTS, Sample, Uncertainty};
+use heapless::Vec;
+use telemetry::{Conditions, Estimate, Event, MAX_SEGMENTS, Sample, Uncertainty};
 
 /// Ticks of 10 ms until the first tare if an IMU does not start.
 pub const TARE_TICKS: u32 = 200;
 
 /// Capacity of the anchor's moving-average window, samples.
 pub const WINDOW: usize = 100;
+
+/// Ticks of 10 ms from one comparison of the conditions to the next, so that one that comes and goes does not fill the line.
+const CONDITION_TICKS: u32 = 10;
+
+/// Sensors that were read and whose readings the estimator leaves out: bit i is set for bend sensor or IMU i.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Implausible {
+    /// Bend sensors: 1a, 1b, 2a, …
+    pub bend: u16,
+    /// IMUs, from the base.
+    pub imu: u8,
+}
 
 /// The estimator and its tare epoch.
 ///
@@ -23,6 +36,9 @@ pub struct BoardEstimator {
     tared: bool,
     /// Contact that was reported last, one bit per segment.
     contact_mask: u32,
+    implausible: Implausible,
+    /// Conditions of each segment that were reported last.
+    conditions: [Conditions; MAX_SEGMENTS],
 }
 
 impl BoardEstimator {
@@ -34,6 +50,8 @@ impl BoardEstimator {
             tare_epoch: 0,
             tared: false,
             contact_mask: 0,
+            implausible: Implausible { bend: 0, imu: 0 },
+            conditions: [Conditions(0); MAX_SEGMENTS],
         }
     }
 
@@ -64,7 +82,36 @@ impl BoardEstimator {
 
     /// Updates the estimator with a sample and returns the new estimate.
     pub fn update(&mut self, sample: &Sample) -> Estimate {
-        Estimate::of(sample.tick, self.estimator.update(&sample.into()))
+        let estimate = Estimate::of(sample.tick, self.estimator.update(&sample.into()));
+        self.implausible = Implausible::default();
+        for (segment, condition) in self.estimator.conditions().iter().enumerate() {
+            let [a, b] = condition.bend_implausible.map(u16::from);
+            self.implausible.bend |= (a | b << 1) << (2 * segment);
+            self.implausible.imu |= u8::from(condition.imu_implausible) << segment;
+        }
+        estimate
+    }
+
+    /// Sensors whose readings in the latest sample are left out.
+    pub const fn implausible(&self) -> Implausible {
+        self.implausible
+    }
+
+    /// Conditions of each segment's estimate.
+    pub fn conditions(&self) -> Vec<Conditions, MAX_SEGMENTS> {
+        self.estimator.conditions().iter().map(|condition| Conditions::from(*condition)).collect()
+    }
+
+    /// Reports the segments whose conditions have changed since they were reported last; compared every tenth tick.
+    pub fn condition_events(&mut self, tick: u32, mut report: impl FnMut(Event)) {
+        if !tick.is_multiple_of(CONDITION_TICKS) {
+            return;
+        }
+        for ((segment, now), reported) in (0..).zip(self.conditions()).zip(&mut self.conditions) {
+            if core::mem::replace(reported, now) != now {
+                report(Event::Condition(segment, now));
+            }
+        }
     }
 
     /// Segment, counted from 0, with the largest bend angle by its bend sensors in the latest sample, and that angle in units

@@ -159,6 +159,11 @@ pub struct Condition {
     pub bend_distrusted: bool,
     /// The innovation gate rejects the bend sensors: they disagree with the IMUs.
     pub gated: bool,
+    /// The IMU is read, but its heading is implausible or frozen: a part of [`imu_absent`](Self::imu_absent).
+    pub imu_implausible: bool,
+    /// Bend sensors a and b are read, but excluded or had a new zero within the last minute: a part of
+    /// [`bend_distrusted`](Self::bend_distrusted).
+    pub bend_implausible: [bool; SENSORS_PER_SEGMENT],
 }
 
 impl Condition {

@@ -2,7 +2,7 @@
 
 use atsam3x8e_hal::tc::Mono;
 use atsam3x8e_hal::uart::Rx;
-use board_core::{Actuator, CommandServer, Execution, REST_RANGE, Schedule, Task};
+use board_core::{Actuator, CommandServer, Execution, Limit, REST_RANGE, Schedule, Task};
 use rtic::Mutex;
 use rtic_sync::channel::Sender;
 use telemetry::{
@@ -37,10 +37,13 @@ pub struct Control {
     pub tare_report: Option<TareReport>,
     /// A `Hello` was requested.
     pub hello_requested: bool,
-    /// Frames since boot that were received damaged.
+    /// Frames since boot that were received damaged, and whole ones that are unknown.
     pub damaged_frames: u32,
+    pub unknown_frames: u32,
     /// The board has a valid table.
     pub has_table: bool,
+    /// A boot loop: the pressures stay at zero.
+    pub safe_mode: bool,
     /// Reply of the table task, already sent.
     pub completed: Option<Reply>,
 }
@@ -62,9 +65,9 @@ pub struct CommandTask {
 }
 
 impl CommandTask {
-    /// The task before its first byte.
-    pub const fn new(rx: Rx, to_table: Sender<'static, Request, TABLE_REQUESTS>) -> Self {
-        Self { rx, decoder: Decoder::new(), server: CommandServer::new(), to_table }
+    /// The task before its first byte, in the boot of this number.
+    pub const fn new(rx: Rx, to_table: Sender<'static, Request, TABLE_REQUESTS>, boot: u32) -> Self {
+        Self { rx, decoder: Decoder::new(), server: CommandServer::new(boot), to_table }
     }
 
     /// Handles the bytes since the last tick. Returns whether a reboot was requested.
@@ -90,7 +93,6 @@ impl CommandTask {
                     } else {
                         control
                             .lock(|control| actuator.lock(|actuator| execute(command, actuator, control, &mut reboot)))
-                            .map(|()| Execution::Done)
                     };
                     if matches!(command, Command::Tare(_)) {
                         control.lock(|control| control.report_pose(request.id));
@@ -99,7 +101,8 @@ impl CommandTask {
                     result
                 }),
                 Some(Err(DecodeError::Request(id))) => {
-                    Some(Reply { id, outcome: RequestOutcome::Nack(Refusal::Unknown) })
+                    let session = self.server.session();
+                    Some(Reply { id, session, outcome: RequestOutcome::Nack(Refusal::Unknown) })
                 }
                 Some(Err(_)) | None => None,
             };
@@ -107,8 +110,11 @@ impl CommandTask {
                 sender.lock(|sender| sender.send(&Message::Reply(reply)));
             }
         }
-        let damaged = self.decoder.counts().damaged;
-        control.lock(|control| control.damaged_frames = damaged);
+        let counts = self.decoder.counts();
+        control.lock(|control| {
+            control.damaged_frames = counts.damaged;
+            control.unknown_frames = counts.wrong_version.saturating_add(counts.unknown);
+        });
         SUPERVISOR.report(Task::Commands, tick);
         reboot
     }
@@ -143,7 +149,7 @@ fn execute(
     actuator: &mut Actuator,
     control: &mut Control,
     reboot: &mut bool,
-) -> Result<(), Refusal> {
+) -> Result<Execution, Refusal> {
     match command {
         Command::Ping => control.hello_requested = true,
         Command::Tare(TareMode::IfStill) if control.pose.turned.is_some_and(|(_, range)| range > REST_RANGE) => {
@@ -151,17 +157,22 @@ fn execute(
         }
         Command::Tare(_) => control.tare_requested = true,
         Command::Rates(rates) => control.schedule.set(*rates),
+        Command::Arm if control.safe_mode => return Err(Refusal::SafeMode),
         Command::Arm if !control.has_table => return Err(Refusal::NoTable),
         Command::Arm => actuator.arm(),
         Command::Disarm => actuator.disarm(),
-        Command::SetPressures(pressures) => actuator.set(pressures, Mono::now_us())?,
+        Command::SetPressures(pressures) => {
+            if actuator.set(pressures, Mono::now_us())? == Limit::NoRise {
+                return Ok(Execution::Limited);
+            }
+        }
         Command::Reboot => {
             actuator.disarm();
             *reboot = true;
         }
         _ => return Err(Refusal::Unknown),
     }
-    Ok(())
+    Ok(Execution::Done)
 }
 
 /// Logs an executed request; those that are sent many times a second at the level debug alone.

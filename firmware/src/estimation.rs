@@ -8,7 +8,7 @@ use board_core::{Actuator, BendSensorMonitor, DueMessages, Pressures, RestMonito
 use board_estimator::BoardEstimator;
 use estimator_core::{ArmConfig, Q};
 use rtic::Mutex;
-use telemetry::{Actuation, Estimate, Event, Health, Hello, Message, Sample, SensorState, TableState};
+use telemetry::{Actuation, Estimate, Event, Health, Hello, Message, PressureLimit, Sample, SensorState, TableState};
 
 use crate::board::MuxReset;
 use crate::command_task::{Control, Pose};
@@ -21,6 +21,9 @@ use crate::tick::Tick;
 
 /// Maximum events sent per tick; further ones are discarded.
 const EVENTS: usize = 16;
+
+/// Least ticks of 10 ms from one `Hello` to the next, however often one is requested.
+const HELLO_PAUSE_TICKS: u32 = 10;
 
 /// The arm's sensors.
 pub struct Sensors {
@@ -41,6 +44,7 @@ pub struct EstimationTask {
     safe_mode: bool,
     load: CpuLoad,
     last_tick: Option<u32>,
+    last_hello: Option<u32>,
     counters: Counters,
 }
 
@@ -90,6 +94,7 @@ impl EstimationTask {
             safe_mode,
             load: CpuLoad::new(),
             last_tick: None,
+            last_hello: None,
             counters: Counters::default(),
         }
     }
@@ -114,22 +119,27 @@ impl EstimationTask {
         SUPERVISOR.report(Task::Estimator, tick.number);
         self.counters.max_estimate_latency_us = self.counters.max_estimate_latency_us.max(since(tick.time_us));
 
-        let degraded = self.safe_mode || self.is_degraded();
+        let limit = self.pressure_limit();
         let (actuation, pressures_pa) = actuator.lock(|actuator| {
-            actuator.set_degraded(degraded);
+            actuator.set_degraded(limit != PressureLimit::None);
             while let Some(event) = actuator.event() {
                 let _ = result.events.push(event);
             }
             (actuator.state(), actuator.pressures_pa().clone())
         });
         let pose = Pose { turned: self.sensors.rest.most_turned(), bent: self.estimator.most_bent() };
-        let (mut due, requested, damaged_frames, tare_report) = control.lock(|control| {
+        let may_introduce = self.last_hello.is_none_or(|last| tick.number.wrapping_sub(last) >= HELLO_PAUSE_TICKS);
+        let (mut due, requested, frames, tare_report) = control.lock(|control| {
             control.pose = pose;
-            let requested = core::mem::take(&mut control.hello_requested);
-            (control.schedule.due(tick.number), requested, control.damaged_frames, control.tare_report.take())
+            let requested = may_introduce && core::mem::take(&mut control.hello_requested);
+            let frames = (control.damaged_frames, control.unknown_frames);
+            (control.schedule.due(tick.number), requested, frames, control.tare_report.take())
         });
-        let introduce = requested || self.last_tick.is_none();
-        due.hello |= introduce;
+        let introduce = requested || self.last_hello.is_none();
+        due.hello = introduce || (due.hello && may_introduce);
+        if due.hello {
+            self.last_hello = Some(tick.number);
+        }
         self.last_tick = Some(tick.number);
         result.events.iter().for_each(log);
         let has_table = !self.config.segments.is_empty();
@@ -145,7 +155,7 @@ impl EstimationTask {
                 sender.send(&Message::Uncertainty(uncertainty));
             }
             if due.health {
-                let health = self.health(tick.number, sender.dropped(), damaged_frames, actuation, pressures_pa);
+                let health = self.health(tick.number, sender.dropped(), frames, limit, actuation, pressures_pa);
                 sender.send(&Message::Health(health));
             }
         });
@@ -159,7 +169,8 @@ impl EstimationTask {
 
     /// Validates the readings and updates the estimator.
     fn run_cycle(&mut self, tick: &Tick, tare: bool) -> CycleResult {
-        let readings = self.sensors.imus.validate();
+        let implausible = self.estimator.implausible();
+        let readings = self.sensors.imus.validate(implausible.imu);
         let all_imus_read = readings.all_are_read(&self.sensors.imus.health());
         self.sensors.rest.step(&readings.imu);
         let mut events = heapless::Vec::new();
@@ -169,7 +180,7 @@ impl EstimationTask {
         if tick.scan.is_none() {
             self.counters.stale_scans = self.counters.stale_scans.saturating_add(1);
         }
-        let bend = self.sensors.bend.step(tick.scan.as_ref(), |event| {
+        let bend = self.sensors.bend.step(tick.scan.as_ref(), implausible.bend, |event| {
             let _ = events.push(event);
         });
         if tare || self.estimator.needs_first_tare(tick.number, all_imus_read) {
@@ -187,6 +198,9 @@ impl EstimationTask {
         if let Some(event) = self.estimator.contact_event(tick.number) {
             let _ = events.push(event);
         }
+        self.estimator.condition_events(tick.number, |event| {
+            let _ = events.push(event);
+        });
         CycleResult { sample, estimate, events }
     }
 
@@ -210,23 +224,29 @@ impl EstimationTask {
         }
     }
 
-    /// Returns whether the estimate is too poor to let the pressures rise: all IMUs that the arm has are lost, or all bend
-    /// sensors of a segment.
-    fn is_degraded(&self) -> bool {
+    /// Limit of the pressures: none may rise while all IMUs that the arm has are lost, or all bend sensors of a segment.
+    fn pressure_limit(&self) -> PressureLimit {
         let imus = self.sensors.imus.health();
         let mut wired = imus.iter().filter(|imu| imu.state != SensorState::NotWired).peekable();
-        let no_imu = wired.peek().is_some() && wired.all(|imu| imu.state != SensorState::Ok);
+        let no_imu = wired.peek().is_some() && wired.all(|imu| !imu.state.is_usable());
         let mut segments = self.config.segments.iter().enumerate();
-        no_imu
-            || segments
-                .any(|(i, segment)| segment.bend.iter().any(Option::is_some) && self.sensors.bend.segment_is_lost(i))
+        let no_bend = segments
+            .any(|(i, segment)| segment.bend.iter().any(Option::is_some) && self.sensors.bend.segment_is_lost(i));
+        if self.safe_mode {
+            PressureLimit::SafeMode
+        } else if no_imu || no_bend {
+            PressureLimit::SensorsLost
+        } else {
+            PressureLimit::None
+        }
     }
 
     fn health(
         &mut self,
         tick: u32,
         dropped_frames: u32,
-        damaged_frames: u32,
+        (damaged_frames, unknown_frames): (u32, u32),
+        limit: PressureLimit,
         actuation: Actuation,
         pressures_pa: Pressures,
     ) -> Health {
@@ -242,9 +262,12 @@ impl EstimationTask {
             stale_scans: counters.stale_scans,
             dropped_frames,
             damaged_frames,
+            unknown_frames,
             bus_recoveries: self.sensors.imus.bus_recoveries(),
             saturations: estimator_core::saturations(),
+            conditions: self.estimator.conditions(),
             actuation,
+            limit,
             pressures_pa,
         }
     }
@@ -255,6 +278,7 @@ fn log(event: &Event) {
     let is_fault = match event {
         Event::Imu(_, state) | Event::Bend(_, state) => *state != SensorState::Ok,
         Event::BusRecovery => true,
+        Event::Condition(_, conditions) => conditions.is_degraded(),
         Event::Actuation(_) | Event::Tare(_) | Event::Contact(..) => false,
     };
     if is_fault {

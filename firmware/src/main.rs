@@ -97,7 +97,7 @@ mod app {
             Ok(board) => board,
             Err(error) => panic!("the board does not come up: {error}"),
         };
-        let safe_mode = board.boots.safe_mode();
+        let (safe_mode, boot) = (board.boots.safe_mode(), board.boots.number());
         let table = cx.local.table.write(BoardTable::new());
         let table_state = board.tables.load(table);
         let reference = Wiring::reference(SEGMENTS_WITHOUT_TABLE);
@@ -127,7 +127,9 @@ mod app {
             tare_report: None,
             hello_requested: false,
             damaged_frames: 0,
+            unknown_frames: 0,
             has_table,
+            safe_mode,
             completed: None,
         };
         let (trigger, start_us) = match board::start_ticks(board.tick_channel) {
@@ -150,7 +152,7 @@ mod app {
             Shared { actuator: Actuator::new(wiring), control, sender: TelemetrySender::new(board.tx) },
             Local {
                 ticker,
-                command_task: CommandTask::new(board.rx, to_table),
+                command_task: CommandTask::new(board.rx, to_table, boot),
                 command_ticks,
                 estimation_task,
                 estimation_ticks,

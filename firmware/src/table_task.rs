@@ -28,7 +28,7 @@ impl TableTask {
     ) -> bool {
         let result = self.server.execute(&request.command);
         let outcome = result.as_ref().map_or_else(|refusal| RequestOutcome::Nack(*refusal), |_| RequestOutcome::Ack);
-        let reply = Reply { id: request.id, outcome };
+        let reply = Reply { id: request.id, session: request.session, outcome };
         control.lock(|control| control.completed = Some(reply));
         sender.lock(|sender| {
             sender.send(&Message::Reply(reply));

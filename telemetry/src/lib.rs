@@ -7,7 +7,7 @@
 //! | file | contents |
 //! |---|---|
 //! | `constants.rs` | [`PROTOCOL_VERSION`], [`MAX_FRAME`], the largest arm's numbers |
-//! | `message.rs`, `request.rs`, `table_message.rs` | messages, requests and replies |
+//! | `message.rs`, `request.rs`, `table_message.rs`, `conditions.rs` | messages, requests and replies |
 //! | `wire.rs`, `wire_conversions.rs` | fixed-width forms of the messages of every tick |
 //! | `topic.rs`, `payload.rs`, `body.rs` | topics and bodies |
 //! | `protocol_2.rs` | the version before, which a host still reads |
@@ -23,7 +23,7 @@
 //! // The host sends a request.
 //! let mut host = Encoder::new();
 //! let mut buffer = [0; MAX_FRAME];
-//! let request = Request { id: 1, command: Command::Arm };
+//! let request = Request { id: 1, session: 0, command: Command::Arm };
 //! let frame = host.encode(&request, &mut buffer)?;
 //!
 //! // The board decodes the received bytes one by one and replies.
@@ -31,7 +31,8 @@
 //! let received = frame.iter().find_map(|&byte| requests.push(byte));
 //! assert_eq!(received, Some(Ok(request.clone())));
 //! let mut board = Encoder::new();
-//! let reply = Message::Reply(Reply { id: request.id, outcome: RequestOutcome::Nack(Refusal::Busy) });
+//! let refused = Reply { id: request.id, session: 0, outcome: RequestOutcome::Nack(Refusal::Busy) };
+//! let reply = Message::Reply(refused);
 //! let mut line = board.encode(&reply, &mut buffer)?.to_vec();
 //!
 //! // Noise damages the frame that it hits, and no other.
@@ -47,6 +48,7 @@
 #![no_std]
 
 mod body;
+mod conditions;
 mod constants;
 mod decode_error;
 mod decoder;
@@ -63,6 +65,7 @@ pub mod topic;
 mod wire;
 mod wire_conversions;
 
+pub use conditions::Conditions;
 pub use constants::{
     BEND_PER_SEGMENT, MAX_BEND_SENSORS, MAX_FRAME, MAX_REGULATORS, MAX_SEGMENTS, PROTOCOL_VERSION, TABLE_CHUNK_BYTES,
     TICK_HZ, TICK_US,

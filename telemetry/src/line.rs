@@ -38,7 +38,7 @@ impl FrameLengths {
         Self {
             sample: 25 + 12 * segments,
             estimate: 16 + 12 * segments,
-            health: 62 + 12 * segments + 5 * regulators,
+            health: 69 + 13 * segments + 5 * regulators,
             uncertainty: 18 + 17 * segments,
             hello: 199,
         }
@@ -61,11 +61,11 @@ const fn per_second(length: u32, ticks: u16) -> u32 {
 }
 
 impl Rates {
-    /// Rates of an arm until the host sets others: samples and estimates every tick, health at 5 Hz, uncertainty at 4 Hz.
+    /// Rates of an arm until the host sets others: samples and estimates every tick, health and uncertainty at 4 Hz.
     /// Where they do not fit the line, estimates are sent every second tick.
     #[must_use]
     pub const fn of_arm(segments: usize, regulators: usize) -> Self {
-        let every_tick = Self { sample: 1, estimate: 1, health: 20, uncertainty: 25 };
+        let every_tick = Self { sample: 1, estimate: 1, health: 25, uncertainty: 25 };
         if FrameLengths::of(segments, regulators).bytes_per_second(every_tick) <= STREAM_BYTES_PER_SECOND {
             every_tick
         } else {

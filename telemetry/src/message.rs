@@ -9,6 +9,7 @@ use heapless::Vec;
 use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
 
+use crate::conditions::Conditions;
 use crate::constants::{MAX_BEND_SENSORS, MAX_REGULATORS, MAX_SEGMENTS};
 use crate::request::{Reply, TareReport};
 use crate::table_message::{TableChunk, TableState};
@@ -180,16 +181,24 @@ pub enum SensorState {
     /// Readings outside of the sensor's range.
     #[serde(rename = "Garbage")]
     Invalid,
-    /// Readings that contradict the other sensors. Reserved: no firmware sends it.
+    /// Readings that contradict the other sensors: the estimator leaves them out.
     #[serde(rename = "Wrong")]
     Inconsistent,
     /// Readings after the deadline.
     #[serde(rename = "Slow")]
     Timeout,
-    /// Readings with gaps. Reserved: no firmware sends it.
+    /// Readings with frequent gaps.
     Intermittent,
     /// The arm has no such sensor.
     NotWired,
+}
+
+impl SensorState {
+    /// Returns whether readings of the sensor are used, though not each of them where it is intermittent.
+    #[must_use]
+    pub const fn is_usable(self) -> bool {
+        matches!(self, Self::Ok | Self::Intermittent)
+    }
 }
 
 impl fmt::Display for SensorState {
@@ -231,6 +240,18 @@ pub enum Actuation {
     Ramping,
 }
 
+/// Reason why set-points are limited.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, Schema)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum PressureLimit {
+    /// They are not limited.
+    None,
+    /// No pressure may rise: all IMUs, or all bend sensors of a segment, are lost.
+    SensorsLost,
+    /// All are zero: the board restarted after repeated crashes.
+    SafeMode,
+}
+
 /// State of sensors and pressures, counters since boot, and timing since the last message.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, Schema)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -255,12 +276,18 @@ pub struct Health {
     pub dropped_frames: u32,
     /// Frames since boot that were received damaged.
     pub damaged_frames: u32,
+    /// Whole frames since boot of another version, or of an unknown topic or request.
+    pub unknown_frames: u32,
     /// I²C bus recoveries since boot.
     pub bus_recoveries: u32,
     /// Results of the estimator since boot that fixed point could not hold.
     pub saturations: u32,
+    /// Conditions that degrade each segment's estimate.
+    pub conditions: Vec<Conditions, MAX_SEGMENTS>,
     /// State of the pressures.
     pub actuation: Actuation,
+    /// Limit of the set-points.
+    pub limit: PressureLimit,
     /// Set-points as they are now, Pa.
     pub pressures_pa: Vec<u32, MAX_REGULATORS>,
 }
@@ -281,4 +308,6 @@ pub enum Event {
     Tare(u32),
     /// Contact began or ended with the sample of this tick; bit i is the contact of segment i, counted from 0.
     Contact(u32, u8),
+    /// Conditions of a segment, counted from 0, have changed.
+    Condition(u8, Conditions),
 }

@@ -5,10 +5,10 @@ use serde::Deserialize;
 
 use crate::body::{read, write};
 use crate::message::{
-    Actuation, Estimate, Event, Health, Hello, Message, ResetCause, Sample, SensorHealth, SensorState, Text,
-    Uncertainty, text,
+    Actuation, Estimate, Event, Health, Hello, Message, PressureLimit, ResetCause, Sample, SensorHealth, SensorState,
+    Text, Uncertainty, text,
 };
-use crate::request::{Command, Request};
+use crate::request::{Command, Reply, Request, RequestOutcome};
 use crate::topic;
 use crate::wire::{EstimateWire, SampleWire, UncertaintyWire};
 
@@ -82,6 +82,12 @@ struct Health2 {
 }
 
 #[derive(Deserialize)]
+struct Reply2 {
+    id: u32,
+    outcome: RequestOutcome,
+}
+
+#[derive(Deserialize)]
 enum Event2 {
     Imu(u8, SensorState),
     Bend(u8, SensorState),
@@ -152,8 +158,11 @@ impl From<Health2> for Health {
             dropped_frames: health.dropped_frames,
             damaged_frames: health.damaged_frames,
             bus_recoveries: health.bus_recoveries,
+            unknown_frames: 0,
             saturations: health.saturations,
+            conditions: heapless::Vec::new(),
             actuation: health.actuation,
+            limit: PressureLimit::None,
             pressures_pa: health.pressures_pa.into_iter().collect(),
         }
     }
@@ -174,6 +183,12 @@ impl From<Event2> for Event {
     }
 }
 
+impl From<Reply2> for Reply {
+    fn from(Reply2 { id, outcome }: Reply2) -> Self {
+        Self { id, session: 0, outcome }
+    }
+}
+
 /// Reads a body whose layout is another one now; the outer `None`: it is the same as now.
 pub fn read_message(topic: u8, body: &[u8]) -> Option<Option<Message>> {
     let message = match topic {
@@ -182,6 +197,7 @@ pub fn read_message(topic: u8, body: &[u8]) -> Option<Option<Message>> {
         topic::ESTIMATE => read(body).map(|estimate: Estimate2| Message::Estimate(estimate.into())),
         topic::HEALTH => read(body).map(|health: Health2| Message::Health(health.into())),
         topic::EVENT => read(body).map(|event: Event2| Message::Event(event.into())),
+        topic::REPLY => read(body).map(|reply: Reply2| Message::Reply(reply.into())),
         topic::UNCERTAINTY => read(body).map(|uncertainty: Uncertainty2| Message::Uncertainty(uncertainty.into())),
         _ => return None,
     };
@@ -202,6 +218,6 @@ pub fn write_request(request: &Request, body: &mut [u8]) -> Option<usize> {
             let pressures_pa: &[u32; REGULATORS] = set.pressures_pa.as_slice().try_into().ok()?;
             write(&(request.id, SET_PRESSURES, pressures_pa, set.valid_ms), body)
         }
-        _ => write(request, body),
+        command => write(&(request.id, command), body),
     }
 }

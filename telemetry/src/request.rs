@@ -13,6 +13,8 @@ use crate::table_message::{TableAnnouncement, TableChunk};
 pub struct Request {
     /// The host's number of the request. A retried request keeps its number and acts once; numbers go up.
     pub id: u32,
+    /// The session that the board named in its reply to the Ping; a Ping may have any.
+    pub session: u16,
     /// The command to execute.
     pub command: Command,
 }
@@ -99,6 +101,8 @@ pub struct SetPressures {
 pub struct Reply {
     /// The request's number.
     pub id: u32,
+    /// The board's session: requests of another are refused as [`Refusal::Session`].
+    pub session: u16,
     /// Outcome of the request.
     pub outcome: RequestOutcome,
 }
@@ -111,6 +115,9 @@ pub enum RequestOutcome {
     Ack,
     /// It was refused, and nothing has changed.
     Nack(Refusal),
+    /// Set-points were accepted, but none may rise: sensors are lost, so that the shape is too uncertain
+    /// ([`PressureLimit`](crate::PressureLimit)).
+    Limited,
 }
 
 /// Reason for a refusal.
@@ -168,4 +175,10 @@ pub enum Refusal {
     /// The table's wiring does not fit the board.
     #[error("the table's wiring does not fit the board")]
     TableWiring,
+    /// The request is of an earlier session: its bytes were delayed or sent again.
+    #[error("the request belongs to an earlier session of the line")]
+    Session,
+    /// The board restarted after repeated crashes, and keeps the pressures at zero.
+    #[error("the board is in safe mode after repeated crashes: reset it by its button once the cause is found")]
+    SafeMode,
 }

@@ -3,6 +3,7 @@
 use super::bus::{Bus, BusRecovery, Poll};
 use super::stuck::StuckDetector;
 use crate::bno055::{Answer, Bno055};
+use crate::gap_counter::GapCounter;
 use crate::tca9548a::Channel;
 use board_table::ImuAddress;
 use embedded_hal::digital::OutputPin;
@@ -37,7 +38,11 @@ pub(super) struct ImuChannel {
     bad_in_a_row: u8,
     /// Next state, after enough bad ticks.
     pending_fault: SensorState,
+    /// Gaps while it responds.
+    gaps: GapCounter,
     stuck: StuckDetector,
+    /// Ticks in a row in which the estimator left the reading out.
+    implausible_in_a_row: u8,
     health: SensorHealth,
 }
 
@@ -52,7 +57,9 @@ impl ImuChannel {
             polled_at: 0,
             bad_in_a_row: BAD_TICKS,
             pending_fault: SensorState::NoResponse,
+            gaps: GapCounter::default(),
             stuck: StuckDetector::NEVER_READ,
+            implausible_in_a_row: 0,
             health: SensorHealth { state: SensorState::NoResponse, missed: 0 },
         })
     }
@@ -87,19 +94,37 @@ impl ImuChannel {
     }
 
     /// Ends the tick: updates the state and returns the reading if it is valid. `quaternions` are those of all IMUs in
-    /// this tick.
-    pub(super) fn validate(&mut self, quaternions: &[Option<[i16; 4]>; MAX_SEGMENTS]) -> Option<[i16; 4]> {
+    /// this tick; `is_copy`: another IMU gives the same ones; `is_implausible`: the estimator leaves its readings out.
+    pub(super) fn validate(
+        &mut self,
+        quaternions: &[Option<[i16; 4]>; MAX_SEGMENTS],
+        is_copy: bool,
+        is_implausible: bool,
+    ) -> Option<[i16; 4]> {
         let quaternion = self.quaternion();
         let outcome = core::mem::replace(&mut self.outcome, Outcome::Skipped);
+        let is_implausible = is_implausible && quaternion.is_some();
+        self.implausible_in_a_row = if is_implausible { self.implausible_in_a_row.saturating_add(1) } else { 0 };
+        let is_intermittent = self.gaps.update(quaternion.is_some());
         if let Some(quaternion) = quaternion {
             self.bad_in_a_row = 0;
             self.pending_fault = SensorState::NoResponse;
             let is_stuck = self.stuck.update(quaternion, quaternions);
-            self.health.state = if is_stuck { SensorState::Stuck } else { SensorState::Ok };
+            self.health.state = if is_stuck {
+                SensorState::Stuck
+            } else if is_copy {
+                SensorState::Invalid
+            } else if is_intermittent {
+                SensorState::Intermittent
+            } else if self.implausible_in_a_row >= BAD_TICKS {
+                SensorState::Inconsistent
+            } else {
+                SensorState::Ok
+            };
         } else {
             self.record_fault(outcome);
         }
-        let valid = quaternion.filter(|_| self.health.state == SensorState::Ok);
+        let valid = quaternion.filter(|_| !matches!(self.health.state, SensorState::Stuck | SensorState::Invalid));
         if valid.is_none() {
             self.health.missed = self.health.missed.saturating_add(1);
         }
@@ -124,7 +149,7 @@ impl ImuChannel {
             }
         }
         if self.bad_in_a_row >= BAD_TICKS {
-            self.health.state = self.pending_fault;
+            (self.health.state, self.gaps) = (self.pending_fault, GapCounter::default());
         }
     }
 }

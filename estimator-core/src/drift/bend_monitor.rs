@@ -27,6 +27,8 @@ const MOVING: Constant = degrees(12.0);
 /// A sensor steps if it moves by more than its errors allow, and by more than the IMUs, between two samples. The step
 /// stays suspected down to half the limit, and is confirmed as a new zero after this time.
 const STEP_CONFIRMATION_US: u64 = 350_000;
+/// Time for which a step is reported.
+const RECENT_US: u64 = 60_000_000;
 /// Longest time between two samples over which a step can be detected, time units: half a second.
 const STEP_GAP: Constant = Constant::new(0.5 / TIME_UNIT_S);
 
@@ -52,6 +54,7 @@ struct StepDetector<S> {
     /// Predicted angle: that of the last good sample plus the motion of the IMUs, rad.
     expected: Option<S>,
     suspect_since_us: Option<u64>,
+    stepped_at_us: Option<u64>,
 }
 
 /// θ_bend of the sensors that are trusted.
@@ -67,7 +70,8 @@ impl<S: Scalar> BendMonitor<S> {
     /// At the start of a session.
     pub const fn new(zero: S) -> Self {
         Self {
-            steps: [StepDetector { zero, expected: None, suspect_since_us: None }; SENSORS_PER_SEGMENT],
+            steps: [StepDetector { zero, expected: None, suspect_since_us: None, stepped_at_us: None };
+                SENSORS_PER_SEGMENT],
             difference: zero,
             averaged: zero,
             distrusted_until_us: [0; SENSORS_PER_SEGMENT],
@@ -114,10 +118,19 @@ impl<S: Scalar> BendMonitor<S> {
         trusted
     }
 
-    /// Returns `true` while a sensor is excluded.
-    pub fn is_distrusted(&self, time_us: u64) -> bool {
-        self.distrusted_until_us.iter().any(|until_us| time_us < *until_us)
-            || self.steps.iter().any(|step| step.suspect_since_us.is_some())
+    /// Returns `true` while a sensor is excluded for a step that is not confirmed yet.
+    pub fn has_suspect(&self) -> bool {
+        self.steps.iter().any(|step| step.suspect_since_us.is_some())
+    }
+
+    /// Sensors that are excluded for a deviation, or had a new zero within the last minute.
+    pub fn implausible(&self, time_us: u64) -> [bool; SENSORS_PER_SEGMENT] {
+        let mut implausible = [false; SENSORS_PER_SEGMENT];
+        for ((implausible, until_us), step) in implausible.iter_mut().zip(self.distrusted_until_us).zip(&self.steps) {
+            let has_stepped = step.stepped_at_us.is_some_and(|at_us| time_us.saturating_sub(at_us) < RECENT_US);
+            *implausible = time_us < until_us || has_stepped;
+        }
+        implausible
     }
 
     /// Detects sensors that step while θ moves by `motion` in `dt` (`None`: θ is unknown). Returns `true` if a sensor
@@ -225,7 +238,7 @@ impl<S: Scalar> StepDetector<S> {
             return false;
         }
         self.zero -= deviation;
-        (self.expected, self.suspect_since_us) = (Some(expected), None);
+        (self.expected, self.suspect_since_us, self.stepped_at_us) = (Some(expected), None, Some(time_us));
         true
     }
 }

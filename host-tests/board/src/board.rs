@@ -32,6 +32,9 @@ pub struct Board {
     decoder: Decoder<Message>,
     encoder: Encoder,
     next_id: u32,
+    /// The board's session, and the time of the last request in it.
+    session: u16,
+    requested_at: Option<Cycles>,
     received: Vec<Received>,
     bytes: u64,
     truths: Vec<PerSegment<EndPose>>,
@@ -64,6 +67,8 @@ impl Board {
             decoder: Decoder::new(),
             encoder: Encoder::new(),
             next_id: 1,
+            session: 0,
+            requested_at: None,
             received: Vec::new(),
             bytes: 0,
             truths: Vec::new(),
@@ -84,6 +89,9 @@ impl Board {
         for (at, byte) in self.machine.world_mut().take_transmitted(UART) {
             self.bytes += 1;
             if let Some(Ok(message)) = self.decoder.push(byte) {
+                if let Message::Reply(reply) = message {
+                    self.session = reply.session;
+                }
                 self.received.push(Received { at, message });
             }
         }
@@ -102,8 +110,37 @@ impl Board {
     pub fn send(&mut self, command: Command) -> u32 {
         let id = self.next_id;
         self.next_id += 1;
-        self.send_again(&Request { id, command });
+        self.requested_at = Some(self.machine.now());
+        self.send_again(&Request { id, session: self.session, command });
         id
+    }
+
+    /// Begins a session by a Ping, if there is none or no request was sent for a second.
+    ///
+    /// # Panics
+    /// If the Ping is not acknowledged within 50 ms.
+    pub fn begin_session(&mut self) {
+        let now = self.machine.now();
+        if self.requested_at.is_some_and(|at| now.saturating_sub(at) < CYCLES_PER_SECOND) {
+            return;
+        }
+        let id = self.send(Command::Ping);
+        self.run_ms(50);
+        assert_eq!(self.outcome(id), Some(RequestOutcome::Ack), "a Ping is acknowledged within 50 ms");
+    }
+
+    /// Number of the session.
+    #[must_use]
+    pub const fn session(&self) -> u16 {
+        self.session
+    }
+
+    /// The last reply to a request.
+    fn outcome(&self, id: u32) -> Option<RequestOutcome> {
+        self.received.iter().rev().find_map(|received| match received.message {
+            Message::Reply(reply) if reply.id == id => Some(reply.outcome),
+            _ => None,
+        })
     }
 
     /// Sends a request with a number of its own.
@@ -125,14 +162,10 @@ impl Board {
     /// # Panics
     /// If none comes within 100 ms.
     pub fn request(&mut self, command: Command) -> RequestOutcome {
-        let before = self.received.len();
+        self.begin_session();
         let id = self.send(command);
         self.run_ms(100);
-        let mut replies = self.received[before..].iter().filter_map(|received| match received.message {
-            Message::Reply(reply) if reply.id == id => Some(reply.outcome),
-            _ => None,
-        });
-        replies.next().expect("a request is answered within 100 ms")
+        self.outcome(id).expect("a request is answered within 100 ms")
     }
 
     /// Arms, and lets the arm swing by the scenario's own program for some seconds, with set-points 20 times a second.

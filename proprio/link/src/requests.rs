@@ -23,6 +23,9 @@ pub enum RequestError {
     /// The board has refused it.
     #[error("the board refuses: {0}")]
     Refused(#[from] Refusal),
+    /// Set-points were accepted, but those that would rise stay as they are.
+    #[error("the board lets no pressure rise: all its IMUs are lost, or all bend sensors of a segment")]
+    Limited,
     /// It gave no answer for two seconds.
     #[error("the board does not answer")]
     NoAnswer,
@@ -65,6 +68,8 @@ pub struct Requests {
     version: Option<u8>,
     last_id: u32,
     is_connected: bool,
+    /// The board's session, from its reply to a Ping; `None`: a Ping is sent first.
+    session: Option<u16>,
     /// In the order in which they were sent; more than one are pieces of a table.
     under_way: VecDeque<UnderWay>,
     waiting: VecDeque<(Command, Answer)>,
@@ -140,14 +145,14 @@ impl Requests {
 
     /// Adds the next request to those under way.
     fn begin(&mut self, now: Instant) {
-        let (command, answer) = if self.is_connected {
+        let (command, answer) = if self.session.is_some() {
             let Some((command, answer)) = self.waiting.pop_front() else { return };
             (command, Some(answer))
         } else {
             (Command::Ping, None)
         };
         self.last_id = self.last_id.wrapping_add(1);
-        let request = Request { id: self.last_id, command };
+        let request = Request { id: self.last_id, session: self.session.unwrap_or_default(), command };
         self.under_way.push_back(UnderWay { request, answer, due: now });
     }
 
@@ -157,14 +162,27 @@ impl Requests {
         let is_handshake = self.under_way.get(place).is_some_and(|one| one.answer.is_none());
         match reply.outcome {
             RequestOutcome::Ack => {
-                self.is_connected = true;
+                (self.is_connected, self.session) = (true, Some(reply.session));
                 self.finish(place, Ok(()));
             }
+            RequestOutcome::Limited => self.finish(place, Err(RequestError::Limited)),
             // The board has not processed it: it is sent again.
             RequestOutcome::Nack(Refusal::Busy) => {}
             // An earlier host has used higher ids. The board accepts a Ping with a lower one after its session timeout.
             RequestOutcome::Nack(_) if is_handshake => {}
+            // Nothing was sent for a while, so that the session is over: the next one begins with a Ping.
+            RequestOutcome::Nack(Refusal::Session) => self.begin_session(),
             RequestOutcome::Nack(refusal) => self.finish(place, Err(refusal.into())),
+        }
+    }
+
+    /// Lets the requests under way wait for the next session.
+    fn begin_session(&mut self) {
+        self.session = None;
+        while let Some(UnderWay { request, answer, .. }) = self.under_way.pop_back() {
+            if let Some(answer) = answer {
+                self.waiting.push_front((request.command, answer));
+            }
         }
     }
 
@@ -176,7 +194,7 @@ impl Requests {
         for (_, answer) in self.waiting.drain(..) {
             answer.send(Err(RequestError::Interrupted));
         }
-        self.is_connected = false;
+        (self.is_connected, self.session) = (false, None);
     }
 
     /// Ends the request at a place among those under way.
@@ -216,7 +234,7 @@ mod tests {
 
     fn acknowledge(requests: &mut Requests, request: Option<Request>) {
         let id = request.expect("a request was sent").id;
-        requests.replied(Reply { id, outcome: RequestOutcome::Ack });
+        requests.replied(Reply { id, session: 7, outcome: RequestOutcome::Ack });
     }
 
     const TARE: Command = Command::Tare(TareMode::IfStill);
@@ -284,6 +302,24 @@ mod tests {
         acknowledge(&mut requests, third);
         assert_eq!(sent(&mut requests, now).map(|request| request.command), Some(Command::TableCommit));
         assert_eq!(asked[2].outcome.try_recv(), Ok(Ok(())));
+    }
+
+    #[test]
+    fn a_request_refused_for_its_session_is_sent_again_in_the_next_one() {
+        let (mut requests, start) = (Requests::default(), Instant::now());
+        let ping = sent(&mut requests, start);
+        acknowledge(&mut requests, ping);
+        let tare = ask(&mut requests, TARE, start);
+        let first = sent(&mut requests, start).expect("a tare");
+        assert_eq!(first.session, 7);
+        requests.replied(Reply { id: first.id, session: 8, outcome: RequestOutcome::Nack(Refusal::Session) });
+        let ping = sent(&mut requests, start).expect("a Ping");
+        assert_eq!(ping.command, Command::Ping);
+        requests.replied(Reply { id: ping.id, session: 9, outcome: RequestOutcome::Ack });
+        let again = sent(&mut requests, start).expect("the tare");
+        assert_eq!((again.session, again.command), (9, TARE));
+        requests.replied(Reply { id: again.id, session: 9, outcome: RequestOutcome::Ack });
+        assert_eq!(tare.outcome.try_recv(), Ok(Ok(())));
     }
 
     #[test]

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use estimator_core::ArmConfig;
 use proprio_check::SessionCheck;
 use proprio_link::{EventKind, Link, LinkEvent, Subscription};
-use proprio_session::HostNs;
+use proprio_session::{HostNs, degradations};
 use telemetry::Message;
 
 use super::feed::{Batch, EndCovariances, Feed, PageStatus};
@@ -129,6 +129,7 @@ impl<'t> Hub<'t> {
         let rates = self.live.rates(self.shared.clock.now());
         let mut status = PageStatus::new(link.state(), rates);
         status.health = self.live.health.as_ref().map(Into::into);
+        status.notes.extend(self.live.health.iter().flat_map(degradations));
         status.sensors = self.live.sensors().into_iter().map(Into::into).collect();
         status.dropped_events = self.events.dropped();
         status.clock = self.live.board_time();

@@ -96,6 +96,12 @@ impl<'t> Live<'t> {
             Message::Event(telemetry::Event::Imu(i, state)) => {
                 set_state(self.health.as_mut().map(|health| &mut health.imu[..]), *i, *state);
             }
+            Message::Event(telemetry::Event::Condition(segment, conditions)) => {
+                let held = self.health.as_mut().and_then(|health| health.conditions.get_mut(usize::from(*segment)));
+                if let Some(held) = held {
+                    *held = *conditions;
+                }
+            }
             Message::Hello(_)
             | Message::Event(_)
             | Message::Reply(_)
@@ -186,7 +192,7 @@ impl<'t> Live<'t> {
     }
 }
 
-/// Sets the state of a sensor that has changed. The next health has the same, up to a fifth of a second later.
+/// Sets the state of a sensor that has changed. The next health has the same, up to a quarter of a second later.
 fn set_state(sensors: Option<&mut [SensorHealth]>, i: u8, state: SensorState) {
     if let Some(sensor) = sensors.and_then(|sensors| sensors.get_mut(usize::from(i))) {
         sensor.state = state;

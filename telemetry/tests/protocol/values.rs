@@ -67,7 +67,8 @@ pub fn request() -> impl Strategy<Value = Request> {
         number!(u32).prop_map(Command::TableRead),
         select(vec![Command::TableCommit, Command::TableErase]),
     ];
-    (number!(u32), prop_oneof![plain, rates, pressures, table]).prop_map(|(id, command)| Request { id, command })
+    (number!(u32), number!(u16), prop_oneof![plain, rates, pressures, table])
+        .prop_map(|(id, session, command)| Request { id, session, command })
 }
 
 fn chunk() -> impl Strategy<Value = TableChunk> {
@@ -184,13 +185,14 @@ fn actuation() -> impl Strategy<Value = Actuation> {
 
 fn health() -> impl Strategy<Value = Health> {
     let sensor = || (sensor_state(), number!(u16)).prop_map(|(state, missed)| SensorHealth { state, missed });
-    let sensors = (list(sensor()), list(sensor()));
-    let numbers = prop::array::uniform9(number!(u32));
-    let pressures = list(number!(u32));
-    (sensors, numbers, number!(u16), actuation(), pressures).prop_map(
-        |((bend, imu), numbers, load_permille, actuation, pressures_pa)| {
+    let sensors = (list(sensor()), list(sensor()), list(number!(u8).prop_map(Conditions)));
+    let numbers = prop::array::uniform10(number!(u32));
+    let limit = select(vec![PressureLimit::None, PressureLimit::SensorsLost, PressureLimit::SafeMode]);
+    let pressures = (actuation(), limit, list(number!(u32)));
+    (sensors, numbers, number!(u16), pressures).prop_map(
+        |((bend, imu, conditions), numbers, load_permille, (actuation, limit, pressures_pa))| {
             let [tick, max_estimate_latency_us, longest_imu_read_us, overruns, stale_scans, counts @ ..] = numbers;
-            let [dropped_frames, damaged_frames, bus_recoveries, saturations] = counts;
+            let [dropped_frames, damaged_frames, unknown_frames, bus_recoveries, saturations] = counts;
             Health {
                 tick,
                 bend,
@@ -202,9 +204,12 @@ fn health() -> impl Strategy<Value = Health> {
                 stale_scans,
                 dropped_frames,
                 damaged_frames,
+                unknown_frames,
                 bus_recoveries,
                 saturations,
+                conditions,
                 actuation,
+                limit,
                 pressures_pa,
             }
         },
@@ -219,6 +224,7 @@ fn event() -> impl Strategy<Value = Event> {
         Just(Event::BusRecovery),
         number!(u32).prop_map(Event::Tare),
         (number!(u32), number!(u8)).prop_map(|(tick, touched)| Event::Contact(tick, touched)),
+        (number!(u8), number!(u8)).prop_map(|(segment, bits)| Event::Condition(segment, Conditions(bits))),
     ]
 }
 
@@ -241,14 +247,17 @@ fn reply() -> impl Strategy<Value = Reply> {
         Refusal::Moving,
         Refusal::Regulators,
         Refusal::TableWiring,
+        Refusal::Session,
+        Refusal::SafeMode,
     ]);
-    let outcome = prop_oneof![Just(RequestOutcome::Ack), refusal.prop_map(RequestOutcome::Nack)];
-    (number!(u32), outcome).prop_map(|(id, outcome)| Reply { id, outcome })
+    let done = select(vec![RequestOutcome::Ack, RequestOutcome::Limited]);
+    let outcome = prop_oneof![done, refusal.prop_map(RequestOutcome::Nack)];
+    (number!(u32), number!(u16), outcome).prop_map(|(id, session, outcome)| Reply { id, session, outcome })
 }
 
 /// A ping, the shortest request.
 pub fn ping(id: u32) -> Request {
-    Request { id, command: Command::Ping }
+    Request { id, session: 0, command: Command::Ping }
 }
 
 /// Of each kind the message of the largest arm that takes the most bytes.
@@ -284,7 +293,7 @@ pub fn longest_messages_of(segments: usize, regulators: usize) -> [Message; 10] 
         }),
         Message::Health(longest_health(segments, regulators)),
         Message::Event(Event::Contact(u32::MAX, u8::MAX)),
-        Message::Reply(Reply { id: u32::MAX, outcome: RequestOutcome::Nack(Refusal::Busy) }),
+        Message::Reply(Reply { id: u32::MAX, session: u16::MAX, outcome: RequestOutcome::Nack(Refusal::Busy) }),
         Message::Uncertainty(Uncertainty { tick: u32::MAX, segments: many(segments, uncertain) }),
         Message::Table(TableState {
             status: TableStatus::Unusable,
@@ -338,14 +347,17 @@ fn longest_health(segments: usize, regulators: usize) -> Health {
         stale_scans: u32::MAX,
         dropped_frames: u32::MAX,
         damaged_frames: u32::MAX,
+        unknown_frames: u32::MAX,
         bus_recoveries: u32::MAX,
         saturations: u32::MAX,
+        conditions: many(segments, Conditions(u8::MAX)),
         actuation: Actuation::Ramping,
+        limit: PressureLimit::SafeMode,
         pressures_pa: many(regulators, u32::MAX),
     }
 }
 
 /// The request that takes the most bytes.
 pub fn longest_request() -> Request {
-    Request { id: u32::MAX, command: Command::TableWrite(longest_chunk()) }
+    Request { id: u32::MAX, session: u16::MAX, command: Command::TableWrite(longest_chunk()) }
 }

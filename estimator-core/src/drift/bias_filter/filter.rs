@@ -15,7 +15,7 @@ use crate::types::Condition;
 
 /// Variance rate of an absent heading's own error: 0.5° after a second, growing with the square root of time.
 const ABSENT: Constant = variance_deg(0.5 * 8.0);
-/// Time for which a restart of an IMU and a step of a bend sensor are reported.
+/// Time for which a restart of an IMU is reported.
 const RECENT_US: u64 = 60_000_000;
 
 /// State of the bias filter for up to `N` segments, in the number type `F`.
@@ -111,14 +111,15 @@ impl<F: Scalar, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
         let Some(track) = self.segments.get(i).filter(|_| self.is_started) else { return Condition::default() };
         let now_us = self.last_us.unwrap_or_default();
         let is_recent = |at_us: Option<u64>| at_us.is_some_and(|at_us| now_us.saturating_sub(at_us) < RECENT_US);
+        let bend_implausible = track.monitor.implausible(now_us);
         Condition {
             tare_bad: self.is_tare_bad,
             imu_absent: !track.is_heading_read,
             imu_restarted: is_recent(track.restarted_at_us),
-            bend_distrusted: track.monitor.is_distrusted(now_us)
-                || track.is_bend_missing
-                || is_recent(track.stepped_at_us),
+            bend_distrusted: track.is_bend_missing || track.monitor.has_suspect() || bend_implausible.contains(&true),
             gated: track.gated_since_us.is_some(),
+            imu_implausible: track.has_reading && !track.is_heading_read,
+            bend_implausible,
         }
     }
 

@@ -46,6 +46,7 @@ impl<F: Scalar, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
                 let bias = self.state.bias_at(i + 1, sensed.time_us);
                 next.deviation_from(expected.heading, bias, heading, segment.imu_scale_error)
             };
+            track.has_reading = reading.is_some();
             let verdict = track.gate.check(reading, segment.imu_scale_error, &expected, above, sensed.time_us);
             inflate_bias_variance(&mut self.state, i, verdict, &expected, &segment.bend_error);
             excess = track.apply(verdict, &expected, sensed.time_us);

@@ -56,7 +56,8 @@ pub(super) struct SegmentTrack<F> {
     pub updated_at_us: u64,
     pub gated_since_us: Option<u64>,
     pub restarted_at_us: Option<u64>,
-    pub stepped_at_us: Option<u64>,
+    /// The IMU was read, whether or not its heading was used.
+    pub has_reading: bool,
     /// Variance of the offset: from the tare, the prior's, and the part of the prior that lost sensors have added.
     pub session_offset: F,
     pub offset_prior: F,
@@ -93,7 +94,7 @@ impl<F: Scalar> SegmentTrack<F> {
             updated_at_us: 0,
             gated_since_us: None,
             restarted_at_us: None,
-            stepped_at_us: None,
+            has_reading: false,
             session_offset: zero,
             offset_prior: zero,
             lost_sensor_variance: zero,

@@ -170,7 +170,6 @@ impl<F: FusedOps, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
         let motion = are_headings_read.then(|| track.theta - track.processed_theta);
         if track.monitor.find_steps(error, angles, motion, dt, time_us) {
             self.state.inflate_variance(i, OFFSET, F::constant(STEP_VARIANCE));
-            track.stepped_at_us = Some(time_us);
         }
         if are_headings_read {
             let expected = track.theta + self.state.angle_offset(i);

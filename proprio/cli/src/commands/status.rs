@@ -1,9 +1,9 @@
 //! `proprio status`.
 
 use proprio_link::status::{KnownShape, Status};
-use proprio_session::Ellipse;
 use proprio_session::recording::chip_number;
-use telemetry::{Hello, Rates, SensorHealth, SensorState, TICK_HZ, protocol_2};
+use proprio_session::{Ellipse, degradations};
+use telemetry::{Health, Hello, Rates, SensorHealth, SensorState, TICK_HZ, protocol_2};
 
 use super::link;
 use crate::error::Error;
@@ -57,15 +57,17 @@ fn screen(status: &Status) -> String {
         (
             "counters",
             format!(
-                "{} overruns, {} stale scans, {} dropped and {} damaged frames, {} bus recoveries, {} saturations",
+                "{} overruns, {} stale scans, {} dropped, {} damaged and {} unknown frames, {} bus recoveries, {} saturations",
                 health.overruns,
                 health.stale_scans,
                 health.dropped_frames,
                 health.damaged_frames,
+                health.unknown_frames,
                 health.bus_recoveries,
                 health.saturations
             ),
         ),
+        ("degraded", degraded(health)),
         ("tip", tip(status.shape.as_ref())),
         ("contact", contact(status.shape.as_ref())),
         ("pressures", format!("{:?},{pressures} kPa", health.actuation)),
@@ -74,6 +76,12 @@ fn screen(status: &Status) -> String {
     ];
     let notes = status.mismatches.iter().map(|mismatch| format!("\nnote: {mismatch}\n"));
     text_tables::pairs(&lines) + &notes.collect::<String>()
+}
+
+/// Reasons why the estimate is degraded, or the pressures limited.
+fn degraded(health: &Health) -> String {
+    let reasons: Vec<String> = degradations(health).collect();
+    if reasons.is_empty() { "no".to_owned() } else { reasons.join("; ") }
 }
 
 /// The arm and the table of the board; `compared`: with the table that was given.

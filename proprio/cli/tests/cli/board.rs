@@ -6,8 +6,8 @@ use estimator_core::Q;
 use proprio_simulation::Simulation;
 use rig_twin::Scenario;
 use telemetry::{
-    Actuation, Encoder, Estimate, Health, Hello, MAX_FRAME, Message, PROTOCOL_VERSION, ResetCause, SCHEMA, Sample,
-    SensorHealth, SensorState, TICK_HZ, Text,
+    Actuation, Conditions, Encoder, Estimate, Health, Hello, MAX_FRAME, Message, PROTOCOL_VERSION, PressureLimit,
+    ResetCause, SCHEMA, Sample, SensorHealth, SensorState, TICK_HZ, Text,
 };
 
 use super::common::table;
@@ -129,9 +129,12 @@ fn health(tick: u32) -> Health {
         stale_scans: 0,
         dropped_frames: 0,
         damaged_frames: 0,
+        unknown_frames: 0,
         bus_recoveries: 0,
         saturations: 0,
+        conditions: [Conditions::default(); SEGMENTS].into_iter().collect(),
         actuation: Actuation::Disarmed,
+        limit: PressureLimit::None,
         pressures_pa: [0; 6].into_iter().collect(),
     }
 }

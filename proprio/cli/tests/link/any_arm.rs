@@ -5,8 +5,8 @@ use proprio_link::status::Status;
 use proprio_link::{EventKind, Link, Subscription};
 use serde_json::json;
 use telemetry::{
-    Actuation, Command, Estimate, Event, Health, Hello, Message, SegmentUncertainty, SensorHealth, SensorState,
-    Uncertainty,
+    Actuation, Command, Conditions, Estimate, Event, Health, Hello, Message, PressureLimit, SegmentUncertainty,
+    SensorHealth, SensorState, Uncertainty,
 };
 
 use super::http::Page;
@@ -34,9 +34,12 @@ fn health(tick: u32) -> Health {
         stale_scans: 0,
         dropped_frames: 0,
         damaged_frames: 0,
+        unknown_frames: 0,
         bus_recoveries: 0,
         saturations: 0,
+        conditions: [Conditions::default(); 3].into_iter().collect(),
         actuation: Actuation::Disarmed,
+        limit: PressureLimit::None,
         pressures_pa: [1000, 2000, 3000, 4000].into_iter().collect(),
     }
 }

@@ -67,7 +67,7 @@ impl Board {
 
     /// Restarts the board: frames are numbered from 0, and no request is stored.
     pub fn restart(&mut self, boot: u32) {
-        (self.encoder, self.server) = (Encoder::new(), board_core::CommandServer::new());
+        (self.encoder, self.server) = (Encoder::new(), board_core::CommandServer::new(boot));
         self.to_host.push_back(0);
         self.send(&Message::Hello(hello(boot)));
     }
@@ -80,7 +80,8 @@ impl Board {
             return self.block.push(byte);
         }
         let block = std::mem::take(&mut self.block);
-        match older::request(&block) {
+        let session = self.server.session();
+        match older::request(&block, session) {
             Some(newer) => newer.into_iter().for_each(|byte| self.decode(byte)),
             None => self.other_version += usize::from(!block.is_empty()),
         }
@@ -122,7 +123,7 @@ impl Line {
         let board = Board {
             encoder: Encoder::new(),
             requests: Decoder::new(),
-            server: board_core::CommandServer::new(),
+            server: board_core::CommandServer::new(1),
             protocol: PROTOCOL_VERSION,
             block: Vec::new(),
             other_version: 0,

@@ -27,14 +27,17 @@ fn frame(version: u8, rest: &[u8]) -> Vec<u8> {
     block
 }
 
-/// A reply, whose body is the same in protocol 2, as a frame of that.
+/// A reply as a frame of protocol 2, without the session.
 pub fn reply(newer: &[u8]) -> Vec<u8> {
     let (_, block) = newer.split_last().expect("a frame has a zero");
-    frame(protocol_2::VERSION, &content(block, PROTOCOL_VERSION).expect("a frame of this program"))
+    let mut rest = content(block, PROTOCOL_VERSION).expect("a frame of this program");
+    // Behind the topic and the number: the id, which is below 128 here, and the session, which is not.
+    rest.drain(4..6);
+    frame(protocol_2::VERSION, &rest)
 }
 
-/// A request of protocol 2 as a frame of protocol 3; `None`: it is of another version.
-pub fn request(block: &[u8]) -> Option<Vec<u8>> {
+/// A request of protocol 2 as a frame of protocol 3 in a session; `None`: it is of another version.
+pub fn request(block: &[u8], session: u16) -> Option<Vec<u8>> {
     let mut rest = content(block, protocol_2::VERSION)?;
     // Behind the topic and the number: the id, which is below 128 here, and the command.
     match rest[4] {
@@ -44,6 +47,7 @@ pub fn request(block: &[u8]) -> Option<Vec<u8>> {
         5 => rest.insert(5, 6),
         _ => {}
     }
+    rest.splice(4..4, [session as u8 | 0x80, (session >> 7) as u8]);
     Some(frame(PROTOCOL_VERSION, &rest))
 }
 

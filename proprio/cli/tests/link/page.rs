@@ -7,7 +7,9 @@ use proprio_monitor::Plain;
 use proprio_session::{HostClock, LoadedTable};
 use proprio_simulation::Simulation;
 use rig_twin::Scenario;
-use telemetry::{Actuation, Estimate, Health, Message, Sample, SegmentEstimate, SensorHealth, SensorState};
+use telemetry::{
+    Actuation, Conditions, Estimate, Health, Message, PressureLimit, Sample, SegmentEstimate, SensorHealth, SensorState,
+};
 
 use super::http::Page;
 use super::line::{Line, sample, wait_for};
@@ -37,9 +39,12 @@ pub fn health(tick: u32, imu_3: SensorState) -> Health {
         stale_scans: 0,
         dropped_frames: 0,
         damaged_frames: 0,
+        unknown_frames: 0,
         bus_recoveries: 0,
         saturations: 0,
+        conditions: [Conditions::default(); 6].into_iter().collect(),
         actuation: Actuation::Disarmed,
+        limit: PressureLimit::None,
         pressures_pa: [0; 6].into_iter().collect(),
     }
 }

@@ -3,9 +3,10 @@
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 
-use telemetry::{Command, Health, SensorState, SetPressures};
+use telemetry::{Command, Health, SetPressures};
 
 use super::DriveError;
+use crate::requests::RequestError;
 use crate::status::Status;
 use crate::{Link, LinkError};
 
@@ -54,6 +55,8 @@ impl<'l> Driver<'l> {
     pub fn set(&mut self, pressures_pa: Vec<u32>) -> Result<SetPressures, DriveError> {
         let requested = SetPressures { pressures_pa: pressures_pa.iter().copied().collect(), valid_ms: VALID_MS };
         match self.link.request(Command::SetPressures(requested.clone())) {
+            // Sensors may be lost for a moment: `check` judges whether the board follows.
+            Err(LinkError::Request(RequestError::Limited)) => {}
             Err(LinkError::Request(_)) if self.has_restarted() => return Err(DriveError::Restarted),
             done => done?,
         }
@@ -130,7 +133,7 @@ fn check(link: &Link, status: &Status, regulators: usize) -> Result<(), DriveErr
         return Err(DriveError::Crashed(panic.as_str().to_owned()));
     }
     // The firmware raises no pressure without a valid IMU. Its other reasons to refuse show when it is driven.
-    if status.health.imu.iter().all(|imu| imu.state != SensorState::Ok) {
+    if status.health.imu.iter().all(|imu| !imu.state.is_usable()) {
         return Err(DriveError::Blind);
     }
     Ok(())

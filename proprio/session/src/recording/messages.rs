@@ -9,7 +9,7 @@ use telemetry::{
 };
 
 use super::cdr::{CdrReader, CdrWriter};
-use crate::{HostNs, SENSOR_NAMES, Truth};
+use crate::{HostNs, SENSOR_NAMES, Truth, degradations};
 
 /// The frame of the arm's base, {W}: x to the right, y along the tangent, z up.
 const FRAME: &str = "arm_base";
@@ -183,6 +183,7 @@ fn board(cdr: &mut CdrWriter, health: &Health, hello: Option<&Hello>, chip: &str
         ("stale_scans", health.stale_scans.to_string()),
         ("dropped_frames", health.dropped_frames.to_string()),
         ("damaged_frames", health.damaged_frames.to_string()),
+        ("unknown_frames", health.unknown_frames.to_string()),
         ("bus_recoveries", health.bus_recoveries.to_string()),
         ("saturations", health.saturations.to_string()),
         ("actuation", format!("{:?}", health.actuation)),
@@ -195,7 +196,10 @@ fn board(cdr: &mut CdrWriter, health: &Health, hello: Option<&Hello>, chip: &str
         values.push(("boot", hello.boot.to_string()));
         values.push(("reset", format!("{:?}", hello.reset)));
     }
-    status(cdr, Level::Ok, "board", "running", chip, &values);
+    let reasons: Vec<String> = degradations(health).collect();
+    let (level, message) =
+        if reasons.is_empty() { (Level::Ok, "running".to_owned()) } else { (Level::Warn, reasons.join("; ")) };
+    status(cdr, level, "board", &message, chip, &values);
 }
 
 fn sensor_status(cdr: &mut CdrWriter, name: &str, sensor: SensorHealth, chip: &str) {
