@@ -8,7 +8,7 @@
 //! A crash is a reset by the watchdog, or any reset after a panic or fault. [`CRASHES`] of them within the last
 //! [`WINDOW_TICKS`] of uptime, which is counted across resets, are a boot loop: the board starts in safe mode. Another
 //! reset does not end it, since a host that opens the port resets the board, too; a reset after that time does, and
-//! power-on.
+//! power-on. If all three came before the first tick, the table in the flash is not used either.
 
 use telemetry::ResetCause;
 
@@ -83,6 +83,12 @@ impl BootCounter {
     pub fn safe_mode(&self) -> bool {
         let [.., first] = self.crash_uptimes;
         self.crashes >= CRASHES as u32 && self.uptime_before.wrapping_sub(first) <= WINDOW_TICKS
+    }
+
+    /// Returns whether the boot loop's crashes all came before the first tick: the board must start without what may be
+    /// their cause.
+    pub fn fails_to_start(&self) -> bool {
+        self.safe_mode() && self.crash_uptimes.iter().all(|uptime| *uptime == self.uptime_before)
     }
 
     /// Words to retain, written once at boot.

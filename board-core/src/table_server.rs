@@ -37,8 +37,12 @@ impl<F: Storage + AsRef<[u8]>> TableServer<F> {
     #[inline(never)]
     pub fn load(&self, table: &mut BoardTable<MAX_SEGMENTS>) -> TableState {
         let is_usable = self.store.active().is_none_or(|stored| table.read(stored.image, WINDOW as u16).is_ok());
-        let state = self.state();
-        if is_usable { state } else { TableState { status: TableStatus::Unusable, ..state } }
+        if is_usable { self.state() } else { self.skip() }
+    }
+
+    /// State of the table that is not used.
+    pub fn skip(&self) -> TableState {
+        TableState { status: TableStatus::Unusable, ..self.state() }
     }
 
     /// Executes a request about the table.

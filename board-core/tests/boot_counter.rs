@@ -93,6 +93,26 @@ fn safe_mode_outlasts_other_resets_until_the_minute_is_over() {
 }
 
 #[test]
+fn three_crashes_before_the_first_tick_are_a_start_that_fails() {
+    let mut boot = next(&power_on(), 500, ResetCause::Pin);
+    for _ in 0..3 {
+        assert!(!boot.fails_to_start());
+        boot = next(&boot, 0, ResetCause::Watchdog);
+    }
+    assert!(boot.fails_to_start());
+    assert!(!next(&boot, 1, ResetCause::Software).fails_to_start(), "it has started");
+}
+
+#[test]
+fn crashes_after_the_first_tick_are_no_start_that_fails() {
+    let mut boot = power_on();
+    for _ in 0..3 {
+        boot = next(&boot, 2, ResetCause::Watchdog);
+    }
+    assert!(boot.safe_mode() && !boot.fails_to_start());
+}
+
+#[test]
 fn power_on_ends_safe_mode() {
     let mut boot = power_on();
     for _ in 0..CRASHES {

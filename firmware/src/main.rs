@@ -99,7 +99,8 @@ mod app {
         };
         let (safe_mode, boot) = (board.boots.safe_mode(), board.boots.number());
         let table = cx.local.table.write(BoardTable::new());
-        let table_state = board.tables.load(table);
+        // A table that keeps the board from starting would keep it from reporting that.
+        let table_state = if board.boots.fails_to_start() { board.tables.skip() } else { board.tables.load(table) };
         let reference = Wiring::reference(SEGMENTS_WITHOUT_TABLE);
         let wiring = table.wiring().unwrap_or(&reference);
         device_info::enter_arm(&mut board.hello, table, wiring);

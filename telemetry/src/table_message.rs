@@ -57,6 +57,7 @@ pub enum TableStatus {
     Damaged,
     /// Of another format version.
     Foreign,
-    /// Whole, but not for this firmware: more segments or a longer window than it has room for.
+    /// Not used: for more segments or a longer window than the firmware has room for, or the board crashed three times
+    /// before its first tick.
     Unusable,
 }

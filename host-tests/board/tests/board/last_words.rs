@@ -6,7 +6,7 @@
 use board_tests::{Board, firmware};
 use object::{Object, ObjectSymbol, Symbol};
 use rig_twin::Scenario;
-use telemetry::{Command, Hello, Refusal, RequestOutcome, ResetCause, SetPressures};
+use telemetry::{Command, Hello, Message, Refusal, RequestOutcome, ResetCause, SetPressures, TableStatus};
 use virtual_due::{CYCLES_PER_SECOND, Cycles, WiredRig};
 
 fn pressures() -> Command {
@@ -167,5 +167,25 @@ fn three_crashes_in_a_minute_leave_the_arm_vented_and_the_telemetry_alive() {
     for (before, after) in before.into_iter().zip(counts(&board)) {
         assert!(after >= before + 49, "{before} messages, {after} after 10 s");
     }
+    assert!(board.is_vented());
+}
+
+#[test]
+fn a_board_that_crashes_before_its_first_tick_starts_without_its_table_the_fourth_time() {
+    let mut board = Board::new(WiredRig::new(Scenario::FreeSwing, 1));
+    let file = object::File::parse(firmware()).expect("cargo built an ELF");
+    let named = |symbol: &Symbol| symbol.name().is_ok_and(|name| name.contains("TableServer") && name.contains("load"));
+    let load = file.symbols().find(named).expect("the table is read by a function of its own");
+    // Without the bit of the Thumb state.
+    assert!(board.machine.poke(load.address() as u32 & !1, &UNDEFINED));
+    board.run_ms(4 * BACK_WITHIN_MS);
+    let hello = board.hellos().next_back().expect("a board sends `Hello`").clone();
+    assert_eq!((hello.boot, hello.arm.as_str()), (4, ""));
+    assert!(hello.last_panic.is_some());
+    assert!(board.samples().count() > 20, "it samples");
+    let unusable =
+        |message: &Message| matches!(message, Message::Table(state) if state.status == TableStatus::Unusable);
+    assert!(board.received().iter().any(|received| unusable(&received.message)));
+    assert_eq!(board.request(Command::Arm), RequestOutcome::Nack(Refusal::SafeMode));
     assert!(board.is_vented());
 }

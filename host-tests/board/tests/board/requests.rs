@@ -140,9 +140,8 @@ fn set_points_that_would_rise_without_imus_are_answered_as_limited() {
     assert_eq!(board.request(Command::Arm), RequestOutcome::Ack);
     board.machine.world_mut().faults.imus = [ImuFault::Unplugged; MAX_SEGMENTS];
     board.run_ms(100);
-    let set = |pa: u32| {
-        Command::SetPressures(SetPressures { pressures_pa: [pa; 6].into_iter().collect(), valid_ms: 1000 })
-    };
+    let set =
+        |pa: u32| Command::SetPressures(SetPressures { pressures_pa: [pa; 6].into_iter().collect(), valid_ms: 1000 });
     assert_eq!(board.request(set(50_000)), RequestOutcome::Limited);
     assert_eq!(board.request(set(0)), RequestOutcome::Ack);
     board.run_ms(300);
@@ -154,7 +153,8 @@ fn set_points_that_would_rise_without_imus_are_answered_as_limited() {
 #[test]
 fn frames_of_an_unknown_version_or_topic_are_counted() {
     let mut board = ready();
-    let count = |board: &Board| board.healths().next_back().map(|health| (health.damaged_frames, health.unknown_frames));
+    let count =
+        |board: &Board| board.healths().next_back().map(|health| (health.damaged_frames, health.unknown_frames));
     let before = count(&board).expect("health comes");
     // A Ping of version 2, and a message of the board, which is no request.
     let mut buffer = [0; MAX_FRAME];
