@@ -14,7 +14,7 @@
 
 use board_table::{ANALOG_PINS, Wiring};
 use heapless::Vec;
-use telemetry::{BEND_PER_SEGMENT, Event, MAX_BEND_SENSORS, SensorHealth, SensorState};
+use telemetry::{BEND_PER_SEGMENT, Event, MAX_BEND_SENSORS, SensorHealth, SensorState, vector};
 
 /// Width of the bands at both ends of the converter's range, counts.
 pub const RAIL_COUNTS: u16 = 32;
@@ -56,7 +56,7 @@ impl BendSensorMonitor {
     pub fn new(wiring: &Wiring) -> Self {
         let ok = SensorHealth { state: SensorState::Ok, missed: 0 };
         let pins = wiring.segments.iter().flat_map(|segment| segment.bend);
-        Self { sensors: pins.map(|pin| pin.map(|pin| Sensor { pin, health: ok, debounce: 0 })).collect() }
+        Self { sensors: vector(pins.map(|pin| pin.map(|pin| Sensor { pin, health: ok, debounce: 0 }))) }
     }
 
     /// Checks the scan of a tick, `None` if it was late or out of order. Returns the valid counts and reports each change
@@ -72,12 +72,12 @@ impl BendSensorMonitor {
             }
             counts
         });
-        counts.collect()
+        vector(counts)
     }
 
     /// State of each sensor, and its ticks without a valid reading.
     pub fn health(&self) -> Vec<SensorHealth, MAX_BEND_SENSORS> {
-        self.sensors.iter().map(|sensor| sensor.as_ref().map_or(NOT_WIRED, |sensor| sensor.health)).collect()
+        vector(self.sensors.iter().map(|sensor| sensor.as_ref().map_or(NOT_WIRED, |sensor| sensor.health)))
     }
 
     /// Returns whether a segment, counted from 0 at the base, has bend sensors, and none of them responds.

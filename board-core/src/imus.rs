@@ -38,7 +38,7 @@ use channel::ImuChannel;
 use embedded_hal::digital::OutputPin;
 use embedded_hal_async::i2c::I2c;
 use heapless::Vec;
-use telemetry::{Event, MAX_SEGMENTS, SensorHealth};
+use telemetry::{Event, MAX_SEGMENTS, SensorHealth, vector};
 
 /// Most events of a tick: each IMU's state, and one recovery of the bus.
 pub const EVENTS: usize = MAX_SEGMENTS + 1;
@@ -83,7 +83,7 @@ impl<I: I2c + BusRecovery, R: OutputPin> Imus<I, R> {
     /// The IMUs that are wired, not read yet. Makes no transaction.
     pub fn new(i2c: I, mux: Tca9548a<R>, wiring: &Wiring) -> Self {
         let imus = wiring.segments.iter().map(|segment| segment.imu.and_then(ImuChannel::new));
-        Self { bus: Bus::new(i2c, mux), imus: imus.collect() }
+        Self { bus: Bus::new(i2c, mux), imus: vector(imus) }
     }
 
     /// Reads each IMU that is due in tick number `tick`, once a tick. The future may be dropped at any await; readings
@@ -129,13 +129,13 @@ impl<I: I2c + BusRecovery, R: OutputPin> Imus<I, R> {
             }
             valid
         });
-        let imu = readings.collect();
+        let imu = vector(readings);
         ImuReadings { imu, events }
     }
 
     /// State of each IMU, and its ticks without a valid reading.
     pub fn health(&self) -> Vec<SensorHealth, MAX_SEGMENTS> {
-        self.imus.iter().map(|imu| imu.as_ref().map_or(NOT_WIRED, ImuChannel::health)).collect()
+        vector(self.imus.iter().map(|imu| imu.as_ref().map_or(NOT_WIRED, ImuChannel::health)))
     }
 
     /// Recoveries of a stuck bus since boot; saturates.

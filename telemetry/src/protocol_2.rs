@@ -4,9 +4,9 @@
 use serde::Deserialize;
 
 use crate::body::{read, write};
+use crate::bounded::{Text, text};
 use crate::message::{
-    Actuation, Estimate, Event, Health, Hello, Message, ResetCause, Sample, SensorHealth, SensorState, Text,
-    Uncertainty, text,
+    Actuation, Estimate, Event, Health, Hello, Message, ResetCause, Sample, SensorHealth, SensorState, Uncertainty,
 };
 use crate::request::{Command, Request};
 use crate::topic;
