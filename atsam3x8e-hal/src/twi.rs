@@ -182,11 +182,12 @@ impl<I: Instance, D: DelayNs> Twi<I, D> {
     async fn read_bytes(&mut self, address: u8, register: &[u8], bytes: &mut [u8]) -> Result<(), Error> {
         let transfer = Transfer::read(address, register, bytes.len())?;
         self.run(&transfer, 2 + register.len() + bytes.len()).await?;
-        critical_section::with(|token| {
-            let shared = I::shared().borrow_ref(token);
-            bytes.copy_from_slice(shared.transfer.received().get(..bytes.len()).ok_or(Error::Overrun)?);
-            Ok(())
+        I::with_shared(|shared| {
+            bytes.copy_from_slice(shared.transfer.received().get(..bytes.len())?);
+            Some(())
         })
+        .flatten()
+        .ok_or(Error::Overrun)
     }
 }
 
@@ -210,8 +211,7 @@ impl<I: Instance, D: DelayNs> I2c for Twi<I, D> {
 /// Moves a byte of the transfer; called by the handler of the instance's interrupt.
 pub fn on_interrupt<I: Instance>() {
     let twi = I::registers();
-    let waker = critical_section::with(|token| {
-        let mut shared = I::shared().borrow_ref_mut(token);
+    let waker = I::with_shared(|shared| {
         // NACK, OVRE and ARBLST are cleared by this read (datasheet chapter 33, TWI_SR): one snapshot serves all decisions.
         let status = twi.sr.read().bits();
         match shared.transfer.next(status) {
@@ -233,7 +233,7 @@ pub fn on_interrupt<I: Instance>() {
         reg::set(&twi.ier, enabled);
         if shared.transfer.is_finished() { shared.waker.take() } else { None }
     });
-    if let Some(waker) = waker {
+    if let Some(waker) = waker.flatten() {
         waker.wake();
     }
 }
@@ -241,8 +241,7 @@ pub fn on_interrupt<I: Instance>() {
 /// Programs a transfer and starts it (datasheet chapter 33, master mode).
 fn start<I: Instance>(transfer: &Transfer) {
     let twi = I::registers();
-    critical_section::with(|token| {
-        let mut shared = I::shared().borrow_ref_mut(token);
+    I::with_shared(|shared| {
         shared.waker = None;
         shared.transfer = *transfer;
         let direction = if transfer.is_read() { MMR_MREAD } else { 0 };
@@ -263,21 +262,20 @@ fn start<I: Instance>(transfer: &Transfer) {
 
 /// Result of the transfer, if it has ended; otherwise stores the waker.
 fn result<I: Instance>(waker: &core::task::Waker) -> Option<Result<(), Error>> {
-    critical_section::with(|token| {
-        let mut shared = I::shared().borrow_ref_mut(token);
+    I::with_shared(|shared| {
         let result = shared.transfer.result();
         if result.is_none() {
             shared.waker = Some(waker.clone());
         }
         result
     })
+    .flatten()
 }
 
 /// Resets the peripheral and sets it up; the pins are released meanwhile.
 fn set_up<I: Instance>() {
     let twi = I::registers();
-    critical_section::with(|token| {
-        let mut shared = I::shared().borrow_ref_mut(token);
+    I::with_shared(|shared| {
         reg::set(&twi.idr, !0);
         reg::set(&twi.cr, CR_SWRST);
         reg::set(&twi.cr, CR_MSEN | CR_SVDIS);

@@ -20,7 +20,7 @@
 
 use board_table::Wiring;
 use heapless::Vec;
-use telemetry::{Actuation, Event, MAX_REGULATORS, Refusal, SetPressures};
+use telemetry::{Actuation, Event, MAX_REGULATORS, Refusal, SetPressures, vector};
 
 /// A pressure of each regulator, Pa.
 pub type Pressures = Vec<u32, MAX_REGULATORS>;
@@ -110,9 +110,9 @@ impl SetpointLease {
 impl Actuator {
     /// The regulators that are wired, vented and disarmed. None accepts a set-point over its full scale.
     pub fn new(wiring: &Wiring) -> Self {
-        let full_scale_pa: Pressures = wiring.regulators.iter().map(|regulator| regulator.full_scale_pa).collect();
+        let full_scale_pa: Pressures = vector(wiring.regulators.iter().map(|regulator| regulator.full_scale_pa));
         Self {
-            pressures_pa: full_scale_pa.iter().map(|_| 0).collect(),
+            pressures_pa: vector(full_scale_pa.iter().map(|_| 0)),
             full_scale_pa,
             state: Actuation::Disarmed,
             reported: Actuation::Disarmed,
@@ -201,9 +201,9 @@ impl Actuator {
     /// The set-points as PWM duties, counts: 0 at 0 Pa, the whole period at full scale.
     pub fn duties(&self, period_counts: u16) -> Vec<u16, MAX_REGULATORS> {
         let pressures = self.pressures_pa.iter().zip(&self.full_scale_pa);
-        pressures
-            .map(|(pressure, full)| share(period_counts.into(), (*pressure).into(), (*full).into()) as u16)
-            .collect()
+        let duty =
+            |(pressure, full): (&u32, &u32)| share(period_counts.into(), (*pressure).into(), (*full).into()) as u16;
+        vector(pressures.map(duty))
     }
 
     /// Returns the state once after each change.

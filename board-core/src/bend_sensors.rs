@@ -15,7 +15,7 @@
 
 use board_table::{ANALOG_PINS, Wiring};
 use heapless::Vec;
-use telemetry::{BEND_PER_SEGMENT, Event, MAX_BEND_SENSORS, SensorHealth, SensorState};
+use telemetry::{BEND_PER_SEGMENT, Event, MAX_BEND_SENSORS, SensorHealth, SensorState, vector};
 
 use crate::gap_counter::GapCounter;
 
@@ -58,7 +58,7 @@ impl BendSensorMonitor {
     /// A monitor of the sensors that are wired, all ok.
     pub fn new(wiring: &Wiring) -> Self {
         let pins = wiring.segments.iter().flat_map(|segment| segment.bend);
-        Self { sensors: pins.map(|pin| pin.map(Sensor::new)).collect() }
+        Self { sensors: vector(pins.map(|pin| pin.map(Sensor::new))) }
     }
 
     /// Checks the scan of a tick, `None` if it was late or out of order. Bit i of `implausible` is set if the estimator
@@ -80,12 +80,12 @@ impl BendSensorMonitor {
             }
             counts
         });
-        counts.collect()
+        vector(counts)
     }
 
     /// State of each sensor, and its ticks without a valid reading.
     pub fn health(&self) -> Vec<SensorHealth, MAX_BEND_SENSORS> {
-        self.sensors.iter().map(|sensor| sensor.as_ref().map_or(NOT_WIRED, |sensor| sensor.health)).collect()
+        vector(self.sensors.iter().map(|sensor| sensor.as_ref().map_or(NOT_WIRED, |sensor| sensor.health)))
     }
 
     /// Returns whether a segment, counted from 0 at the base, has bend sensors, and none of them responds.

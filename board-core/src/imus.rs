@@ -43,7 +43,7 @@ use copies::CopyDetector;
 use embedded_hal::digital::OutputPin;
 use embedded_hal_async::i2c::I2c;
 use heapless::Vec;
-use telemetry::{Event, MAX_SEGMENTS, SensorHealth};
+use telemetry::{Event, MAX_SEGMENTS, SensorHealth, vector};
 
 /// Most events of a tick: each IMU's state, and one recovery of the bus.
 pub const EVENTS: usize = MAX_SEGMENTS + 1;
@@ -89,7 +89,7 @@ impl<I: I2c + BusRecovery, R: OutputPin> Imus<I, R> {
     /// The IMUs that are wired, not read yet. Makes no transaction.
     pub fn new(i2c: I, mux: Tca9548a<R>, wiring: &Wiring) -> Self {
         let imus = wiring.segments.iter().map(|segment| segment.imu.and_then(ImuChannel::new));
-        Self { bus: Bus::new(i2c, mux), imus: imus.collect(), copies: CopyDetector::new() }
+        Self { bus: Bus::new(i2c, mux), imus: vector(imus), copies: CopyDetector::new() }
     }
 
     /// Reads each IMU that is due in tick number `tick`, once a tick. The future may be dropped at any await; readings
@@ -137,13 +137,13 @@ impl<I: I2c + BusRecovery, R: OutputPin> Imus<I, R> {
             }
             valid
         });
-        let imu = readings.collect();
+        let imu = vector(readings);
         ImuReadings { imu, events }
     }
 
     /// State of each IMU, and its ticks without a valid reading.
     pub fn health(&self) -> Vec<SensorHealth, MAX_SEGMENTS> {
-        self.imus.iter().map(|imu| imu.as_ref().map_or(NOT_WIRED, ImuChannel::health)).collect()
+        vector(self.imus.iter().map(|imu| imu.as_ref().map_or(NOT_WIRED, ImuChannel::health)))
     }
 
     /// Recoveries of a stuck bus since boot; saturates.

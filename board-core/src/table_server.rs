@@ -6,8 +6,7 @@
 use board_estimator::WINDOW;
 use board_table::{Announcement, BoardTable, MAX_REGULATORS, MAX_SEGMENTS, TableError, TableStore};
 use embedded_storage::Storage;
-use heapless::Vec;
-use telemetry::{Command, Message, Refusal, TABLE_CHUNK_BYTES, TableChunk, TableState, TableStatus};
+use telemetry::{Command, Message, Refusal, TableChunk, TableState, TableStatus, vector};
 
 /// Table and messages have room for the same arms.
 const _: () = assert!(MAX_SEGMENTS == telemetry::MAX_SEGMENTS && MAX_REGULATORS == telemetry::MAX_REGULATORS);
@@ -96,7 +95,7 @@ impl<F: Storage + AsRef<[u8]>> TableServer<F> {
     fn read(&self, offset: u32) -> Result<TableAnswer, Refusal> {
         let stored = self.store.active().ok_or(Refusal::NoTable)?;
         let body = stored.image.iter().chain(stored.source).skip(offset as usize);
-        let bytes: Vec<u8, TABLE_CHUNK_BYTES> = body.take(TABLE_CHUNK_BYTES).copied().collect();
+        let bytes = vector(body.copied());
         Ok(TableAnswer { message: Some(Message::TableData(TableChunk { offset, bytes })), restart: false })
     }
 }

@@ -80,13 +80,8 @@ fn append<T: Serialize>(value: &T, out: &mut [u8], length: usize) -> Result<usiz
 
 /// Cuts a name at the room for it.
 fn cut(name: &str) -> String<ARM_NAME_BYTES> {
-    let mut text = String::new();
-    for character in name.chars() {
-        if text.push(character).is_err() {
-            break;
-        }
-    }
-    text
+    let cut = name.get(..name.floor_char_boundary(ARM_NAME_BYTES)).unwrap_or_default();
+    String::try_from(cut).unwrap_or_default()
 }
 
 /// A table that was read from its image, with room for N segments.

@@ -108,7 +108,7 @@ impl EstimationTask {
         mut sender: impl Mutex<T = TelemetrySender>,
     ) {
         self.count_overruns(tick.number);
-        let deadline = instant(tick.time_us + IMUS_US);
+        let deadline = Mono::instant(tick.time_us + IMUS_US);
         // A poll that takes longer is cut off; the readings until then count.
         let _ = Mono::timeout_at(deadline, self.sensors.imus.read(tick.number)).await;
         self.counters.longest_imu_read_us = self.counters.longest_imu_read_us.max(since(tick.time_us));
@@ -174,8 +174,8 @@ impl EstimationTask {
         let all_imus_read = readings.all_are_read(&self.sensors.imus.health());
         self.sensors.rest.step(&readings.imu);
         let mut events = heapless::Vec::new();
-        for event in readings.events {
-            let _ = events.push(event);
+        for event in &readings.events {
+            let _ = events.push(*event);
         }
         if tick.scan.is_none() {
             self.counters.stale_scans = self.counters.stale_scans.saturating_add(1);
@@ -291,9 +291,4 @@ fn log(event: &Event) {
 /// Time from `time_us` to now, µs.
 fn since(time_us: u64) -> u32 {
     Mono::now_us().saturating_sub(time_us) as u32
-}
-
-/// Converts a time in µs to the monotonic's.
-fn instant(time_us: u64) -> <Mono as Timebase>::Instant {
-    <Mono as Timebase>::Instant::from_ticks(0) + time_us.micros()
 }

@@ -8,8 +8,8 @@
 //! | `twi1` | 5 | a byte on the I²C bus | 5 | 1.4 | the IMUs' bus |
 //! | `time` | 5 | a timer's alarm | 5 | 2.3 | delays and deadlines |
 //! | `tick` | 4 | 10 ms | 100 | 46 | scan, pressures, watchdog |
-//! | `commands` | 3 | 10 ms | 1000 | 973 | requests of the host |
-//! | `estimation` | 2 | 10 ms | 6000 | 4574 | IMUs (5 ms at most), estimator, messages |
+//! | `commands` | 3 | 10 ms | 1000 | 999 | requests of the host |
+//! | `estimation` | 2 | 10 ms | 6000 | 4722 | IMUs (5 ms at most), estimator, messages |
 //! | `table` | 1 | a request about the table | | | pages of the flash |
 //! | `idle` | 0 | | | | sleep |
 //!

@@ -2,7 +2,7 @@
 
 use core::ops::Range;
 
-use board_table::{ANALOG_PINS, STORE_BYTES};
+use board_table::STORE_BYTES;
 use telemetry::TICK_US;
 
 /// Ticks a second: the rate of the ADC's trigger and of all tasks.
@@ -16,9 +16,6 @@ pub const IMUS_US: u64 = 5_000;
 
 /// ADC channels of the analog pins: A0 … A7 are channels 7 … 0, A8 … A11 are 10 … 13.
 pub const ANALOG_CHANNELS: u16 = 0x3CFF;
-
-/// Positions of A0 … A11 in a scan, which is in the order of the channels.
-pub const ANALOG_POSITIONS: [usize; ANALOG_PINS as usize] = [7, 6, 5, 4, 3, 2, 1, 0, 8, 9, 10, 11];
 
 /// Segments of the arm of a board without a table, which has the reference wiring.
 pub const SEGMENTS_WITHOUT_TABLE: usize = 6;

@@ -10,9 +10,8 @@ use board_table::{ANALOG_PINS, MAX_REGULATORS, REGULATOR_PINS, RegulatorWiring, 
 use heapless::Vec;
 use rtic::Mutex;
 use rtic_sync::signal::SignalWriter;
-use telemetry::TICK_US;
+use telemetry::{TICK_US, vector};
 
-use crate::parameters::ANALOG_POSITIONS;
 use crate::retained;
 use crate::supervision::SUPERVISOR;
 
@@ -100,14 +99,15 @@ impl Ticker {
     }
 }
 
-/// Sorts a scan in the order of the pins.
-fn in_order(scan: Scan) -> Scan {
-    ANALOG_POSITIONS.map(|position| scan[position])
+/// Sorts a scan, which is in the order of the channels, in the order of the pins: A0 to A7 are channels 7 to 0, A8 to A11 are 10
+/// to 13.
+fn in_order([a7, a6, a5, a4, a3, a2, a1, a0, a8, a9, a10, a11]: Scan) -> Scan {
+    [a0, a1, a2, a3, a4, a5, a6, a7, a8, a9, a10, a11]
 }
 
 /// Places of the arm's regulators among the outputs, which are in the order of [`REGULATOR_PINS`].
 pub fn regulator_outputs(wiring: &Wiring) -> Vec<usize, MAX_REGULATORS> {
     let place = |regulator: &RegulatorWiring| REGULATOR_PINS.iter().position(|pin| *pin == regulator.pin);
     // The wiring was checked when it was read: each pin is there.
-    wiring.regulators.iter().filter_map(place).collect()
+    vector(wiring.regulators.iter().filter_map(place))
 }

@@ -2,7 +2,8 @@
 
 use estimator_core::{Contact, ImuReading, Q, SegmentShape, Shape, VARIANCE_SCALE};
 
-use crate::constants::{BEND_PER_SEGMENT, MAX_SEGMENTS};
+use crate::bounded::vector;
+use crate::constants::BEND_PER_SEGMENT;
 use crate::message::{Estimate, Sample, SegmentEstimate, SegmentUncertainty, Uncertainty};
 
 /// For an estimator of any number of segments; readings of segments that it does not have are left out.
@@ -28,7 +29,7 @@ impl Estimate {
                 end: [end.x.to_bits(), end.y.to_bits()],
             })
         };
-        Self { tick, segments: shape.iter().map(segment).take(MAX_SEGMENTS).collect() }
+        Self { tick, segments: vector(shape.iter().map(segment)) }
     }
 }
 
@@ -47,7 +48,7 @@ impl Uncertainty {
                 in_contact: contact.is_some_and(|contact| contact.in_contact),
             }
         };
-        Self { tick, segments: (0..segments.min(MAX_SEGMENTS)).map(segment).collect() }
+        Self { tick, segments: vector((0..segments).map(segment)) }
     }
 }
 

@@ -6,6 +6,7 @@
 //!
 //! | file | contents |
 //! |---|---|
+//! | `bounded.rs` | texts and vectors of limited length |
 //! | `constants.rs` | [`PROTOCOL_VERSION`], [`MAX_FRAME`], the largest arm's numbers |
 //! | `message.rs`, `request.rs`, `table_message.rs`, `conditions.rs` | messages, requests and replies |
 //! | `wire.rs`, `wire_conversions.rs` | fixed-width forms of the messages of every tick |
@@ -48,6 +49,7 @@
 #![no_std]
 
 mod body;
+mod bounded;
 mod conditions;
 mod constants;
 mod decode_error;
@@ -65,6 +67,7 @@ pub mod topic;
 mod wire;
 mod wire_conversions;
 
+pub use bounded::{Text, text, vector};
 pub use conditions::Conditions;
 pub use constants::{
     BEND_PER_SEGMENT, MAX_BEND_SENSORS, MAX_FRAME, MAX_REGULATORS, MAX_SEGMENTS, PROTOCOL_VERSION, TABLE_CHUNK_BYTES,

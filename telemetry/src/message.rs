@@ -9,26 +9,12 @@ use heapless::Vec;
 use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
 
+use crate::bounded::Text;
 use crate::conditions::Conditions;
 use crate::constants::{MAX_BEND_SENSORS, MAX_REGULATORS, MAX_SEGMENTS};
 use crate::request::{Reply, TareReport};
 use crate::table_message::{TableChunk, TableState};
 use crate::wire::{EstimateWire, SampleWire, UncertaintyWire};
-
-/// A short text, cut where it is too long.
-pub type Text<const N: usize> = heapless::String<N>;
-
-/// Cuts a text at N bytes.
-#[must_use]
-pub fn text<const N: usize>(whole: &str) -> Text<N> {
-    let mut text = Text::new();
-    for character in whole.chars() {
-        if text.push(character).is_err() {
-            break;
-        }
-    }
-    text
-}
 
 /// A message from the board.
 #[derive(Debug, Clone, PartialEq, Schema)]

@@ -4,9 +4,10 @@
 use serde::Deserialize;
 
 use crate::body::{read, write};
+use crate::bounded::{Text, text};
 use crate::message::{
     Actuation, Estimate, Event, Health, Hello, Message, PressureLimit, ResetCause, Sample, SensorHealth, SensorState,
-    Text, Uncertainty, text,
+    Uncertainty,
 };
 use crate::request::{Command, Reply, Request, RequestOutcome};
 use crate::topic;

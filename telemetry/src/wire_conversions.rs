@@ -4,6 +4,7 @@ use heapless::Vec;
 use postcard_schema::Schema;
 use postcard_schema::schema::NamedType;
 
+use crate::bounded::vector;
 use crate::constants::BEND_PER_SEGMENT;
 use crate::message::{Estimate, Sample, SegmentEstimate, SegmentUncertainty, Uncertainty};
 use crate::wire::{EstimateWire, SampleWire, UncertaintyWire};
@@ -34,7 +35,7 @@ impl From<Sample> for SampleWire {
             tare_epoch: sample.tare_epoch,
             bend_read: (mask(&sample.bend) as u16).to_le_bytes(),
             imu_read: mask(&sample.imu) as u8,
-            segments: bend.iter().zip(&sample.imu).map(segment).collect(),
+            segments: vector(bend.iter().zip(&sample.imu).map(segment)),
         }
     }
 }
@@ -66,7 +67,7 @@ impl From<Estimate> for EstimateWire {
         Self {
             tick: estimate.tick.to_le_bytes(),
             known: mask(&estimate.segments) as u8,
-            segments: estimate.segments.iter().map(|segment| segment.as_ref().map(bytes).unwrap_or_default()).collect(),
+            segments: vector(estimate.segments.iter().map(|segment| segment.as_ref().map(bytes).unwrap_or_default())),
         }
     }
 }
@@ -78,7 +79,7 @@ impl From<EstimateWire> for Estimate {
             let [theta, x, y] = segment.map(i32::from_le_bytes);
             known.next(SegmentEstimate { theta, end: [x, y] })
         };
-        Self { tick: u32::from_le_bytes(wire.tick), segments: wire.segments.iter().map(segment).collect() }
+        Self { tick: u32::from_le_bytes(wire.tick), segments: vector(wire.segments.iter().map(segment)) }
     }
 }
 
@@ -112,7 +113,7 @@ impl From<UncertaintyWire> for Uncertainty {
                 in_contact: in_contact.next(()).is_some(),
             }
         };
-        Self { tick: u32::from_le_bytes(wire.tick), segments: wire.segments.iter().map(segment).collect() }
+        Self { tick: u32::from_le_bytes(wire.tick), segments: vector(wire.segments.iter().map(segment)) }
     }
 }
 

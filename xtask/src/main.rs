@@ -6,6 +6,7 @@ mod board;
 mod commands;
 mod demo;
 mod dist;
+mod panics;
 mod pictures;
 mod results;
 mod style;
@@ -21,13 +22,16 @@ fn main() -> ExitCode {
         Some("accept") => accept::run(),
         Some("verify") => board::verify(),
         Some("bench") => bench::run(),
+        Some("panics") => panics::run(),
         Some("dist") => dist::run(),
         Some("results") => results::run(),
         Some("style") => style::run(),
         Some("commands") => commands::run(),
         Some("pictures") => pictures::run(),
-        _ => Err("usage: cargo xtask demo | verify | bench | dist | style | results | commands | pictures | accept"
-            .to_owned()),
+        _ => Err(
+            "usage: cargo xtask demo | verify | bench | panics | dist | style | results | commands | pictures | accept"
+                .to_owned(),
+        ),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

@@ -1,5 +1,6 @@
 //! [`Mono`] as a monotonic of RTIC.
 
+use rtic_time::Timebase;
 use rtic_time::fugit;
 use rtic_time::monotonic::TimerQueueBasedMonotonic;
 
@@ -11,6 +12,13 @@ impl TimerQueueBasedMonotonic for Mono {
     type Backend = Backend;
     type Instant = fugit::MonotonicTimerInstant<u64, TICK_HZ_U64>;
     type Duration = fugit::TimerDuration<u64, TICK_HZ_U64>;
+}
+
+impl Mono {
+    /// The instant so many microseconds after the start; one that is past the end of time is the last.
+    pub const fn instant(time_us: u64) -> <Self as Timebase>::Instant {
+        <Self as Timebase>::Instant::from_ticks(time_us.saturating_mul(TICK_HZ_U64 / 1_000_000))
+    }
 }
 
 const TICK_HZ_U64: u64 = TICK_HZ as u64;

@@ -31,6 +31,14 @@ pub trait Sealed {
     fn registers() -> &'static pac::twi0::RegisterBlock;
     fn shared() -> &'static Mutex<RefCell<Shared>>;
 
+    /// Runs `work` on the shared state in a critical section; `None` inside of another such `work`, of which there is none.
+    fn with_shared<T>(work: impl FnOnce(&mut Shared) -> T) -> Option<T> {
+        critical_section::with(|token| {
+            let mut shared = Self::shared().borrow(token).try_borrow_mut().ok()?;
+            Some(work(&mut shared))
+        })
+    }
+
     /// Returns whether both lines are high. PDSR shows the pads also while the TWI has them (datasheet 31.5.8).
     fn lines_are_high() -> bool {
         let lines = 1 << Self::SDA | 1 << Self::SCL;

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | `arithmetic` | the estimator's arithmetic and soft float, hashed over random inputs |
 //! | `interrupted` | the same while a fast interrupt strikes everywhere |
+//! | `panics` | functions that can panic, for the test that finds them; it is not run |
 //! | `preemption` | the order in which tasks of three priorities run |
 //! | `step` | the estimator's step and nothing else, for the benchmark |
 //! | `bias_filter` | the same with bias filter, contact and uncertainty |
