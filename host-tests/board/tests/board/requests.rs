@@ -1,7 +1,7 @@
 //! Requests over the serial line.
 
 use board_tests::{Board, UART};
-use rig_twin::{MAX_SEGMENTS, MotionProgram, Scenario};
+use rig_twin::{MAX_SEGMENTS, Scenario};
 use telemetry::{
     Command, Encoder, Event, MAX_FRAME, Message, PressureLimit, Rates, Refusal, Request, RequestOutcome, ResetCause,
     SetPressures, TareMode, protocol_2,
@@ -127,7 +127,9 @@ fn bytes_of_an_earlier_session_that_arrive_again_move_nothing() {
 #[test]
 fn a_disarm_vents_whatever_its_number_and_session() {
     let mut board = ready();
-    board.swing(&MotionProgram::new(Scenario::FreeSwing, 1), 1);
+    assert_eq!(board.request(Command::Arm), RequestOutcome::Ack);
+    let pressures = SetPressures { pressures_pa: [100_000; 6].into_iter().collect(), valid_ms: 1000 };
+    assert_eq!(board.request(Command::SetPressures(pressures)), RequestOutcome::Ack);
     assert!(!board.is_vented());
     board.send_again(&Request { id: 1, session: board.session() - 1, command: Command::Disarm });
     board.run_ms(30);
