@@ -8,9 +8,11 @@ use crate::memory_map::Memories;
 use crate::peripheral_map::{Directory, Slot};
 use sam3x_models::WarningLog;
 use sam3x_models::flash::{BANK, FLASH};
-use sam3x_models::model::{Cause, Context, Cycles, Peripheral, Signal, World};
+use sam3x_models::model::{Cause, Context, Cycles, Peripheral, Pin, Side, Signal, World};
 
 const NEVER: Cycles = Cycles::MAX;
+/// Offset of PIO_PDSR, the levels of the pins.
+const PDSR: u32 = 0x3C;
 
 /// All of the chip but its CPU, and the world on its pins.
 pub struct Chip<W> {
@@ -36,6 +38,8 @@ pub struct Chip<W> {
     signals: Vec<Signal>,
     master_clock_hz: u32,
     clocks: u64,
+    /// Lines of each PIO controller that belong to peripherals A and B.
+    given: [(u32, u32); 4],
     dwt: Dwt,
 }
 
@@ -63,6 +67,7 @@ impl<W: World> Chip<W> {
             signals: Vec::new(),
             master_clock_hz,
             clocks: 0,
+            given: [(0, 0); 4],
             dwt: Dwt::default(),
         }
     }
@@ -96,6 +101,7 @@ impl<W: World> Chip<W> {
             let (index, due) =
                 self.due.iter().copied().enumerate().min_by_key(|(_, due)| *due).expect("there are peripherals");
             self.now = self.now.max(due);
+            self.show_outputs(index);
             self.call(index, |model, context| model.advance(context));
             self.dispatch_signals(instructions);
             self.refresh(index);
@@ -112,6 +118,7 @@ impl<W: World> Chip<W> {
 
     /// Calls a model with its context.
     fn call<R>(&mut self, index: usize, run: impl FnOnce(&mut dyn Peripheral, &mut Context) -> R) -> R {
+        self.warnings.now = self.now;
         let mut context = Context {
             now: self.now,
             master_clock_hz: self.master_clock_hz,
@@ -159,14 +166,20 @@ impl<W: World> Chip<W> {
     fn dispatch(&mut self, signal: Signal, instructions: u64) {
         match signal {
             Signal::Tioa(_) | Signal::PwmEvent(_) => {
-                if let Some(adc) = self.directory.adc {
-                    self.send_signal(adc, signal);
+                for index in self.directory.triggered {
+                    self.send_signal(index, signal);
                 }
             }
             Signal::Flash(address, length) => self.memories.changed.push((address, length)),
             Signal::BootFlash(flash) => self.boots_from_flash = flash,
             Signal::Reset(cause) => self.reset = Some(cause),
-            Signal::Pins { .. } => (0..self.slots.len()).for_each(|index| self.send_signal(index, signal)),
+            Signal::Pins { port, a, b } => {
+                self.given[usize::from(port)] = (a, b);
+                self.send_to_all(signal);
+            }
+            Signal::SlowCrystal(_) => self.send_to_all(signal),
+            // The chip alone sends it, to one controller.
+            Signal::Outputs { .. } => {}
             Signal::PeripheralClocks(clocks) => {
                 let switched = |slot: &Slot| slot.clock_runs(self.clocks) != slot.clock_runs(clocks);
                 let switched: Vec<usize> =
@@ -176,9 +189,15 @@ impl<W: World> Chip<W> {
                         self.call(index, |model, context| model.advance(context));
                     }
                 }
-                self.clocks = clocks;
+                let before = std::mem::replace(&mut self.clocks, clocks);
                 for index in switched {
                     self.refresh(index);
+                }
+                for index in 0..self.slots.len() {
+                    if self.slots[index].sees_clock_change(before, clocks) {
+                        self.show_outputs(index);
+                        self.send_signal(index, signal);
+                    }
                 }
             }
             Signal::MasterClock(hz) => {
@@ -189,11 +208,40 @@ impl<W: World> Chip<W> {
                 }
                 self.master_clock_hz = hz;
                 self.clock.set_hz(instructions, hz);
-                for index in 0..self.slots.len() {
-                    self.send_signal(index, signal);
-                }
+                self.send_to_all(signal);
             }
         }
+    }
+
+    fn send_to_all(&mut self, signal: Signal) {
+        (0..self.slots.len()).for_each(|index| self.send_signal(index, signal));
+    }
+
+    /// Shows a PIO controller the levels at which peripherals drive its lines now.
+    fn show_outputs(&mut self, index: usize) {
+        let Some(port) = self.directory.pio.iter().position(|pio| *pio == index) else { return };
+        let (a, b) = self.given[port];
+        let (mut driven, mut levels) = (0, 0);
+        for line in (0..32_u8).filter(|line| (a | b) >> line & 1 != 0) {
+            let side = if a >> line & 1 != 0 { Side::A } else { Side::B };
+            if let Some(level) = self.output(Pin { port: port as u8, line }, side) {
+                driven |= 1 << line;
+                levels |= u32::from(level) << line;
+            }
+        }
+        self.call(index, |model, context| model.signal(Signal::Outputs { driven, levels }, context));
+    }
+
+    /// The level at which a peripheral drives a pin that belongs to it.
+    fn output(&mut self, pin: Pin, side: Side) -> Option<bool> {
+        let now = self.now;
+        let drives = |slot: &Slot| slot.model.output(pin, side, now).is_some();
+        let index = self.slots.iter().position(drives)?;
+        if self.slots[index].clock_runs(self.clocks) {
+            self.call(index, |model, context| model.advance(context));
+            self.refresh(index);
+        }
+        self.slots[index].model.output(pin, side, now)
     }
 
     /// Sends a signal to a model.
@@ -238,12 +286,17 @@ impl<W: World> Chip<W> {
                 });
                 value
             }
-            None => self.call(index, |model, context| {
-                if runs {
-                    model.advance(context);
+            None => {
+                if offset == PDSR {
+                    self.show_outputs(index);
                 }
-                model.read(offset, context) >> shift
-            }),
+                self.call(index, |model, context| {
+                    if runs {
+                        model.advance(context);
+                    }
+                    model.read(offset, context) >> shift
+                })
+            }
         };
         self.dispatch_signals(access.instructions);
         self.refresh(index);
@@ -258,10 +311,9 @@ impl<W: World> Chip<W> {
         let programs = access.store.is_some_and(|value| PROGRAMS.checked_shr(value & 0xFF).unwrap_or(0) & 1 != 0);
         let start = FLASH + bank as u32 * BANK;
         if offset == FCR && programs && (start..start + BANK).contains(&access.pc) {
-            let (name, pc) = (self.slots[index].name, access.pc);
-            self.warnings.warn_once(format!(
-                "{name}: the program at pc {pc:#010x} programs the bank it runs from: a real chip hangs"
-            ));
+            let name = self.slots[index].name;
+            self.warnings
+                .warn_once(format!("{name}: the program erases or writes the bank it runs from: a real chip hangs"));
         }
     }
 
@@ -290,13 +342,15 @@ impl<W: World> Chip<W> {
 impl<W: World> Bus for Chip<W> {
     fn access(&mut self, access: Access) -> Option<u32> {
         self.catch_up(self.clock.now(access.instructions), access.instructions);
+        self.warnings.now = self.now;
+        self.warnings.pc = Some(access.pc);
         let answer = self.answer(access);
         if answer.is_none() {
-            let Access { address, pc, .. } = access;
+            let address = access.address;
             let kind = if access.store.is_some() { "store to" } else { "load from" };
-            self.warnings
-                .warn_once(format!("bus fault: {kind} {address:#010x}, where nothing is mapped, at pc {pc:#010x}"));
+            self.warnings.warn_once(format!("bus fault: {kind} {address:#010x}, where nothing is mapped"));
         }
+        self.warnings.pc = None;
         answer
     }
 

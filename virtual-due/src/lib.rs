@@ -29,10 +29,11 @@ mod machine;
 mod memory;
 mod memory_map;
 mod peripheral_map;
+mod report;
 pub mod rig;
 
 pub use firmware_image::ImageError;
 pub use machine::{FLASH_BYTES, Machine, Reset};
+pub use report::Report;
 pub use rig::WiredRig;
-pub use sam3x_models::WarningLog;
 pub use sam3x_models::model::{self, CYCLES_PER_SECOND, Cause, Cycles};

@@ -4,6 +4,7 @@ use crate::chip::Chip;
 use crate::cpu::{Bus, Cpu, Stop};
 use crate::elf::Elf;
 use crate::engine::Engine;
+use crate::report::Report;
 use firmware_image::ImageError;
 use sam3x_models::flash::{BANK, FLASH};
 use sam3x_models::model::{Cause, Cycles, Memory, World};
@@ -173,6 +174,7 @@ impl<W: World> Machine<W> {
         self.resets.push(Reset { cause, at: self.now() });
         self.locked_up = false;
         let (stack_pointer, entry) = self.chip.memories.boot(&mut self.cpu, self.chip.boots_from_flash);
+        self.chip.warnings.now = self.now();
         if !self.chip.boots_from_flash {
             let text = "GPNVM bit 1 is clear: the boot loader in ROM runs and waits for a flash tool".to_owned();
             self.chip.warnings.warn_once(text);
@@ -183,10 +185,10 @@ impl<W: World> Machine<W> {
 
     fn report_lockup(&mut self) {
         if !self.locked_up {
-            let (pc, seconds) = (self.cpu.pc(), self.seconds());
-            self.chip.warnings.warn_once(format!(
-                "the core locked up at pc {pc:#010x}, {seconds:.6} s: a fault in a fault's handler"
-            ));
+            self.chip.warnings.now = self.now();
+            self.chip.warnings.pc = Some(self.cpu.pc());
+            self.chip.warnings.warn_once("the core locked up: a fault in a fault's handler".to_owned());
+            self.chip.warnings.pc = None;
         }
         self.locked_up = true;
     }
@@ -260,9 +262,10 @@ impl<W: World> Machine<W> {
         &self.resets
     }
 
-    /// Takes the warnings since the last call, about actions of the firmware that the models do not cover.
-    pub fn reports(&mut self) -> Vec<String> {
-        self.chip.warnings.take()
+    /// Takes the reports since the last call, about actions of the firmware that the models do not cover.
+    pub fn reports(&mut self) -> Vec<Report> {
+        let warnings = self.chip.warnings.take();
+        warnings.into_iter().map(|warning| Report::new(warning, &self.elf)).collect()
     }
 
     /// The devices on the pins.

@@ -47,6 +47,14 @@ pub enum Error {
         /// The system's error.
         error: std::io::Error,
     },
+    /// The file of the truth cannot be made.
+    #[error("{path}: {error}; --truth takes the name of a file to write")]
+    Truth {
+        /// The path as it was given.
+        path: String,
+        /// The system's error.
+        error: std::io::Error,
+    },
     /// The serial port cannot be opened.
     #[error("serial port: {0}")]
     Serial(#[from] std::io::Error),

@@ -5,18 +5,22 @@ mod error;
 #[cfg(unix)]
 mod fault_injection;
 mod flash_file;
+mod observation;
 #[cfg(unix)]
 mod pty;
 mod run;
 mod stdio;
+mod truth_file;
 
 use clap::{Parser, Subcommand, ValueEnum};
 use error::Error;
 use flash_file::FlashFile;
+use observation::{Expectations, Observer};
 use rig_twin::Scenario;
-use run::Run;
+use run::{Recorders, Run};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use truth_file::TruthFile;
 use virtual_due::{Machine, rig::WiredRig};
 
 /// An emulated Arduino Due with the simulated arm on its pins.
@@ -31,7 +35,8 @@ pub struct Cli {
 enum Command {
     /// Run a firmware. Reports, resets and a summary go to stderr.
     ///
-    /// Exit status: 0 at the end of the run, 1 if the core locked up and nothing reset it, 2 if there is no such firmware.
+    /// Exit status: 0 at the end of the run, 1 if the core locked up and nothing reset it or if the run has failed by
+    /// `--until`, `--fail-on` or `--strict`, 2 if there is no such firmware.
     Run(Arguments),
 }
 
@@ -64,6 +69,11 @@ struct Arguments {
     /// Connection of the programming port.
     #[arg(long, value_enum, default_value = "stdio")]
     serial: Serial,
+    /// File of the twin's truth, a CSV with a row every 10 ms: true pose of each segment's end, set-points of the regulators.
+    #[arg(long, value_name = "FILE.csv")]
+    truth: Option<PathBuf>,
+    #[command(flatten)]
+    expectations: Expectations,
 }
 
 /// Pace of virtual time.
@@ -100,8 +110,14 @@ impl Cli {
             let shown = path.display().to_string();
             FlashFile::load(path, &mut machine).map_err(|error| Error::Flash { path: shown, error })
         });
+        let truth = arguments.truth.map(|path| {
+            let shown = path.display().to_string();
+            TruthFile::create(&path, machine.world()).map_err(|error| Error::Truth { path: shown, error })
+        });
+        let observer = Observer::new(&arguments.expectations);
+        let recorders = Recorders { flash: flash.transpose()?, truth: truth.transpose()?, observer };
         let paced = arguments.speed == Speed::Real;
-        let mut run = Run::new(machine, flash.transpose()?, arguments.seconds, paced);
+        let mut run = Run::new(machine, recorders, arguments.seconds, paced);
         match arguments.serial {
             Serial::Stdio => run.execute(&mut stdio::Stdio::new()?, |_| ())?,
             #[cfg(unix)]

@@ -1,6 +1,8 @@
 //! A run: the board in slices of time, with input and output between them.
 
 use super::flash_file::FlashFile;
+use super::observation::{Observer, Verdict};
+use super::truth_file::TruthFile;
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -24,6 +26,9 @@ pub trait Line {
 
     /// Sends bytes of the board; false if the reader has gone.
     fn send(&mut self, bytes: &[u8]) -> std::io::Result<bool>;
+
+    /// Ends a line of output that has begun where the reports go, too, so that a report has a line of its own.
+    fn end_line(&mut self) {}
 }
 
 /// Input of the serial line.
@@ -35,10 +40,21 @@ pub struct Received {
     pub bytes: Vec<u8>,
 }
 
+/// What a run writes and is watched for.
+#[derive(Default)]
+pub struct Recorders {
+    /// The file of the flash.
+    pub flash: Option<FlashFile>,
+    /// The file of the truth.
+    pub truth: Option<TruthFile>,
+    /// The watcher.
+    pub observer: Observer,
+}
+
 /// A board that runs a firmware.
 pub struct Run {
     machine: Machine<WiredRig>,
-    flash: Option<FlashFile>,
+    recorders: Recorders,
     end: Option<Cycles>,
     paced: bool,
     began: Instant,
@@ -48,19 +64,20 @@ pub struct Run {
 
 impl Run {
     /// A run of `seconds`, or without end; at most as fast as real time if it is `paced`.
-    pub fn new(machine: Machine<WiredRig>, flash: Option<FlashFile>, seconds: Option<f64>, paced: bool) -> Self {
+    pub fn new(machine: Machine<WiredRig>, recorders: Recorders, seconds: Option<f64>, paced: bool) -> Self {
         let end = seconds.map(|seconds| (seconds * CYCLES_PER_SECOND as f64) as Cycles);
-        Self { machine, flash, end, paced, began: Instant::now(), resets_printed: 0, locked_up: None }
+        Self { machine, recorders, end, paced, began: Instant::now(), resets_printed: 0, locked_up: None }
     }
 
-    /// Runs to the end, or until Ctrl-C, or until the reader has gone; calls `inject` before every slice.
+    /// Runs to the end, or until Ctrl-C, a verdict, or until the reader has gone; calls `inject` before every slice.
     pub fn execute(&mut self, line: &mut dyn Line, mut inject: impl FnMut(&mut WiredRig)) -> std::io::Result<()> {
         let stop = Arc::new(AtomicBool::new(false));
         let flag = Arc::clone(&stop);
         ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed)).map_err(std::io::Error::other)?;
         let end = self.end.unwrap_or(Cycles::MAX);
         let mut now = 0;
-        while now < end && !stop.load(Ordering::Relaxed) && !self.is_locked_up_for_good() {
+        self.keep_truth(now)?;
+        while now < end && !stop.load(Ordering::Relaxed) && !self.is_over() {
             let Received { opened, bytes } = line.receive()?;
             if opened {
                 self.machine.press_reset();
@@ -72,21 +89,34 @@ impl Run {
             now = end.min(now + SLICE);
             self.machine.run_until(now);
             // After a reset the board may say what its flash holds: the file must hold it, too.
-            if self.print_reports() || now.is_multiple_of(FLASH_PERIOD) {
+            if self.print_reports(line) || now.is_multiple_of(FLASH_PERIOD) {
                 self.keep_flash()?;
             }
             let sent: Vec<u8> =
                 self.machine.world_mut().take_transmitted(PORT).into_iter().map(|(_, byte)| byte).collect();
+            self.recorders.observer.sent(&sent);
+            self.keep_truth(now)?;
             if !line.send(&sent)? {
                 break;
             }
             self.pace(now);
         }
+        line.end_line();
+        self.recorders.truth.as_mut().map_or(Ok(()), TruthFile::finish)?;
         self.keep_flash()
     }
 
     fn keep_flash(&mut self) -> std::io::Result<()> {
-        self.flash.as_mut().map_or(Ok(()), |flash| flash.keep(&self.machine))
+        self.recorders.flash.as_mut().map_or(Ok(()), |flash| flash.keep(&self.machine))
+    }
+
+    fn keep_truth(&mut self, now: Cycles) -> std::io::Result<()> {
+        self.recorders.truth.as_mut().map_or(Ok(()), |truth| truth.write(now, self.machine.world_mut()))
+    }
+
+    /// True if there is a verdict, or nothing left to run.
+    fn is_over(&mut self) -> bool {
+        self.recorders.observer.verdict().is_some() || self.is_locked_up_for_good()
     }
 
     /// True if the core has been locked up for longer than any watchdog takes.
@@ -100,12 +130,15 @@ impl Run {
     }
 
     /// Prints what has happened; returns true if there was a reset.
-    fn print_reports(&mut self) -> bool {
+    fn print_reports(&mut self, line: &mut dyn Line) -> bool {
         for report in self.machine.reports() {
+            line.end_line();
             eprintln!("{report}");
+            self.recorders.observer.reported();
         }
         for reset in &self.machine.resets()[self.resets_printed..] {
-            eprintln!("reset at {:.6} s: {:?}", seconds(reset.at), reset.cause);
+            line.end_line();
+            eprintln!("{:.6} s: reset: {:?}", seconds(reset.at), reset.cause);
         }
         let before = std::mem::replace(&mut self.resets_printed, self.machine.resets().len());
         before < self.resets_printed
@@ -132,7 +165,14 @@ impl Run {
             machine.resets().len(),
             machine.pc()
         );
-        if machine.locked_up() { ExitCode::FAILURE } else { ExitCode::SUCCESS }
+        match self.recorders.observer.final_verdict() {
+            Verdict::Reached if machine.locked_up() => ExitCode::FAILURE,
+            Verdict::Reached => ExitCode::SUCCESS,
+            Verdict::Failed(reason) => {
+                eprintln!("failed: {reason}");
+                ExitCode::FAILURE
+            }
+        }
     }
 }
 

@@ -1,5 +1,5 @@
 use super::Pwm;
-use crate::model::{Peripheral, Signal};
+use crate::model::{Peripheral, Pin, Side, Signal};
 use crate::test_support::Bench;
 
 const CLK: u32 = 0x00;
@@ -228,4 +228,15 @@ fn protected_group_refuses_writes() {
     bench.run(200);
     assert_eq!(bench.read(cprd(7)), 100);
     assert_eq!(bench.read(WPSR), (0x2F0 << 16) | 1 << 7 | 1 << 3);
+}
+
+#[test]
+fn level_of_a_low_side_follows_the_period() {
+    let low_side = Pin { port: 2, line: 24 };
+    for (mode, levels) in [(0, [true, true, false, false]), (CPOL, [false, false, true, true])] {
+        let bench = running(7, mode);
+        let seen = [0, 24, 25, 99].map(|clock| bench.model.output(low_side, Side::B, clock));
+        assert_eq!(seen, levels.map(Some), "{mode:#x}");
+    }
+    assert_eq!(running(7, 0).model.output(low_side, Side::A, 0), None);
 }
