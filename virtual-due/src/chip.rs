@@ -6,11 +6,12 @@ use crate::dwt::Dwt;
 use crate::engine::DWT;
 use crate::memory_map::Memories;
 use crate::peripheral_map::{Directory, Slot};
+use crate::pins::{Pins, WiredWorld};
 use sam3x_models::WarningLog;
 use sam3x_models::flash::{BANK, FLASH};
-use sam3x_models::model::{Cause, Context, Cycles, Peripheral, Pin, Side, Signal, World};
+use sam3x_models::model::{Cause, Context, Cycles, Peripheral, Signal, World};
 
-const NEVER: Cycles = Cycles::MAX;
+pub const NEVER: Cycles = Cycles::MAX;
 /// Offset of PIO_PDSR, the levels of the pins.
 const PDSR: u32 = 0x3C;
 
@@ -26,20 +27,24 @@ pub struct Chip<W> {
     pub boots_from_flash: bool,
     /// Time by which the CPU returns.
     pub limit: Cycles,
-    directory: Directory,
-    slots: Vec<Slot>,
+    /// Wires between pins, and a record of their changes.
+    pub pins: Pins,
+    /// The next change of a watched output.
+    pub next_edge: Cycles,
+    pub(crate) directory: Directory,
+    pub(crate) slots: Vec<Slot>,
     // For each slot, the time of its next event, and its interrupt lines.
     due: Vec<Cycles>,
     lines: Vec<u32>,
     earliest: Cycles,
     // The latest time at which a model was called.
-    now: Cycles,
+    pub(crate) now: Cycles,
     changed_lines: Vec<(u16, bool)>,
     signals: Vec<Signal>,
     master_clock_hz: u32,
-    clocks: u64,
+    pub(crate) clocks: u64,
     /// Lines of each PIO controller that belong to peripherals A and B.
-    given: [(u32, u32); 4],
+    pub(crate) given: [(u32, u32); 4],
     dwt: Dwt,
 }
 
@@ -57,6 +62,8 @@ impl<W: World> Chip<W> {
             reset: None,
             boots_from_flash: true,
             limit: 0,
+            pins: Pins::default(),
+            next_edge: NEVER,
             directory: Directory::new(&slots),
             due: vec![NEVER; slots.len()],
             lines: vec![0; slots.len()],
@@ -88,16 +95,22 @@ impl<W: World> Chip<W> {
             self.lines[index] = 0;
             self.refresh(index);
         }
+        self.follow_outputs(instructions);
     }
 
     /// Time of the next event of any model.
     pub fn next_event(&self) -> Cycles {
-        self.earliest
+        self.earliest.min(self.next_edge)
     }
 
     /// Advances the models to `now`, each event at its own time.
     pub fn catch_up(&mut self, now: Cycles, instructions: u64) {
-        while self.earliest <= now {
+        while self.next_event() <= now {
+            if self.next_edge <= self.earliest {
+                self.now = self.now.max(self.next_edge);
+                self.follow_outputs(instructions);
+                continue;
+            }
             let (index, due) =
                 self.due.iter().copied().enumerate().min_by_key(|(_, due)| *due).expect("there are peripherals");
             self.now = self.now.max(due);
@@ -112,18 +125,20 @@ impl<W: World> Chip<W> {
                 self.due[index] = self.now + 1;
                 self.find_earliest();
             }
+            self.follow_outputs(instructions);
         }
         self.now = self.now.max(now);
     }
 
     /// Calls a model with its context.
-    fn call<R>(&mut self, index: usize, run: impl FnOnce(&mut dyn Peripheral, &mut Context) -> R) -> R {
+    pub(crate) fn call<R>(&mut self, index: usize, run: impl FnOnce(&mut dyn Peripheral, &mut Context) -> R) -> R {
         self.warnings.now = self.now;
+        let mut wired = WiredWorld { world: &mut self.world, pins: &mut self.pins };
         let mut context = Context {
             now: self.now,
             master_clock_hz: self.master_clock_hz,
             memory: &mut self.memories,
-            world: &mut self.world,
+            world: &mut wired,
             warnings: &mut self.warnings,
             signals: &mut self.signals,
         };
@@ -131,7 +146,7 @@ impl<W: World> Chip<W> {
     }
 
     /// Updates a model's lines and next event after it was called.
-    fn refresh(&mut self, index: usize) {
+    pub(crate) fn refresh(&mut self, index: usize) {
         let slot = &self.slots[index];
         let lines = slot.model.interrupts();
         let mut changes = lines ^ self.lines[index];
@@ -155,7 +170,7 @@ impl<W: World> Chip<W> {
     }
 
     /// Dispatches the signals of the models.
-    fn dispatch_signals(&mut self, instructions: u64) {
+    pub(crate) fn dispatch_signals(&mut self, instructions: u64) {
         while !self.signals.is_empty() {
             for signal in std::mem::take(&mut self.signals) {
                 self.dispatch(signal, instructions);
@@ -178,8 +193,8 @@ impl<W: World> Chip<W> {
                 self.send_to_all(signal);
             }
             Signal::SlowCrystal(_) => self.send_to_all(signal),
-            // The chip alone sends it, to one controller.
-            Signal::Outputs { .. } => {}
+            // The chip itself sends these.
+            Signal::Outputs { .. } | Signal::WiresMoved => {}
             Signal::PeripheralClocks(clocks) => {
                 let switched = |slot: &Slot| slot.clock_runs(self.clocks) != slot.clock_runs(clocks);
                 let switched: Vec<usize> =
@@ -217,35 +232,8 @@ impl<W: World> Chip<W> {
         (0..self.slots.len()).for_each(|index| self.send_signal(index, signal));
     }
 
-    /// Shows a PIO controller the levels at which peripherals drive its lines now.
-    fn show_outputs(&mut self, index: usize) {
-        let Some(port) = self.directory.pio.iter().position(|pio| *pio == index) else { return };
-        let (a, b) = self.given[port];
-        let (mut driven, mut levels) = (0, 0);
-        for line in (0..32_u8).filter(|line| (a | b) >> line & 1 != 0) {
-            let side = if a >> line & 1 != 0 { Side::A } else { Side::B };
-            if let Some(level) = self.output(Pin { port: port as u8, line }, side) {
-                driven |= 1 << line;
-                levels |= u32::from(level) << line;
-            }
-        }
-        self.call(index, |model, context| model.signal(Signal::Outputs { driven, levels }, context));
-    }
-
-    /// The level at which a peripheral drives a pin that belongs to it.
-    fn output(&mut self, pin: Pin, side: Side) -> Option<bool> {
-        let now = self.now;
-        let drives = |slot: &Slot| slot.model.output(pin, side, now).is_some();
-        let index = self.slots.iter().position(drives)?;
-        if self.slots[index].clock_runs(self.clocks) {
-            self.call(index, |model, context| model.advance(context));
-            self.refresh(index);
-        }
-        self.slots[index].model.output(pin, side, now)
-    }
-
     /// Sends a signal to a model.
-    fn send_signal(&mut self, index: usize, signal: Signal) {
+    pub(crate) fn send_signal(&mut self, index: usize, signal: Signal) {
         let runs = self.slots[index].clock_runs(self.clocks);
         self.call(index, |model, context| {
             if runs {
@@ -300,6 +288,9 @@ impl<W: World> Chip<W> {
         };
         self.dispatch_signals(access.instructions);
         self.refresh(index);
+        if access.store.is_some() {
+            self.follow_outputs(access.instructions);
+        }
         answer
     }
 
@@ -324,6 +315,13 @@ impl<W: World> Chip<W> {
         let bank = usize::from(address >= FLASH + BANK);
         self.call(self.directory.eefc[bank], |model, context| model.write(address, value, context));
         Some(value)
+    }
+
+    /// Accesses a word of a peripheral's registers between instructions; `None` where there is none.
+    pub fn debugger_access(&mut self, address: u32, store: Option<u32>, pc: u32, instructions: u64) -> Option<u32> {
+        let index = self.directory.find(address).filter(|_| address.is_multiple_of(4))?;
+        self.catch_up(self.clock.now(instructions), instructions);
+        Some(self.register(index, Access { address, bytes: 4, store, pc, instructions }))
     }
 
     fn answer(&mut self, access: Access) -> Option<u32> {
@@ -371,7 +369,7 @@ impl<W: World> Bus for Chip<W> {
             return None;
         }
         let event = event.map_or(NEVER, |event| self.clock.at_core_cycles(event));
-        let next = self.earliest.min(self.limit).min(event);
+        let next = self.next_event().min(self.limit).min(event);
         let left = self.clock.instructions_until(instructions, next);
         (left > 0).then(|| u32::try_from(left).unwrap_or(u32::MAX))
     }

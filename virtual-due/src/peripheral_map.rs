@@ -120,6 +120,8 @@ pub struct Directory {
     pub eefc: [usize; 2],
     /// PIOA to PIOD.
     pub pio: [usize; 4],
+    /// The peripherals that sample pins: these, and the timers.
+    pub samplers: [usize; 7],
 }
 
 impl Directory {
@@ -132,6 +134,7 @@ impl Directory {
             triggered: ["ADC", "DACC"].map(named),
             eefc: [named("EEFC0"), named("EEFC1")],
             pio: ["PIOA", "PIOB", "PIOC", "PIOD"].map(named),
+            samplers: ["PIOA", "PIOB", "PIOC", "PIOD", "TC0", "TC1", "TC2"].map(named),
         };
         for (index, slot) in slots.iter().enumerate() {
             let (table, start, step): (&mut [u8], u32, u32) = if slot.base < SYSTEM {

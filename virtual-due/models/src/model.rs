@@ -47,6 +47,12 @@ pub trait Peripheral {
         None
     }
 
+    /// An instant no later than the next change of such an output, and later than `now`; `None`: it does not change.
+    fn next_output_edge(&self, pin: Pin, side: Side, now: Cycles) -> Option<Cycles> {
+        let _ = (pin, side, now);
+        None
+    }
+
     /// Receives a signal from elsewhere in the chip.
     fn signal(&mut self, signal: Signal, context: &mut Context) {
         let _ = (signal, context);
@@ -103,6 +109,8 @@ pub enum Signal {
         /// Their levels.
         levels: u32,
     },
+    /// Pins that are wired to outputs have other levels now.
+    WiresMoved,
     /// The slow clock's crystal was selected, and is the slow clock from this instant on.
     SlowCrystal(Cycles),
     /// The chip is reset.

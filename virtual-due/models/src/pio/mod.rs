@@ -2,7 +2,7 @@
 
 mod interrupts;
 
-use crate::model::{CYCLES_PER_SECOND, Context, Cycles, Peripheral, Pin, Signal};
+use crate::model::{CYCLES_PER_SECOND, Context, Cycles, Peripheral, Pin, Side, Signal};
 use crate::write_protection::WriteProtection;
 use interrupts::Interrupts;
 
@@ -256,9 +256,16 @@ impl Peripheral for Pio {
                 self.clock_runs = clocks >> (FIRST_IDENTIFIER + self.port) & 1 != 0;
                 self.sample_pins(context);
             }
+            Signal::WiresMoved if self.watches_pins() => self.sample_pins(context),
             Signal::Outputs { driven, levels } => self.outputs_of_peripherals = (driven, levels),
             _ => {}
         }
+    }
+
+    /// The level at which the controller itself drives a pin.
+    fn output(&self, pin: Pin, _side: Side, _now: Cycles) -> Option<bool> {
+        let is_driven = pin.port == self.port && self.driven() >> pin.line & 1 != 0;
+        is_driven.then_some(self.levels >> pin.line & 1 != 0)
     }
 
     fn next_event(&self) -> Option<Cycles> {

@@ -237,6 +237,12 @@ impl Peripheral for Pwm {
         (pin.port == PIOC && side == Side::B).then(|| self.low_side_level(index, now))
     }
 
+    fn next_output_edge(&self, pin: Pin, side: Side, now: Cycles) -> Option<Cycles> {
+        let index = LOW_SIDE_LINES.iter().position(|line| *line == u32::from(pin.line))?;
+        let is_output = pin.port == PIOC && side == Side::B;
+        is_output.then(|| self.channels[index].next_edge(self.timing(index), now))?
+    }
+
     fn interrupt(&self) -> bool {
         self.channel_status & self.channel_mask != 0 || self.update_status() & self.update_mask != 0
     }

@@ -86,6 +86,11 @@ impl Tc {
         counted.into_iter().chain(event).min()
     }
 
+    /// An instant no later than the next value at which a channel's counter changes its outputs.
+    pub(super) fn next_meeting(&self, index: usize) -> Option<Cycles> {
+        self.earliest_time_of(index, self.channels[index].ticks_to_edges(1)?, 0)
+    }
+
     /// A lower bound of the instant of a channel's later tick, `depth` channels behind the first; `None` if its clock does
     /// not run.
     fn earliest_time_of(&self, index: usize, ticks: u64, depth: usize) -> Option<Cycles> {

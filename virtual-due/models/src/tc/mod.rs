@@ -175,6 +175,13 @@ impl Peripheral for Tc {
         self.signal_edges(context);
     }
 
+    fn next_output_edge(&self, pin: Pin, side: Side, now: Cycles) -> Option<Cycles> {
+        let mut pins = PINS[3 * self.block..].iter().take(3);
+        let index = pins.position(|(tioa, tiob)| pin == *tioa || pin == *tiob)?;
+        self.output(pin, side, now)?;
+        self.next_meeting(index)
+    }
+
     fn output(&self, pin: Pin, side: Side, _now: Cycles) -> Option<bool> {
         let expected = if pin.port == 0 { Side::A } else { Side::B };
         let mut outputs = PINS[3 * self.block..].iter().zip(&self.channels).filter(|_| side == expected);
