@@ -9,7 +9,20 @@ use crate::model::{Context, Cycles};
 /// TIOA of the channel that TC_BMR's field of a line, XC0…2, selects as 2 and as 3; 0 is the pin TCLK, 1 nothing.
 const SOURCES: [[usize; 2]; 3] = [[1, 2], [0, 2], [0, 1]];
 
+/// The bits of TC_BMR of which one is set where TIOA is a line.
+const CHAINS: u32 = 0b10_1010;
+
 impl Tc {
+    fn is_chained(&self) -> bool {
+        self.block_mode & CHAINS != 0
+    }
+
+    /// Writes TC_BMR. Edges before are not counted.
+    pub(super) fn set_block_mode(&mut self, value: u32) {
+        self.block_mode = value;
+        self.levels = self.channels.each_ref().map(|channel| channel.tioa);
+    }
+
     /// The channel whose TIOA is the line XC0…2 that a channel is connected to. TC_BMR switches XC0 of channel 0, XC1 of
     /// channel 1 and XC2 of channel 2; the other lines are the pins TCLK0…2 (datasheet, figure 36-2).
     fn source(&self, index: usize, line: usize) -> Option<usize> {
@@ -37,7 +50,7 @@ impl Tc {
 
     /// Advances the channels to now.
     pub(super) fn advance_channels(&mut self, context: &Context) {
-        if (0..3).any(|index| self.clock_source(index).or(self.event_source(index)).is_some()) {
+        if self.is_chained() {
             self.advance_in_order(context.now);
         }
         for channel in &mut self.channels {
@@ -61,7 +74,10 @@ impl Tc {
     /// Passes changes of each TIOA to the channels that it clocks. This ends: a channel counts edges of one direction, and
     /// two edges in one direction do not follow each other.
     pub(super) fn count_edges(&mut self, at: Cycles) {
-        while let Some(source) = (0..3).find(|index| self.channels[*index].tioa != self.levels[*index]) {
+        let changed = |tc: &Self| (0..3).find(|index| tc.channels[*index].tioa != tc.levels[*index]);
+        while self.is_chained()
+            && let Some(source) = changed(self)
+        {
             let level = self.channels[source].tioa;
             self.levels[source] = level;
             for index in 0..3 {

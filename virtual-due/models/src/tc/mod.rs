@@ -112,7 +112,7 @@ impl Tc {
                 }
             }
             BMR if self.protection.permits(offset) => {
-                self.block_mode = value;
+                self.set_block_mode(value);
                 if value & QDEN != 0 {
                     context.warnings.unmodelled(self.name(), offset);
                 }
