@@ -317,7 +317,7 @@ impl<W: World> Chip<W> {
         Some(value)
     }
 
-    /// Accesses a word of a peripheral's registers between instructions; `None` where there is none.
+    /// Accesses a word of a peripheral's registers between instructions; `None` at an address without one.
     pub fn debugger_access(&mut self, address: u32, store: Option<u32>, pc: u32, instructions: u64) -> Option<u32> {
         let index = self.directory.find(address).filter(|_| address.is_multiple_of(4))?;
         self.catch_up(self.clock.now(instructions), instructions);

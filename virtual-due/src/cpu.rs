@@ -49,7 +49,7 @@ pub trait Cpu {
     /// [`debugger_description`]: Self::debugger_description
     fn register(&self, number: usize) -> Option<u32>;
 
-    /// Writes the register that GDB numbers `number`; false if there is none.
+    /// Writes the register that GDB numbers `number`; false for an unknown number.
     fn set_register(&mut self, number: usize, value: u32) -> bool;
 
     /// GDB's description of the registers.

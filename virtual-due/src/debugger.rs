@@ -73,7 +73,7 @@ impl<W: World> Machine<W> {
         self.cpu.register(number)
     }
 
-    /// Writes a register by GDB's number; false if there is none.
+    /// Writes a register by GDB's number; false for an unknown number.
     pub fn set_register(&mut self, number: usize, value: u32) -> bool {
         self.cpu.set_register(number, value)
     }

@@ -47,7 +47,7 @@ pub struct Machine<W> {
     // The world may have been changed since the last instruction.
     touched: bool,
     pub(crate) breakpoints: BTreeSet<u32>,
-    // Where a debugger has seen the CPU stop: its breakpoint there does not stop it again.
+    // Address at which a debugger has seen the CPU stop: its breakpoint there does not stop it again.
     pub(crate) stopped_at: Option<u32>,
 }
 

@@ -68,7 +68,7 @@ pub enum Error {
     /// The debugger's connection, or the run under the debugger.
     #[error("GDB at {address}: {error}")]
     Gdb {
-        /// Where the debugger is waited for.
+        /// Address at which the debugger is awaited.
         address: SocketAddr,
         /// The system's error.
         error: std::io::Error,

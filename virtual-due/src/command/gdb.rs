@@ -30,7 +30,7 @@ const PC: usize = 15;
 /// Registers of the core itself.
 const CORE: std::ops::Range<u32> = 0xE000_0000..0xE010_0000;
 
-/// Waits for GDB at an address, and runs the board as GDB says; without GDB, to its end.
+/// Waits for GDB at an address, and runs the board under its control; after a detach, to its end.
 ///
 /// # Errors
 /// Those of the network and of the run.
@@ -275,7 +275,7 @@ impl Arch for CortexM3 {
     type RegId = ();
 }
 
-/// The stub's loop: the board runs in slices, and the connection is looked at between them.
+/// The stub's loop: the board runs in slices, and the connection is polled between them.
 struct Loop<'a>(PhantomData<&'a ()>);
 
 impl<'a> BlockingEventLoop for Loop<'a> {

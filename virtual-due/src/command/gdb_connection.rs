@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use gdbstub::conn::{Connection, ConnectionExt};
 
-/// Time between two looks at the flag of Ctrl-C.
+/// Period at which the flag of Ctrl-C is polled.
 const WAIT: Duration = Duration::from_millis(50);
 
 /// A connection by TCP.
@@ -41,7 +41,7 @@ impl GdbConnection {
         Ok(None)
     }
 
-    /// The next byte; `None` if there is none within the time-out, or at once.
+    /// The next byte; `None` if it does not arrive within the time-out, or at once on a connection that does not block.
     fn receive(&mut self) -> io::Result<Option<u8>> {
         let mut byte = [0];
         match Read::read(&mut self.stream, &mut byte) {

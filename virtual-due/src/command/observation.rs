@@ -1,4 +1,4 @@
-//! What a run is watched for: texts in its serial output, and reports.
+//! Verdict of a run, by texts in its serial output and by reports.
 
 use clap::Args;
 
@@ -17,7 +17,7 @@ pub struct Expectations {
     pub strict: bool,
 }
 
-/// End of a run that is watched.
+/// Verdict of a run.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Verdict {
     /// The text of `--until` was sent.
@@ -26,7 +26,7 @@ pub enum Verdict {
     Failed(String),
 }
 
-/// The watcher of a run.
+/// Observer of a run.
 #[derive(Debug, Default)]
 pub struct Observer {
     until: Option<Search>,
@@ -36,7 +36,7 @@ pub struct Observer {
 }
 
 impl Observer {
-    /// A watcher for these expectations.
+    /// An observer for these expectations.
     pub fn new(expectations: &Expectations) -> Self {
         let search = |text: &Option<String>| text.as_deref().map(Search::new);
         let Expectations { until, fail_on, strict } = expectations;

@@ -41,7 +41,7 @@ pub struct Received {
     pub bytes: Vec<u8>,
 }
 
-/// What a run writes and is watched for.
+/// Files that a run writes, and its observer.
 #[derive(Default)]
 pub struct Recorders {
     /// The file of the flash.
@@ -50,7 +50,7 @@ pub struct Recorders {
     pub truth: Option<TruthFile>,
     /// The file of the pins' changes.
     pub pins: Option<PinsFile>,
-    /// The watcher.
+    /// The observer of the run.
     pub observer: Observer,
 }
 
@@ -70,7 +70,7 @@ pub struct Run {
     stop: Arc<AtomicBool>,
 }
 
-/// What an advance has come to.
+/// Result of an advance.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Progress {
     /// The end of a slice.
@@ -207,7 +207,7 @@ impl Run {
         Arc::clone(&self.stop)
     }
 
-    /// Goes on after a debugger had the board: real time begins to count anew.
+    /// Continues after a debugger had stopped the board: real time is counted from now.
     pub fn resume(&mut self) {
         let passed = Duration::from_secs_f64(self.machine.seconds());
         self.began = Instant::now().checked_sub(passed).unwrap_or_else(Instant::now);

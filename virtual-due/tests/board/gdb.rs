@@ -85,7 +85,7 @@ impl Debugger {
 
 impl Drop for Debugger {
     fn drop(&mut self) {
-        // It may have ended by itself.
+        // It may have ended.
         let _ = self.board.kill();
         let _ = self.board.wait();
     }

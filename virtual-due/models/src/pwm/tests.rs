@@ -240,3 +240,17 @@ fn level_of_a_low_side_follows_the_period() {
     }
     assert_eq!(running(7, 0).model.output(low_side, Side::A, 0), None);
 }
+
+#[test]
+fn each_change_of_a_low_side_in_a_period_is_an_edge() {
+    let low_side = Pin { port: 2, line: 24 };
+    for (mode, period, changes) in [(0, 100, vec![25]), (CPOL, 100, vec![25]), (CALG, 200, vec![25, 176])] {
+        let model = running(7, mode).model;
+        let level = |at: u64| model.output(low_side, Side::B, at);
+        let edge = |now: &u64| model.next_output_edge(low_side, Side::B, *now);
+        let edges = std::iter::successors(edge(&0), edge).take_while(|at| *at < period);
+        let seen: Vec<u64> = edges.filter(|at| level(*at) != level(at - 1)).collect();
+        assert_eq!(seen, changes, "{mode:#x}");
+        assert_eq!((1..period).filter(|at| level(*at) != level(at - 1)).collect::<Vec<_>>(), changes, "{mode:#x}");
+    }
+}
