@@ -1,13 +1,12 @@
 //! Warnings about the firmware's use of the emulated board.
 
-use crate::model::Cycles;
 use std::collections::BTreeSet;
 
 /// A warning, and when and where the firmware caused it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Warning {
-    /// Board time.
-    pub at: Cycles,
+    /// Board time, cycles of 84 MHz since power-on.
+    pub at: u64,
     /// Address of the instruction whose access caused it; `None`: no access did.
     pub pc: Option<u32>,
     /// The text, without a full stop.
@@ -17,8 +16,8 @@ pub struct Warning {
 /// Warnings about actions of the firmware that the emulated board does not model faithfully, each once.
 #[derive(Debug, Default)]
 pub struct WarningLog {
-    /// Time of the warnings that follow.
-    pub now: Cycles,
+    /// Time of the warnings that follow, cycles of 84 MHz since power-on.
+    pub now: u64,
     /// Address of the instruction that accesses the chip now.
     pub pc: Option<u32>,
     unmodelled: BTreeSet<(&'static str, u32)>,
