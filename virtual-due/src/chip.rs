@@ -6,11 +6,14 @@ use crate::dwt::Dwt;
 use crate::engine::DWT;
 use crate::memory_map::Memories;
 use crate::peripheral_map::{Directory, Slot};
+use crate::pins::{Pins, WiredWorld};
 use sam3x_models::WarningLog;
 use sam3x_models::flash::{BANK, FLASH};
 use sam3x_models::model::{Cause, Context, Cycles, Peripheral, Signal, World};
 
-const NEVER: Cycles = Cycles::MAX;
+pub const NEVER: Cycles = Cycles::MAX;
+/// Offset of PIO_PDSR, the levels of the pins.
+const PDSR: u32 = 0x3C;
 
 /// All of the chip but its CPU, and the world on its pins.
 pub struct Chip<W> {
@@ -24,18 +27,24 @@ pub struct Chip<W> {
     pub boots_from_flash: bool,
     /// Time by which the CPU returns.
     pub limit: Cycles,
-    directory: Directory,
-    slots: Vec<Slot>,
+    /// Wires between pins, and a record of their changes.
+    pub pins: Pins,
+    /// The next change of a watched output.
+    pub next_edge: Cycles,
+    pub(crate) directory: Directory,
+    pub(crate) slots: Vec<Slot>,
     // For each slot, the time of its next event, and its interrupt lines.
     due: Vec<Cycles>,
     lines: Vec<u32>,
     earliest: Cycles,
     // The latest time at which a model was called.
-    now: Cycles,
+    pub(crate) now: Cycles,
     changed_lines: Vec<(u16, bool)>,
     signals: Vec<Signal>,
     master_clock_hz: u32,
-    clocks: u64,
+    pub(crate) clocks: u64,
+    /// Lines of each PIO controller that belong to peripherals A and B.
+    pub(crate) given: [(u32, u32); 4],
     dwt: Dwt,
 }
 
@@ -53,6 +62,8 @@ impl<W: World> Chip<W> {
             reset: None,
             boots_from_flash: true,
             limit: 0,
+            pins: Pins::default(),
+            next_edge: NEVER,
             directory: Directory::new(&slots),
             due: vec![NEVER; slots.len()],
             lines: vec![0; slots.len()],
@@ -63,6 +74,7 @@ impl<W: World> Chip<W> {
             signals: Vec::new(),
             master_clock_hz,
             clocks: 0,
+            given: [(0, 0); 4],
             dwt: Dwt::default(),
         }
     }
@@ -83,19 +95,26 @@ impl<W: World> Chip<W> {
             self.lines[index] = 0;
             self.refresh(index);
         }
+        self.follow_outputs(instructions);
     }
 
     /// Time of the next event of any model.
     pub fn next_event(&self) -> Cycles {
-        self.earliest
+        self.earliest.min(self.next_edge)
     }
 
     /// Advances the models to `now`, each event at its own time.
     pub fn catch_up(&mut self, now: Cycles, instructions: u64) {
-        while self.earliest <= now {
+        while self.next_event() <= now {
+            if self.next_edge <= self.earliest {
+                self.now = self.now.max(self.next_edge);
+                self.follow_outputs(instructions);
+                continue;
+            }
             let (index, due) =
                 self.due.iter().copied().enumerate().min_by_key(|(_, due)| *due).expect("there are peripherals");
             self.now = self.now.max(due);
+            self.show_outputs(index);
             self.call(index, |model, context| model.advance(context));
             self.dispatch_signals(instructions);
             self.refresh(index);
@@ -106,17 +125,20 @@ impl<W: World> Chip<W> {
                 self.due[index] = self.now + 1;
                 self.find_earliest();
             }
+            self.follow_outputs(instructions);
         }
         self.now = self.now.max(now);
     }
 
     /// Calls a model with its context.
-    fn call<R>(&mut self, index: usize, run: impl FnOnce(&mut dyn Peripheral, &mut Context) -> R) -> R {
+    pub(crate) fn call<R>(&mut self, index: usize, run: impl FnOnce(&mut dyn Peripheral, &mut Context) -> R) -> R {
+        self.warnings.now = self.now;
+        let mut wired = WiredWorld { world: &mut self.world, pins: &mut self.pins };
         let mut context = Context {
             now: self.now,
             master_clock_hz: self.master_clock_hz,
             memory: &mut self.memories,
-            world: &mut self.world,
+            world: &mut wired,
             warnings: &mut self.warnings,
             signals: &mut self.signals,
         };
@@ -124,7 +146,7 @@ impl<W: World> Chip<W> {
     }
 
     /// Updates a model's lines and next event after it was called.
-    fn refresh(&mut self, index: usize) {
+    pub(crate) fn refresh(&mut self, index: usize) {
         let slot = &self.slots[index];
         let lines = slot.model.interrupts();
         let mut changes = lines ^ self.lines[index];
@@ -148,7 +170,7 @@ impl<W: World> Chip<W> {
     }
 
     /// Dispatches the signals of the models.
-    fn dispatch_signals(&mut self, instructions: u64) {
+    pub(crate) fn dispatch_signals(&mut self, instructions: u64) {
         while !self.signals.is_empty() {
             for signal in std::mem::take(&mut self.signals) {
                 self.dispatch(signal, instructions);
@@ -159,14 +181,20 @@ impl<W: World> Chip<W> {
     fn dispatch(&mut self, signal: Signal, instructions: u64) {
         match signal {
             Signal::Tioa(_) | Signal::PwmEvent(_) => {
-                if let Some(adc) = self.directory.adc {
-                    self.send_signal(adc, signal);
+                for index in self.directory.triggered {
+                    self.send_signal(index, signal);
                 }
             }
             Signal::Flash(address, length) => self.memories.changed.push((address, length)),
             Signal::BootFlash(flash) => self.boots_from_flash = flash,
             Signal::Reset(cause) => self.reset = Some(cause),
-            Signal::Pins { .. } => (0..self.slots.len()).for_each(|index| self.send_signal(index, signal)),
+            Signal::Pins { port, a, b } => {
+                self.given[usize::from(port)] = (a, b);
+                self.send_to_all(signal);
+            }
+            Signal::SlowCrystal(_) => self.send_to_all(signal),
+            // The chip itself sends these.
+            Signal::Outputs { .. } | Signal::WiresMoved => {}
             Signal::PeripheralClocks(clocks) => {
                 let switched = |slot: &Slot| slot.clock_runs(self.clocks) != slot.clock_runs(clocks);
                 let switched: Vec<usize> =
@@ -176,9 +204,15 @@ impl<W: World> Chip<W> {
                         self.call(index, |model, context| model.advance(context));
                     }
                 }
-                self.clocks = clocks;
+                let before = std::mem::replace(&mut self.clocks, clocks);
                 for index in switched {
                     self.refresh(index);
+                }
+                for index in 0..self.slots.len() {
+                    if self.slots[index].sees_clock_change(before, clocks) {
+                        self.show_outputs(index);
+                        self.send_signal(index, signal);
+                    }
                 }
             }
             Signal::MasterClock(hz) => {
@@ -189,15 +223,17 @@ impl<W: World> Chip<W> {
                 }
                 self.master_clock_hz = hz;
                 self.clock.set_hz(instructions, hz);
-                for index in 0..self.slots.len() {
-                    self.send_signal(index, signal);
-                }
+                self.send_to_all(signal);
             }
         }
     }
 
+    fn send_to_all(&mut self, signal: Signal) {
+        (0..self.slots.len()).for_each(|index| self.send_signal(index, signal));
+    }
+
     /// Sends a signal to a model.
-    fn send_signal(&mut self, index: usize, signal: Signal) {
+    pub(crate) fn send_signal(&mut self, index: usize, signal: Signal) {
         let runs = self.slots[index].clock_runs(self.clocks);
         self.call(index, |model, context| {
             if runs {
@@ -238,15 +274,23 @@ impl<W: World> Chip<W> {
                 });
                 value
             }
-            None => self.call(index, |model, context| {
-                if runs {
-                    model.advance(context);
+            None => {
+                if offset == PDSR {
+                    self.show_outputs(index);
                 }
-                model.read(offset, context) >> shift
-            }),
+                self.call(index, |model, context| {
+                    if runs {
+                        model.advance(context);
+                    }
+                    model.read(offset, context) >> shift
+                })
+            }
         };
         self.dispatch_signals(access.instructions);
         self.refresh(index);
+        if access.store.is_some() {
+            self.follow_outputs(access.instructions);
+        }
         answer
     }
 
@@ -258,10 +302,9 @@ impl<W: World> Chip<W> {
         let programs = access.store.is_some_and(|value| PROGRAMS.checked_shr(value & 0xFF).unwrap_or(0) & 1 != 0);
         let start = FLASH + bank as u32 * BANK;
         if offset == FCR && programs && (start..start + BANK).contains(&access.pc) {
-            let (name, pc) = (self.slots[index].name, access.pc);
-            self.warnings.warn_once(format!(
-                "{name}: the program at pc {pc:#010x} programs the bank it runs from: a real chip hangs"
-            ));
+            let name = self.slots[index].name;
+            self.warnings
+                .warn_once(format!("{name}: the program erases or writes the bank it runs from: a real chip hangs"));
         }
     }
 
@@ -272,6 +315,13 @@ impl<W: World> Chip<W> {
         let bank = usize::from(address >= FLASH + BANK);
         self.call(self.directory.eefc[bank], |model, context| model.write(address, value, context));
         Some(value)
+    }
+
+    /// Accesses a word of a peripheral's registers between instructions; `None` at an address without one.
+    pub fn debugger_access(&mut self, address: u32, store: Option<u32>, pc: u32, instructions: u64) -> Option<u32> {
+        let index = self.directory.find(address).filter(|_| address.is_multiple_of(4))?;
+        self.catch_up(self.clock.now(instructions), instructions);
+        Some(self.register(index, Access { address, bytes: 4, store, pc, instructions }))
     }
 
     fn answer(&mut self, access: Access) -> Option<u32> {
@@ -290,13 +340,15 @@ impl<W: World> Chip<W> {
 impl<W: World> Bus for Chip<W> {
     fn access(&mut self, access: Access) -> Option<u32> {
         self.catch_up(self.clock.now(access.instructions), access.instructions);
+        self.warnings.now = self.now;
+        self.warnings.pc = Some(access.pc);
         let answer = self.answer(access);
         if answer.is_none() {
-            let Access { address, pc, .. } = access;
+            let address = access.address;
             let kind = if access.store.is_some() { "store to" } else { "load from" };
-            self.warnings
-                .warn_once(format!("bus fault: {kind} {address:#010x}, where nothing is mapped, at pc {pc:#010x}"));
+            self.warnings.warn_once(format!("bus fault: {kind} {address:#010x}, where nothing is mapped"));
         }
+        self.warnings.pc = None;
         answer
     }
 
@@ -317,7 +369,7 @@ impl<W: World> Bus for Chip<W> {
             return None;
         }
         let event = event.map_or(NEVER, |event| self.clock.at_core_cycles(event));
-        let next = self.earliest.min(self.limit).min(event);
+        let next = self.next_event().min(self.limit).min(event);
         let left = self.clock.instructions_until(instructions, next);
         (left > 0).then(|| u32::try_from(left).unwrap_or(u32::MAX))
     }

@@ -44,6 +44,17 @@ pub trait Cpu {
     /// Lets the next run pass the breakpoint at `address`.
     fn pass_breakpoint(&mut self, address: u32);
 
+    /// The register that GDB numbers `number`: r0 to r15, xPSR, and the system registers of [`debugger_description`].
+    ///
+    /// [`debugger_description`]: Self::debugger_description
+    fn register(&self, number: usize) -> Option<u32>;
+
+    /// Writes the register that GDB numbers `number`; false for an unknown number.
+    fn set_register(&mut self, number: usize, value: u32) -> bool;
+
+    /// GDB's description of the registers.
+    fn debugger_description(&self) -> &'static str;
+
     /// Reads a word of its own registers, 0xE000_0000…, as a debugger does.
     fn peek(&mut self, address: u32, core_cycles: u64) -> Option<u32>;
 

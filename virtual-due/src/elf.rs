@@ -2,7 +2,7 @@
 
 use firmware_image::{FLASH, ImageError, segments};
 use object::read::elf::ElfFile32;
-use object::{Endianness, Object, ObjectSymbol};
+use object::{Endianness, Object, ObjectSymbol, SymbolKind};
 use std::collections::BTreeMap;
 
 /// A firmware.
@@ -11,6 +11,8 @@ pub struct Elf {
     /// Pieces of flash: address and bytes.
     pub pieces: Vec<(u32, Vec<u8>)>,
     symbols: BTreeMap<String, u32>,
+    /// Functions by their first address: length in bytes and name.
+    functions: BTreeMap<u32, (u32, String)>,
 }
 
 impl Elf {
@@ -27,7 +29,20 @@ impl Elf {
             .filter_map(|symbol| Some((symbol.name().ok()?.to_owned(), symbol.address() as u32)))
             .filter(|(name, _)| !name.is_empty() && !name.starts_with('$'))
             .collect();
-        Ok(Self { pieces, symbols })
+        let functions = file
+            .symbols()
+            .filter(|symbol| symbol.kind() == SymbolKind::Text && symbol.size() > 0)
+            .filter_map(|symbol| {
+                Some((symbol.address() as u32 & !1, (symbol.size() as u32, symbol.name().ok()?.to_owned())))
+            })
+            .collect();
+        Ok(Self { pieces, symbols, functions })
+    }
+
+    /// Name of the function that has an instruction at `pc`, as it is written in the program.
+    pub fn function(&self, pc: u32) -> Option<String> {
+        let (start, (length, name)) = self.functions.range(..=pc).next_back()?;
+        (pc - start < *length).then(|| demangled(name))
     }
 
     /// A symbol's value; a function's without the Thumb bit.
@@ -37,9 +52,25 @@ impl Elf {
     }
 }
 
+/// The name of a symbol of Rust, C or C++.
+fn demangled(symbol: &str) -> String {
+    if let Ok(name) = rustc_demangle::try_demangle(symbol) {
+        return format!("{name:#}");
+    }
+    let name = cpp_demangle::Symbol::new(symbol).ok().and_then(|name| name.demangle().ok());
+    name.unwrap_or_else(|| symbol.to_owned())
+}
+
 #[cfg(test)]
 mod tests {
-    use super::{Elf, ImageError};
+    use super::{Elf, ImageError, demangled};
+
+    #[test]
+    fn functions_have_the_names_of_the_program() {
+        assert_eq!(demangled("SysTick_Handler"), "SysTick_Handler");
+        assert_eq!(demangled("_ZN9UARTClass5writeEh"), "UARTClass::write(unsigned char)");
+        assert_eq!(demangled("_ZN8firmware5board4init17h0123456789abcdefE"), "firmware::board::init");
+    }
 
     #[test]
     fn a_binary_without_headers_is_refused() {

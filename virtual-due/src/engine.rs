@@ -157,6 +157,19 @@ impl Cpu for Engine {
         self.mapped.processor_mut().pass_breakpoint(address.into());
     }
 
+    fn register(&self, number: usize) -> Option<u32> {
+        let bytes = self.mapped.processor().gdb_register(number)?;
+        Some(u32::from_le_bytes(bytes.try_into().ok()?))
+    }
+
+    fn set_register(&mut self, number: usize, value: u32) -> bool {
+        self.mapped.processor_mut().set_gdb_register(number, &value.to_le_bytes())
+    }
+
+    fn debugger_description(&self) -> &'static str {
+        self.mapped.processor().target_xml()
+    }
+
     fn peek(&mut self, address: u32, core_cycles: u64) -> Option<u32> {
         let value = self.mapped.processor_mut().debugger_access(None, address.into(), Width::W32, nanos(core_cycles));
         value.map(|value| value as u32)

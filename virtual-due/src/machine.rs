@@ -4,9 +4,13 @@ use crate::chip::Chip;
 use crate::cpu::{Bus, Cpu, Stop};
 use crate::elf::Elf;
 use crate::engine::Engine;
+use crate::pins::PinChange;
+use crate::report::Report;
 use firmware_image::ImageError;
+use std::collections::BTreeSet;
+
 use sam3x_models::flash::{BANK, FLASH};
-use sam3x_models::model::{Cause, Cycles, Memory, World};
+use sam3x_models::model::{Cause, Cycles, Memory, Pin, World};
 
 /// Size of the flash, bytes: both banks.
 pub const FLASH_BYTES: usize = 2 * BANK as usize;
@@ -35,13 +39,16 @@ pub struct Reset {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub struct Machine<W> {
-    cpu: Engine,
-    chip: Chip<W>,
+    pub(crate) cpu: Engine,
+    pub(crate) chip: Chip<W>,
     elf: Elf,
     resets: Vec<Reset>,
     locked_up: bool,
     // The world may have been changed since the last instruction.
     touched: bool,
+    pub(crate) breakpoints: BTreeSet<u32>,
+    // Address at which a debugger has seen the CPU stop: its breakpoint there does not stop it again.
+    pub(crate) stopped_at: Option<u32>,
 }
 
 impl<W: World> Machine<W> {
@@ -58,7 +65,16 @@ impl<W: World> Machine<W> {
         }
         let mut cpu = Engine::new();
         chip.memories.map(&mut cpu);
-        let mut machine = Self { cpu, chip, elf, resets: Vec::new(), locked_up: false, touched: true };
+        let mut machine = Self {
+            cpu,
+            chip,
+            elf,
+            resets: Vec::new(),
+            locked_up: false,
+            touched: true,
+            breakpoints: BTreeSet::new(),
+            stopped_at: None,
+        };
         machine.reset(Cause::General);
         machine.resets.clear();
         Ok(machine)
@@ -105,7 +121,7 @@ impl<W: World> Machine<W> {
     }
 
     /// Runs until `end`, or a breakpoint; true if a breakpoint was reached.
-    fn run(&mut self, end: Cycles) -> bool {
+    pub(crate) fn run(&mut self, end: Cycles) -> bool {
         self.chip.limit = end;
         loop {
             self.process_pending();
@@ -132,7 +148,7 @@ impl<W: World> Machine<W> {
     }
 
     /// Sleeps until the next event.
-    fn sleep(&mut self, end: Cycles) {
+    pub(crate) fn sleep(&mut self, end: Cycles) {
         if self.chip.reset.is_none() {
             let next = self.next_event(end);
             self.chip.clock.sleep_until(self.cpu.instructions(), next);
@@ -140,7 +156,7 @@ impl<W: World> Machine<W> {
     }
 
     /// Processes everything that is due before the next instruction: events, resets, changed memory, interrupt lines.
-    fn process_pending(&mut self) {
+    pub(crate) fn process_pending(&mut self) {
         let instructions = self.cpu.instructions();
         self.chip.catch_up(self.chip.clock.now(instructions), instructions);
         if std::mem::take(&mut self.touched) {
@@ -173,6 +189,7 @@ impl<W: World> Machine<W> {
         self.resets.push(Reset { cause, at: self.now() });
         self.locked_up = false;
         let (stack_pointer, entry) = self.chip.memories.boot(&mut self.cpu, self.chip.boots_from_flash);
+        self.chip.warnings.now = self.now();
         if !self.chip.boots_from_flash {
             let text = "GPNVM bit 1 is clear: the boot loader in ROM runs and waits for a flash tool".to_owned();
             self.chip.warnings.warn_once(text);
@@ -181,12 +198,12 @@ impl<W: World> Machine<W> {
         self.chip.apply_reset(cause, self.cpu.instructions());
     }
 
-    fn report_lockup(&mut self) {
+    pub(crate) fn report_lockup(&mut self) {
         if !self.locked_up {
-            let (pc, seconds) = (self.cpu.pc(), self.seconds());
-            self.chip.warnings.warn_once(format!(
-                "the core locked up at pc {pc:#010x}, {seconds:.6} s: a fault in a fault's handler"
-            ));
+            self.chip.warnings.now = self.now();
+            self.chip.warnings.pc = Some(self.cpu.pc());
+            self.chip.warnings.warn_once("the core locked up: a fault in a fault's handler".to_owned());
+            self.chip.warnings.pc = None;
         }
         self.locked_up = true;
     }
@@ -260,9 +277,26 @@ impl<W: World> Machine<W> {
         &self.resets
     }
 
-    /// Takes the warnings since the last call, about actions of the firmware that the models do not cover.
-    pub fn reports(&mut self) -> Vec<String> {
-        self.chip.warnings.take()
+    /// Takes the reports since the last call, about actions of the firmware that the models do not cover.
+    pub fn reports(&mut self) -> Vec<Report> {
+        let warnings = self.chip.warnings.take();
+        warnings.into_iter().map(|warning| Report::new(warning, &self.elf)).collect()
+    }
+
+    /// Connects two pins by a wire: each shows the level at which the chip drives the other. Bytes of serial ports, I²C and SPI
+    /// do not pass.
+    pub fn connect(&mut self, first: Pin, second: Pin) {
+        self.chip.connect(first, second, self.cpu.instructions());
+    }
+
+    /// Records the changes of all pins from now on, for [`take_pin_changes`](Self::take_pin_changes).
+    pub fn record_pins(&mut self) {
+        self.chip.record_pins(self.cpu.instructions());
+    }
+
+    /// Takes the changes of pins since the last call, in the order of time.
+    pub fn take_pin_changes(&mut self) -> Vec<PinChange> {
+        self.chip.take_pin_changes()
     }
 
     /// The devices on the pins.

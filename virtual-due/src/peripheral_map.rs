@@ -4,8 +4,8 @@ use crate::memory_map::Memories;
 use sam3x_models::flash::{BANK, FLASH};
 use sam3x_models::model::Peripheral;
 use sam3x_models::{
-    Adc, ChipId, Eefc, Gpbr, Matrix, Pio, Pmc, Pwm, Rstc, Rtc, Rtt, Spi, Supc, Tc, Trng, Twi, Uart, Unmodelled, Uotghs,
-    Usart, Wdt,
+    Adc, ChipId, Dacc, Dmac, Eefc, Gpbr, Matrix, Pio, Pmc, Pwm, Rstc, Rtc, Rtt, Spi, Supc, Tc, Trng, Twi, Uart,
+    Unmodelled, Uotghs, Usart, Wdt,
 };
 
 /// A peripheral at its address.
@@ -25,6 +25,11 @@ impl Slot {
     /// True if it runs with these clocks enabled.
     pub fn clock_runs(&self, clocks: u64) -> bool {
         self.gate == 0 || self.gate & clocks != 0
+    }
+
+    /// True if a clock of the system controller's part changes that it needs for a part of its work: a PIO controller.
+    pub fn sees_clock_change(&self, before: u64, clocks: u64) -> bool {
+        self.gate == 0 && (before ^ clocks) >> self.line & 1 != 0
     }
 }
 
@@ -68,9 +73,8 @@ pub fn all(memories: &Memories) -> Vec<Slot> {
         clocked("CAN1", 0x400B_8000, 44, Unmodelled::new("CAN1")),
         clocked("TRNG", 0x400B_C000, 41, Trng::new()),
         clocked("ADC", 0x400C_0000, 37, Adc::new()),
-        clocked("DMAC", 0x400C_4000, 39, Unmodelled::new("DMAC")),
-        // DACC_ISR: TXRDY, EOC, ENDTX and TXBUFE.
-        clocked("DACC", 0x400C_8000, 38, Unmodelled::ready("DACC", 0x30, 0b1111)),
+        clocked("DMAC", 0x400C_4000, 39, Dmac::new()),
+        clocked("DACC", 0x400C_8000, 38, Dacc::new()),
     ]);
     slots
 }
@@ -110,10 +114,14 @@ const SYSTEM_STEP: u32 = 0x10;
 pub struct Directory {
     bridge: [u8; 0x33],
     system: [u8; 0x200],
-    /// The ADC, which timers and the PWM trigger.
-    pub adc: Option<usize>,
+    /// ADC and DACC, which timers and the PWM trigger.
+    pub triggered: [usize; 2],
     /// The two flash controllers.
     pub eefc: [usize; 2],
+    /// PIOA to PIOD.
+    pub pio: [usize; 4],
+    /// The peripherals that sample pins: these, and the timers.
+    pub samplers: [usize; 7],
 }
 
 impl Directory {
@@ -123,8 +131,10 @@ impl Directory {
         let mut directory = Self {
             bridge: [NONE; 0x33],
             system: [NONE; 0x200],
-            adc: slots.iter().position(|slot| slot.name == "ADC"),
+            triggered: ["ADC", "DACC"].map(named),
             eefc: [named("EEFC0"), named("EEFC1")],
+            pio: ["PIOA", "PIOB", "PIOC", "PIOD"].map(named),
+            samplers: ["PIOA", "PIOB", "PIOC", "PIOD", "TC0", "TC1", "TC2"].map(named),
         };
         for (index, slot) in slots.iter().enumerate() {
             let (table, start, step): (&mut [u8], u32, u32) = if slot.base < SYSTEM {

@@ -8,8 +8,9 @@
 //! | section | peripherals |
 //! |---|---|
 //! | system controller | [`Rstc`], [`Supc`], [`Wdt`], [`Rtt`], [`Rtc`], [`Gpbr`], [`Pmc`], [`Matrix`], [`Eefc`], [`ChipId`], [`Trng`] |
-//! | pins and time | [`Pio`], [`Tc`], [`Pwm`], [`Adc`] |
+//! | pins and time | [`Pio`], [`Tc`], [`Pwm`], [`Adc`], [`Dacc`] |
 //! | serial | [`Uart`], [`Usart`], [`Twi`], [`Spi`], [`Uotghs`] |
+//! | memory | [`Dmac`] |
 //! | others | [`Unmodelled`] |
 
 #![expect(
@@ -19,6 +20,8 @@
 
 mod adc;
 mod chipid;
+mod dacc;
+mod dmac;
 mod eefc;
 pub mod flash;
 mod gpbr;
@@ -50,6 +53,8 @@ mod write_protection;
 
 pub use adc::Adc;
 pub use chipid::ChipId;
+pub use dacc::Dacc;
+pub use dmac::Dmac;
 pub use eefc::Eefc;
 pub use gpbr::Gpbr;
 pub use matrix::Matrix;
@@ -68,5 +73,5 @@ pub use uart::Uart;
 pub use unmodelled::Unmodelled;
 pub use uotghs::Uotghs;
 pub use usart::Usart;
-pub use warning_log::WarningLog;
+pub use warning_log::{Warning, WarningLog};
 pub use wdt::Wdt;

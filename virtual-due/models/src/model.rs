@@ -40,6 +40,19 @@ pub trait Peripheral {
         u32::from(self.interrupt())
     }
 
+    /// The level at which it drives a pin that is given to it as this side of the pin's multiplexer; `None`: it does not
+    /// drive the pin.
+    fn output(&self, pin: Pin, side: Side, now: Cycles) -> Option<bool> {
+        let _ = (pin, side, now);
+        None
+    }
+
+    /// An instant no later than the next change of such an output, and later than `now`; `None`: it does not change.
+    fn next_output_edge(&self, pin: Pin, side: Side, now: Cycles) -> Option<Cycles> {
+        let _ = (pin, side, now);
+        None
+    }
+
     /// Receives a signal from elsewhere in the chip.
     fn signal(&mut self, signal: Signal, context: &mut Context) {
         let _ = (signal, context);
@@ -89,8 +102,28 @@ pub enum Signal {
         /// Lines of peripheral B.
         b: u32,
     },
+    /// Levels of the lines of a PIO controller that peripherals drive, to that controller.
+    Outputs {
+        /// Lines that a peripheral drives.
+        driven: u32,
+        /// Their levels.
+        levels: u32,
+    },
+    /// Pins that are wired to outputs have other levels now.
+    WiresMoved,
+    /// The slow clock's crystal was selected, and is the slow clock from this instant on.
+    SlowCrystal(Cycles),
     /// The chip is reset.
     Reset(Cause),
+}
+
+/// A side of the multiplexer of a pin that belongs to a peripheral (datasheet 31.5.3).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Side {
+    /// Peripheral A.
+    A,
+    /// Peripheral B.
+    B,
 }
 
 /// Cause of a reset, with the values of RSTC_SR.RSTTYP (datasheet 12.5.2).

@@ -28,6 +28,8 @@ pub enum Width {
     Byte,
     /// 16 bits.
     HalfWord,
+    /// 32 bits.
+    Word,
 }
 
 impl Width {
@@ -35,6 +37,7 @@ impl Width {
         match self {
             Self::Byte => 1,
             Self::HalfWord => 2,
+            Self::Word => 4,
         }
     }
 }

@@ -1,6 +1,6 @@
 //! SUPC: the part of the supply controller that selects the slow clock (datasheet 17).
 
-use crate::model::{CYCLES_PER_SECOND, Context, Cycles, Peripheral};
+use crate::model::{CYCLES_PER_SECOND, Context, Cycles, Peripheral, Signal};
 
 const CR: u32 = 0x00;
 const SMMR: u32 = 0x04;
@@ -59,6 +59,7 @@ impl Peripheral for Supc {
             CR if value >> 24 == KEY => {
                 if value & XTALSEL != 0 && self.crystal.is_none() {
                     self.crystal = Some(context.now + CRYSTAL);
+                    context.signals.push(Signal::SlowCrystal(context.now + CRYSTAL));
                 }
                 if value & VROFF != 0 {
                     context.warnings.warn_once("SUPC_CR.VROFF: backup mode is not modelled".to_owned());
@@ -73,5 +74,39 @@ impl Peripheral for Supc {
         }
     }
 
+    /// The crystal survives the reset of the PMC, which shows it.
+    fn signal(&mut self, signal: Signal, context: &mut Context) {
+        if let (Signal::Reset(_), Some(then)) = (signal, self.crystal) {
+            context.signals.push(Signal::SlowCrystal(then));
+        }
+    }
+
     fn reset(&mut self) {}
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{CR, CRYSTAL, OSCSEL, SR, Supc};
+    use crate::model::{Cause, Signal};
+    use crate::test_support::Bench;
+
+    #[test]
+    fn crystal_is_the_slow_clock_after_its_start_and_stays_it_over_resets() {
+        let mut bench = Bench::new(Supc::new());
+        bench.write(CR, 0xA500_0008);
+        bench.run(CRYSTAL - 1);
+        assert_eq!(bench.read(SR) & OSCSEL, 0);
+        bench.run(1);
+        assert_eq!(bench.read(SR) & OSCSEL, OSCSEL);
+        bench.signal(Signal::Reset(Cause::User));
+        assert_eq!(bench.read(SR) & OSCSEL, OSCSEL);
+        assert_eq!(bench.signalled(), [Signal::SlowCrystal(CRYSTAL); 2]);
+    }
+
+    #[test]
+    fn crystal_is_not_selected_without_the_key() {
+        let mut bench = Bench::new(Supc::new());
+        bench.write(CR, 0x0000_0008);
+        assert_eq!(bench.signalled(), []);
+    }
 }

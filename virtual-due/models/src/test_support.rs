@@ -236,6 +236,11 @@ impl<P: Peripheral> Bench<P> {
         });
     }
 
+    /// Texts of the warnings since the last call.
+    pub fn reports(&mut self) -> Vec<String> {
+        self.warnings.take().into_iter().map(|warning| warning.text).collect()
+    }
+
     /// Signals of the model, without their times.
     pub fn signalled(&self) -> Vec<Signal> {
         self.signals.iter().map(|(_, signal)| *signal).collect()

@@ -46,9 +46,9 @@ mod tests {
 
     #[test]
     fn it_is_ready_at_once_and_reported_once() {
-        let mut bench = Bench::new(Unmodelled::ready("DACC", 0x30, 0xF));
-        bench.write(0x20, 2048);
-        assert_eq!((bench.read(0x30), bench.read(0x04)), (0xF, 0));
+        let mut bench = Bench::new(Unmodelled::ready("SSC", 0x40, 0b11));
+        bench.write(0x24, 2048);
+        assert_eq!((bench.read(0x40), bench.read(0x04)), (0b11, 0));
         assert_eq!(bench.warnings.take().len(), 1);
     }
 }

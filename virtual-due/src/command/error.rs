@@ -1,5 +1,7 @@
 //! Errors of the command line.
 
+use std::net::SocketAddr;
+
 use calibration_tables::FileError;
 use rig_twin::{LayoutError, MAX_SEGMENTS};
 use virtual_due::ImageError;
@@ -44,6 +46,30 @@ pub enum Error {
     Flash {
         /// The path as it was given.
         path: String,
+        /// The system's error.
+        error: std::io::Error,
+    },
+    /// The file of the truth cannot be made.
+    #[error("{path}: {error}; --truth takes the name of a file to write")]
+    Truth {
+        /// The path as it was given.
+        path: String,
+        /// The system's error.
+        error: std::io::Error,
+    },
+    /// The file of the pins' changes cannot be made.
+    #[error("{path}: {error}; --pins takes the name of a file to write")]
+    Pins {
+        /// The path as it was given.
+        path: String,
+        /// The system's error.
+        error: std::io::Error,
+    },
+    /// The debugger's connection, or the run under the debugger.
+    #[error("GDB at {address}: {error}")]
+    Gdb {
+        /// Address at which the debugger is awaited.
+        address: SocketAddr,
         /// The system's error.
         error: std::io::Error,
     },

@@ -5,19 +5,29 @@ mod error;
 #[cfg(unix)]
 mod fault_injection;
 mod flash_file;
+mod gdb;
+mod gdb_connection;
+mod observation;
+mod pins_file;
 #[cfg(unix)]
 mod pty;
 mod run;
 mod stdio;
+mod truth_file;
 
 use clap::{Parser, Subcommand, ValueEnum};
 use error::Error;
 use flash_file::FlashFile;
+use observation::{Expectations, Observer};
+use pins_file::PinsFile;
 use rig_twin::Scenario;
-use run::Run;
+use run::{Line, Recorders, Run};
+use std::net::{Ipv4Addr, SocketAddr};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use virtual_due::{Machine, rig::WiredRig};
+use truth_file::TruthFile;
+use virtual_due::model::Pin;
+use virtual_due::{Machine, arduino_pins, rig::WiredRig};
 
 /// An emulated Arduino Due with the simulated arm on its pins.
 #[derive(Debug, Parser)]
@@ -31,7 +41,8 @@ pub struct Cli {
 enum Command {
     /// Run a firmware. Reports, resets and a summary go to stderr.
     ///
-    /// Exit status: 0 at the end of the run, 1 if the core locked up and nothing reset it, 2 if there is no such firmware.
+    /// Exit status: 0 at the end of the run, 1 if the core locked up and nothing reset it or if the run has failed by
+    /// `--until`, `--fail-on` or `--strict`, 2 if there is no such firmware.
     Run(Arguments),
 }
 
@@ -64,6 +75,22 @@ struct Arguments {
     /// Connection of the programming port.
     #[arg(long, value_enum, default_value = "stdio")]
     serial: Serial,
+    /// File of the twin's truth, a CSV with a row every 10 ms: true pose of each segment's end, set-points of the regulators.
+    #[arg(long, value_name = "FILE.csv")]
+    truth: Option<PathBuf>,
+    /// File of every pin's changes, a VCD for PulseView or GTKWave; the pins have their Arduino names. Bytes of serial ports,
+    /// I²C and SPI are not shown as bits.
+    #[arg(long, value_name = "FILE.vcd")]
+    pins: Option<PathBuf>,
+    /// Wire between two pins, by their Arduino names; may be given more than once.
+    #[arg(long, value_name = "PIN=PIN", value_parser = wire)]
+    wire: Vec<[Pin; 2]>,
+    /// Wait for GDB at this port of this computer, or at an address with a port, before the first instruction. Give GDB the
+    /// same ELF file and `target remote localhost:PORT`.
+    #[arg(long, value_name = "PORT", value_parser = gdb_address)]
+    gdb: Option<SocketAddr>,
+    #[command(flatten)]
+    expectations: Expectations,
 }
 
 /// Pace of virtual time.
@@ -100,16 +127,35 @@ impl Cli {
             let shown = path.display().to_string();
             FlashFile::load(path, &mut machine).map_err(|error| Error::Flash { path: shown, error })
         });
+        let truth = arguments.truth.map(|path| {
+            let shown = path.display().to_string();
+            TruthFile::create(&path, machine.world()).map_err(|error| Error::Truth { path: shown, error })
+        });
+        let pins = arguments.pins.map(|path| {
+            machine.record_pins();
+            let shown = path.display().to_string();
+            PinsFile::create(&path).map_err(|error| Error::Pins { path: shown, error })
+        });
+        for [first, second] in arguments.wire {
+            machine.connect(first, second);
+        }
+        let observer = Observer::new(&arguments.expectations);
+        let (flash, truth, pins) = (flash.transpose()?, truth.transpose()?, pins.transpose()?);
+        let recorders = Recorders { flash, truth, pins, observer };
         let paced = arguments.speed == Speed::Real;
-        let mut run = Run::new(machine, flash.transpose()?, arguments.seconds, paced);
+        let mut run = Run::new(machine, recorders, arguments.seconds, paced)?;
+        let mut drive = |line: &mut dyn Line, inject: &mut dyn FnMut(&mut WiredRig)| match arguments.gdb {
+            Some(address) => gdb::debug(&mut run, line, inject, address).map_err(|error| Error::Gdb { address, error }),
+            None => run.execute(line, inject).map_err(Error::Serial),
+        };
         match arguments.serial {
-            Serial::Stdio => run.execute(&mut stdio::Stdio::new()?, |_| ())?,
+            Serial::Stdio => drive(&mut stdio::Stdio::new()?, &mut |_| ())?,
             #[cfg(unix)]
             Serial::Pty => {
                 let mut pty = pty::Pty::new()?;
                 eprintln!("serial port: {}", pty.path());
                 let injector = fault_injection::FaultInjector::new();
-                run.execute(&mut pty, |rig| injector.apply(rig))?;
+                drive(&mut pty, &mut |rig| injector.apply(rig))?;
             }
         }
         Ok(run.summary())
@@ -128,6 +174,25 @@ fn scenario(text: &str) -> Result<Scenario, String> {
         "2" => Ok(Scenario::Push),
         "3" => Ok(Scenario::Obstacle),
         _ => Err("expected 1, 2 or 3".to_owned()),
+    }
+}
+
+fn gdb_address(text: &str) -> Result<SocketAddr, String> {
+    match text.parse::<u16>() {
+        Ok(port) => Ok((Ipv4Addr::LOCALHOST, port).into()),
+        Err(_) => text.parse().map_err(|_| "expected a port, such as 3333, or an address with a port".to_owned()),
+    }
+}
+
+fn wire(text: &str) -> Result<[Pin; 2], String> {
+    let pin = |name: &str| {
+        let expected = "expected D0 to D53, A0 to A11, DAC0, DAC1, SDA1, SCL1, MISO, MOSI, SCK or SS0";
+        arduino_pins::named(name).ok_or_else(|| format!("no pin `{name}`: {expected}"))
+    };
+    let (first, second) = text.split_once('=').ok_or("expected two pins, such as D7=D2")?;
+    match [pin(first)?, pin(second)?] {
+        [first, second] if first == second => Err("expected two different pins".to_owned()),
+        pins => Ok(pins),
     }
 }
 

@@ -7,6 +7,8 @@ use std::sync::mpsc::{Receiver, channel};
 /// Standard input and output.
 pub struct Stdio {
     input: Receiver<Vec<u8>>,
+    /// A line of output has begun.
+    mid_line: bool,
 }
 
 impl Stdio {
@@ -19,7 +21,7 @@ impl Stdio {
             stdin().read_to_end(&mut bytes)?;
             // The receiver is here.
             let _ = sender.send(bytes);
-            return Ok(Self { input });
+            return Ok(Self { input, mid_line: false });
         }
         std::thread::spawn(move || {
             let mut buffer = [0; 4096];
@@ -29,7 +31,7 @@ impl Stdio {
                 }
             }
         });
-        Ok(Self { input })
+        Ok(Self { input, mid_line: false })
     }
 }
 
@@ -48,13 +50,19 @@ impl Line for Stdio {
     }
 
     fn send(&mut self, bytes: &[u8]) -> std::io::Result<bool> {
-        if bytes.is_empty() {
-            return Ok(true);
-        }
+        let Some(last) = bytes.last() else { return Ok(true) };
+        self.mid_line = *last != b'\n';
         let mut output = stdout().lock();
         match output.write_all(bytes).and_then(|()| output.flush()) {
             Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(false),
             done => done.map(|()| true),
+        }
+    }
+
+    /// Output and reports often meet in one terminal or file.
+    fn end_line(&mut self) {
+        if std::mem::take(&mut self.mid_line) {
+            eprintln!();
         }
     }
 }

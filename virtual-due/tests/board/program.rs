@@ -24,6 +24,28 @@ pub fn elf(address: u32, bytes: &[u8]) -> Vec<u8> {
     file
 }
 
+/// An ELF file with the symbol of a function, its address and its length in bytes.
+pub fn with_function(mut file: Vec<u8>, name: &str, address: u32, length: u32) -> Vec<u8> {
+    let names = format!("\0{name}\0");
+    let symbols = file.len() as u32;
+    // The null symbol, and a global function (STT_FUNC) in an absolute section, with its Thumb bit.
+    file.extend([0; 16]);
+    file.extend([1, address | 1, length].into_iter().flat_map(u32::to_le_bytes));
+    file.extend([0x12, 0, 0xF1, 0xFF]);
+    file.extend(names.as_bytes());
+    file.resize(file.len().next_multiple_of(4), 0);
+    let sections = file.len() as u32;
+    let strings = symbols + 32;
+    let length = names.len() as u32;
+    // Name, type, flags, address, offset, size, link, info, alignment, entry size: null, .symtab, .strtab.
+    let headers = [[0; 10], [0, 2, 0, 0, symbols, 32, 2, 1, 4, 16], [0, 3, 0, 0, strings, length, 0, 0, 1, 0]];
+    file.extend(headers.concat().into_iter().flat_map(u32::to_le_bytes));
+    file[32..36].copy_from_slice(&sections.to_le_bytes());
+    // Section headers: size, count, index of their names.
+    file[46..52].copy_from_slice(&[40, 0, 3, 0, 2, 0]);
+    file
+}
+
 /// A firmware of this program, which begins at [`ENTRY`] with the stack below 0x2001_0000; every fault enters
 /// `program[fault]`.
 pub fn firmware(program: &[u16], fault: usize) -> Vec<u8> {

@@ -42,7 +42,7 @@ fn analog_write_of_255_on_pin_6_gives_the_first_regulator_full_pressure() {
     assert!(board.sleeps());
     let kilopascals = board.world().set_points_pa().iter().map(|pa| (pa / 1000.0).round() as u32).collect::<Vec<_>>();
     assert_eq!(kilopascals, [280, 0, 0, 0, 0, 0]);
-    assert_eq!(board.reports(), Vec::<String>::new());
+    assert_eq!(board.reports(), []);
 }
 
 #[test]

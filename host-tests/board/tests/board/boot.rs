@@ -44,7 +44,7 @@ fn the_same_run_gives_the_same_bytes_however_it_is_cut() {
 fn nothing_that_the_firmware_touches_is_unmodelled() {
     let mut board = Board::new(WiredRig::new(Scenario::FreeSwing, 1));
     board.run_ms(2000);
-    assert_eq!(board.machine.reports(), Vec::<String>::new());
+    assert_eq!(board.machine.reports(), []);
 }
 
 #[test]

@@ -28,6 +28,13 @@ const ACR: u32 = 0x94;
 const WPMR: u32 = 0xE4;
 const WPSR: u32 = 0xE8;
 
+/// The channel of the chip's temperature sensor.
+const TEMPERATURE: u8 = 15;
+/// The sensor is on.
+const TSON: u32 = 1 << 4;
+/// Its 0.8 V at 27 °C (datasheet 45.8), of a reference of 3.3 V.
+const TEMPERATURE_COUNTS: u16 = 993;
+
 const SWRST: u32 = 1 << 0;
 const START: u32 = 1 << 1;
 
@@ -95,6 +102,16 @@ impl Adc {
         }
     }
 
+    /// The chip is at 27 °C.
+    fn temperature_counts(&self, context: &mut Context) -> u16 {
+        if self.analog_control & TSON != 0 {
+            return TEMPERATURE_COUNTS;
+        }
+        let text = "ADC: channel 15 is converted while the temperature sensor is off: set ADC_ACR.TSON";
+        context.warnings.warn_once(text.to_owned());
+        0
+    }
+
     /// Gain, offset and differential input are stored but do not act.
     fn write_protected(&mut self, offset: u32, value: u32, context: &mut Context) {
         match offset {
@@ -134,7 +151,10 @@ impl Peripheral for Adc {
 
     fn advance(&mut self, context: &mut Context) {
         while let Some(conversion) = self.sequence.take_completed(self.setup(), context) {
-            let counts = context.world.adc_counts(conversion.channel, conversion.sampled_at).min(0xFFF);
+            let counts = match conversion.channel {
+                TEMPERATURE => self.temperature_counts(context),
+                channel => context.world.adc_counts(channel, conversion.sampled_at).min(0xFFF),
+            };
             self.complete(conversion.channel, counts, context);
         }
     }

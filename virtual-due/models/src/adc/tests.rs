@@ -15,6 +15,7 @@ const OVER: u32 = 0x3C;
 const EMR: u32 = 0x40;
 const CWR: u32 = 0x44;
 const CDR0: u32 = 0x50;
+const ACR: u32 = 0x94;
 const WPMR: u32 = 0xE4;
 const WPSR: u32 = 0xE8;
 
@@ -212,4 +213,21 @@ fn software_reset_leaves_only_the_pdc() {
     bench.write(IER, DRDY);
     bench.write(CR, 1);
     assert_eq!((bench.read(MR), bench.read(CHSR), bench.read(0x2C), bench.read(0x104)), (0, 0, 0, 5));
+}
+
+#[test]
+fn channel_15_is_the_chips_temperature_once_its_sensor_is_on() {
+    let mut bench = Bench::new(Adc::new());
+    bench.write(CHER, 1 << 15);
+    bench.write(ACR, 1 << 4);
+    bench.write(CR, START);
+    bench.run(100_000);
+    // 0.8 V of 3.3 V.
+    assert_eq!(bench.read(LCDR), 993);
+    bench.write(ACR, 0);
+    bench.write(CR, START);
+    bench.run(100_000);
+    assert_eq!(bench.read(LCDR), 0);
+    assert_eq!(bench.reports().len(), 1);
+    assert_eq!(bench.world.conversions, []);
 }

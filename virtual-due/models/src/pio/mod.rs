@@ -2,7 +2,7 @@
 
 mod interrupts;
 
-use crate::model::{CYCLES_PER_SECOND, Context, Cycles, Peripheral, Pin, Signal};
+use crate::model::{CYCLES_PER_SECOND, Context, Cycles, Peripheral, Pin, Side, Signal};
 use crate::write_protection::WriteProtection;
 use interrupts::Interrupts;
 
@@ -29,6 +29,8 @@ const WPSR: u32 = 0xE8;
 
 /// Period at which pins are sampled while an interrupt is enabled: the world does not signal changes of a level.
 const POLL: Cycles = CYCLES_PER_SECOND / 10_000;
+/// PMC identifier of PIOA; those of the others follow.
+const FIRST_IDENTIFIER: u8 = 11;
 
 /// A set/clear pair of registers and what it sets.
 #[derive(Debug, Clone, Copy)]
@@ -62,6 +64,10 @@ pub struct Pio {
     written_at_once: Bits,
     interrupts: Interrupts,
     protection: WriteProtection,
+    /// Registers are written without the controller's clock, but the pins are sampled by it (datasheet 31.4.2).
+    clock_runs: bool,
+    /// Lines that peripherals drive, and their levels.
+    outputs_of_peripherals: (u32, u32),
     /// Levels of the pins when last sampled: PDSR.
     pins: u32,
     next_sample: Cycles,
@@ -87,6 +93,8 @@ impl Pio {
             written_at_once: Bits(0),
             interrupts: Interrupts::default(),
             protection: WriteProtection::new(*b"PIO"),
+            clock_runs: false,
+            outputs_of_peripherals: (0, 0),
             pins: u32::MAX,
             next_sample: 0,
             reported: (0, 0),
@@ -124,8 +132,10 @@ impl Pio {
     /// Samples the levels of all pins.
     fn sample_pins(&mut self, context: &mut Context) {
         let driven = self.driven();
-        let mut pins = driven & self.levels;
-        let mut others = !driven;
+        let (given, levels) = self.outputs_of_peripherals;
+        let given = given & !self.enabled.0;
+        let mut pins = driven & self.levels | given & levels;
+        let mut others = !(driven | given);
         while others != 0 {
             let line = others.trailing_zeros();
             let pulled_up = self.pull_up_off >> line & 1 == 0;
@@ -135,6 +145,24 @@ impl Pio {
         }
         let before = std::mem::replace(&mut self.pins, pins);
         self.interrupts.update(before, pins);
+    }
+
+    /// PDSR. Without the clock it shows the levels at the time at which the clock was switched off (datasheet 31.5.8).
+    fn read_pins(&mut self, context: &mut Context) -> u32 {
+        if self.clock_runs {
+            self.sample_pins(context);
+        } else {
+            context.warnings.warn_once(format!(
+                "{}: PDSR is read while the PIO's clock is off: it does not follow the pins; enable the clock in PMC_PCER0",
+                self.name()
+            ));
+        }
+        self.pins
+    }
+
+    /// True if pins have to be sampled for an interrupt.
+    fn watches_pins(&self) -> bool {
+        self.clock_runs && self.interrupts.enabled()
     }
 
     /// True if write protection covers the register (datasheet 31.5.13).
@@ -176,10 +204,7 @@ impl Peripheral for Pio {
             0x18 => self.outputs.0,
             0x28 => self.filters.0,
             ODSR => self.levels,
-            PDSR => {
-                self.sample_pins(context);
-                self.pins
-            }
+            PDSR => self.read_pins(context),
             ISR => self.interrupts.take_status(),
             0x58 => self.open_drain.0,
             PUSR => self.pull_up_off,
@@ -207,14 +232,14 @@ impl Peripheral for Pio {
         } else if !Self::is_protected(offset) || self.protection.permits(offset) {
             self.write_register(offset, value, context);
             self.report_pins(context);
-            if self.interrupts.enabled() {
+            if self.watches_pins() {
                 self.sample_pins(context);
             }
         }
     }
 
     fn advance(&mut self, context: &mut Context) {
-        if self.interrupts.enabled() && self.next_sample <= context.now {
+        if self.watches_pins() && self.next_sample <= context.now {
             self.sample_pins(context);
             // On a fixed grid, independent of samples taken for other reasons.
             self.next_sample = (context.now / POLL + 1) * POLL;
@@ -222,14 +247,29 @@ impl Peripheral for Pio {
     }
 
     fn signal(&mut self, signal: Signal, context: &mut Context) {
-        if let Signal::Reset(_) = signal {
-            self.reported_peripherals = None;
-            self.report_pins(context);
+        match signal {
+            Signal::Reset(_) => {
+                self.reported_peripherals = None;
+                self.report_pins(context);
+            }
+            Signal::PeripheralClocks(clocks) => {
+                self.clock_runs = clocks >> (FIRST_IDENTIFIER + self.port) & 1 != 0;
+                self.sample_pins(context);
+            }
+            Signal::WiresMoved if self.watches_pins() => self.sample_pins(context),
+            Signal::Outputs { driven, levels } => self.outputs_of_peripherals = (driven, levels),
+            _ => {}
         }
     }
 
+    /// The level at which the controller itself drives a pin.
+    fn output(&self, pin: Pin, _side: Side, _now: Cycles) -> Option<bool> {
+        let is_driven = pin.port == self.port && self.driven() >> pin.line & 1 != 0;
+        is_driven.then_some(self.levels >> pin.line & 1 != 0)
+    }
+
     fn next_event(&self) -> Option<Cycles> {
-        self.interrupts.enabled().then_some(self.next_sample)
+        self.watches_pins().then_some(self.next_sample)
     }
 
     fn interrupt(&self) -> bool {

@@ -13,8 +13,15 @@ const ODR: u32 = 0x14;
 const PIN: Pin = Pin { port: 1, line: 5 };
 const BIT: u32 = 1 << 5;
 
+/// PIOB is identifier 12.
+const CLOCK_ON: Signal = Signal::PeripheralClocks(1 << 12);
+const CLOCK_OFF: Signal = Signal::PeripheralClocks(0);
+
+/// PIOB with its clock on.
 fn pio() -> Bench<Pio> {
-    Bench::new(Pio::new(1))
+    let mut bench = Bench::new(Pio::new(1));
+    bench.signal(CLOCK_ON);
+    bench
 }
 
 #[test]
@@ -113,4 +120,48 @@ fn a_reset_releases_all_pins() {
     bench.model.reset();
     bench.signal(Signal::Reset(crate::model::Cause::User));
     assert_eq!(bench.world.driven.last().map(|(pin, level, _)| (*pin, *level)), Some((PIN, None)));
+}
+
+#[test]
+fn pins_are_not_followed_without_the_clock_and_that_is_reported() {
+    let mut bench = pio();
+    bench.world.levels.insert(PIN, false);
+    bench.signal(CLOCK_OFF);
+    bench.world.levels.insert(PIN, true);
+    assert_eq!(bench.read(PDSR) & BIT, 0, "the level when the clock was switched off");
+    let reports = bench.reports();
+    assert!(matches!(&reports[..], [report] if report.starts_with("PIOB: PDSR is read while the PIO's clock is off")));
+    bench.signal(CLOCK_ON);
+    assert_eq!(bench.read(PDSR) & BIT, BIT);
+    assert_eq!(bench.reports(), Vec::<String>::new());
+}
+
+#[test]
+fn outputs_are_driven_without_the_clock() {
+    let mut bench = Bench::new(Pio::new(1));
+    bench.write(OER, BIT);
+    bench.write(SODR, BIT);
+    assert_eq!(bench.world.driven.last().map(|(pin, level, _)| (*pin, *level)), Some((PIN, Some(true))));
+}
+
+#[test]
+fn no_edge_interrupts_without_the_clock() {
+    let mut bench = pio();
+    bench.write(IER, BIT);
+    bench.signal(CLOCK_OFF);
+    bench.world.levels.insert(PIN, false);
+    bench.run(10 * POLL);
+    assert!(!bench.model.interrupt());
+    assert_eq!(bench.model.next_event(), None);
+}
+
+#[test]
+fn pin_of_a_peripheral_shows_the_level_that_the_peripheral_drives() {
+    let mut bench = pio();
+    bench.signal(Signal::Outputs { driven: BIT, levels: 0 });
+    assert_eq!(bench.read(PDSR) & BIT, BIT, "the pin is not the peripheral's");
+    bench.write(PDR, BIT);
+    assert_eq!(bench.read(PDSR) & BIT, 0);
+    bench.signal(Signal::Outputs { driven: BIT, levels: BIT });
+    assert_eq!(bench.read(PDSR) & BIT, BIT);
 }

@@ -35,6 +35,7 @@ const MOSCXTS: u32 = 1;
 const LOCKA: u32 = 1 << 1;
 const MCKRDY: u32 = 1 << 3;
 const LOCKU: u32 = 1 << 6;
+const OSCSELS: u32 = 1 << 7;
 const PCKRDY0: u32 = 1 << 8;
 const MOSCSELS: u32 = 1 << 16;
 const MOSCRCS: u32 = 1 << 17;
@@ -61,7 +62,7 @@ const HIGHEST_HZ: u32 = 84_000_000;
 const GATED: u64 = 0x1FFF_FFFF_FF00;
 
 /// Status bits of the parts that take time to become ready.
-const SETTLING: [u32; 8] = [MOSCXTS, LOCKA, MCKRDY, LOCKU, PCKRDY0, PCKRDY0 << 1, PCKRDY0 << 2, MOSCSELS];
+const SETTLING: [u32; 9] = [MOSCXTS, LOCKA, MCKRDY, LOCKU, OSCSELS, PCKRDY0, PCKRDY0 << 1, PCKRDY0 << 2, MOSCSELS];
 
 /// The power management controller.
 pub struct Pmc {
@@ -78,7 +79,7 @@ pub struct Pmc {
     requested: u32,
     status: u32,
     /// Instant at which each bit of [`SETTLING`] is set.
-    ready: [Option<Cycles>; 8],
+    ready: [Option<Cycles>; 9],
     /// Instant at which MAINF has been counted.
     counted: Option<Cycles>,
     protection: WriteProtection,
@@ -101,7 +102,7 @@ impl Pmc {
             startup: [0; 2],
             requested: 0,
             status: MCKRDY | MOSCSELS | MOSCRCS,
-            ready: [None; 8],
+            ready: [None; 9],
             counted: Some(0),
             protection: WriteProtection::new(*b"PMC"),
             signalled_hz: RESET_HZ,
@@ -314,7 +315,8 @@ impl Peripheral for Pmc {
 
     fn write(&mut self, offset: u32, value: u32, context: &mut Context) {
         match offset {
-            IER => self.mask |= value,
+            // OSCSELS has no interrupt (datasheet 28.14.12).
+            IER => self.mask |= value & !OSCSELS,
             IDR => self.mask &= !value,
             WPMR => self.protection.set_mode(value),
             FOCR => {}
@@ -333,10 +335,15 @@ impl Peripheral for Pmc {
     }
 
     fn signal(&mut self, signal: Signal, context: &mut Context) {
-        if let Signal::Reset(_) = signal {
-            self.counted = Some(context.now + slow_clocks(16));
-            context.signals.push(Signal::MasterClock(RESET_HZ));
-            context.signals.push(Signal::PeripheralClocks(0));
+        match signal {
+            Signal::Reset(_) => {
+                self.counted = Some(context.now + slow_clocks(16));
+                context.signals.push(Signal::MasterClock(RESET_HZ));
+                context.signals.push(Signal::PeripheralClocks(0));
+            }
+            Signal::SlowCrystal(then) if then > context.now => self.become_ready_at(OSCSELS, then),
+            Signal::SlowCrystal(_) => self.status |= OSCSELS,
+            _ => {}
         }
     }
 

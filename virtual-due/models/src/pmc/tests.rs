@@ -1,5 +1,7 @@
-use super::{CYCLES_PER_SECOND, LOCKA, MCFR, MCKR, MCKRDY, MOR, MOSCSELS, MOSCXTS, PCER0, PCSR0, PLLAR, Pmc, SR, WPMR};
-use crate::model::Signal;
+use super::{
+    CYCLES_PER_SECOND, LOCKA, MCFR, MCKR, MCKRDY, MOR, MOSCSELS, MOSCXTS, OSCSELS, PCER0, PCSR0, PLLAR, Pmc, SR, WPMR,
+};
+use crate::model::{Peripheral, Signal};
 use crate::test_support::Bench;
 
 fn wait(bench: &mut Bench<Pmc>, bit: u32) -> u64 {
@@ -40,6 +42,20 @@ fn the_main_clock_is_measured_against_the_slow_clock() {
     assert_eq!(bench.read(MCFR), 0);
     bench.run(CYCLES_PER_SECOND / 1000);
     assert_eq!(bench.read(MCFR), 0x1_0000 + 5859);
+}
+
+#[test]
+fn slow_crystal_is_shown_once_it_has_started_and_over_resets() {
+    let mut bench = Bench::new(Pmc::new());
+    bench.signal(Signal::SlowCrystal(1000));
+    bench.run(999);
+    assert_eq!(bench.read(SR) & OSCSELS, 0);
+    bench.run(1);
+    assert_eq!(bench.read(SR) & OSCSELS, OSCSELS);
+    bench.model.reset();
+    assert_eq!(bench.read(SR) & OSCSELS, 0);
+    bench.signal(Signal::SlowCrystal(1000));
+    assert_eq!(bench.read(SR) & OSCSELS, OSCSELS);
 }
 
 #[test]

@@ -156,6 +156,26 @@ impl Channel {
         self.dead_time = self.next_dead_time.take().unwrap_or(self.dead_time);
     }
 
+    /// Level of PWML now, without its dead time: the complement of OC, which leaves CPOL at CDTY.
+    pub fn low_side_level(&self, timing: Timing, now: Cycles) -> bool {
+        let runs = self.enabled && timing.period != 0;
+        let reached_duty = runs && self.counter(timing, now) >= self.duty;
+        let oc = reached_duty != (self.mode & CPOL != 0);
+        oc == (self.mode & DTLI != 0)
+    }
+
+    /// The next instant after `now` at which the comparator's output changes: at CDTY, on the way back, or with the period.
+    pub fn next_edge(&self, timing: Timing, now: Cycles) -> Option<Cycles> {
+        if !self.enabled || timing.clocks() == 0 {
+            return None;
+        }
+        let duty = u64::from(self.duty.min(timing.period));
+        let clocks = u64::from(timing.clocks());
+        let edges = [duty, clocks - duty + 1, clocks, clocks + duty];
+        let times = edges.iter().filter_map(|edge| self.ticks.time(self.began + edge));
+        times.filter(|time| *time > now).min()
+    }
+
     /// High clocks of PWML, of the clocks of a period.
     pub fn low_side(&self, timing: Timing) -> (u32, u32) {
         let starts_high = self.mode & CPOL != 0;

@@ -191,6 +191,16 @@ impl Pwm {
         })
     }
 
+    /// Level of PWML.
+    fn low_side_level(&self, index: usize, now: Cycles) -> bool {
+        let bit = 1 << (16 + index);
+        if self.overridden & bit == 0 {
+            self.channels[index].low_side_level(self.timing(index), now)
+        } else {
+            self.override_values & bit != 0
+        }
+    }
+
     /// Reports changed duties to the world.
     fn report_duties(&mut self, at: Cycles, context: &mut Context) {
         for index in 0..CHANNELS {

@@ -1,8 +1,8 @@
 //! The PWM as a peripheral: access to its registers (datasheet 38.7), time, its pins.
 
-use super::Pwm;
 use super::channel::{CHANNELS, channel_clock};
-use crate::model::{Context, Cycles, Peripheral, Signal};
+use super::{LOW_SIDE_LINES, Pwm};
+use crate::model::{Context, Cycles, Peripheral, Pin, Side, Signal};
 use crate::pdc::Pdc;
 
 const CLK: u32 = 0x00;
@@ -230,6 +230,17 @@ impl Peripheral for Pwm {
             })
             .filter_map(|index| self.channels[index].period_end(self.timing(index)))
             .min()
+    }
+
+    fn output(&self, pin: Pin, side: Side, now: Cycles) -> Option<bool> {
+        let index = LOW_SIDE_LINES.iter().position(|line| *line == u32::from(pin.line))?;
+        (pin.port == PIOC && side == Side::B).then(|| self.low_side_level(index, now))
+    }
+
+    fn next_output_edge(&self, pin: Pin, side: Side, now: Cycles) -> Option<Cycles> {
+        let index = LOW_SIDE_LINES.iter().position(|line| *line == u32::from(pin.line))?;
+        let is_output = pin.port == PIOC && side == Side::B;
+        is_output.then(|| self.channels[index].next_edge(self.timing(index), now))?
     }
 
     fn interrupt(&self) -> bool {

@@ -1,5 +1,5 @@
 use super::Pwm;
-use crate::model::{Peripheral, Signal};
+use crate::model::{Peripheral, Pin, Side, Signal};
 use crate::test_support::Bench;
 
 const CLK: u32 = 0x00;
@@ -228,4 +228,29 @@ fn protected_group_refuses_writes() {
     bench.run(200);
     assert_eq!(bench.read(cprd(7)), 100);
     assert_eq!(bench.read(WPSR), (0x2F0 << 16) | 1 << 7 | 1 << 3);
+}
+
+#[test]
+fn level_of_a_low_side_follows_the_period() {
+    let low_side = Pin { port: 2, line: 24 };
+    for (mode, levels) in [(0, [true, true, false, false]), (CPOL, [false, false, true, true])] {
+        let bench = running(7, mode);
+        let seen = [0, 24, 25, 99].map(|clock| bench.model.output(low_side, Side::B, clock));
+        assert_eq!(seen, levels.map(Some), "{mode:#x}");
+    }
+    assert_eq!(running(7, 0).model.output(low_side, Side::A, 0), None);
+}
+
+#[test]
+fn each_change_of_a_low_side_in_a_period_is_an_edge() {
+    let low_side = Pin { port: 2, line: 24 };
+    for (mode, period, changes) in [(0, 100, vec![25]), (CPOL, 100, vec![25]), (CALG, 200, vec![25, 176])] {
+        let model = running(7, mode).model;
+        let level = |at: u64| model.output(low_side, Side::B, at);
+        let edge = |now: &u64| model.next_output_edge(low_side, Side::B, *now);
+        let edges = std::iter::successors(edge(&0), edge).take_while(|at| *at < period);
+        let seen: Vec<u64> = edges.filter(|at| level(*at) != level(at - 1)).collect();
+        assert_eq!(seen, changes, "{mode:#x}");
+        assert_eq!((1..period).filter(|at| level(*at) != level(at - 1)).collect::<Vec<_>>(), changes, "{mode:#x}");
+    }
 }

@@ -1,6 +1,6 @@
 //! A channel: registers, clock control and the counter (datasheet 36.6.2 to 36.6.7).
 
-use super::mode::Mode;
+use super::mode::{Mode, Waveform};
 use crate::model::{Context, Cycles};
 use crate::ticks::Ticks;
 
@@ -140,7 +140,7 @@ impl Channel {
                 self.mode = Mode(value);
                 self.counting_down &= self.mode.turns();
                 self.follow_clock(context);
-                if self.mode.needs_external_signal() {
+                if self.mode.has_burst_gate() {
                     return false;
                 }
             }
@@ -225,19 +225,46 @@ impl Channel {
 
     /// Advances the counter to now, with all compare events on the way.
     pub fn advance(&mut self, context: &Context) {
-        while let Some((ticks, value)) = self.next_meeting()
-            && let Some(at) = self.clock.time(self.value_tick + ticks)
-            && at <= context.now
-        {
-            self.value_tick += ticks;
-            self.value = value;
-            self.meet(ticks, at);
+        while let Some(at) = self.next_meeting_time().filter(|at| *at <= context.now) {
+            self.advance_to_meeting(at);
         }
         self.follow_clock(context);
     }
 
+    /// Instant of the next value at which something happens, by a clock of its own.
+    pub fn next_meeting_time(&self) -> Option<Cycles> {
+        self.next_meeting().and_then(|(ticks, _)| self.time_of(ticks))
+    }
+
+    /// Instant of a later tick of a clock of its own.
+    pub fn time_of(&self, ticks: u64) -> Option<Cycles> {
+        self.clock.time(self.value_tick.saturating_add(ticks))
+    }
+
+    /// Advances the counter to the next value at which something happens, at its instant.
+    pub fn advance_to_meeting(&mut self, at: Cycles) {
+        if let Some((ticks, value)) = self.next_meeting() {
+            self.value_tick += ticks;
+            self.value = value;
+            self.meet(ticks, at);
+        }
+    }
+
+    /// Counts one edge of an external clock.
+    pub fn count_edge(&mut self, at: Cycles) {
+        match self.next_meeting() {
+            None => {}
+            Some((1, value)) => {
+                self.value = value;
+                self.meet(1, at);
+            }
+            Some(_) if self.counting_down => self.value -= 1,
+            Some(_) => self.value += 1,
+        }
+    }
+
     /// The next value at which something happens, and how many ticks away it is.
-    fn next_meeting(&self) -> Option<(u64, u32)> {
+    pub(super) fn next_meeting(&self) -> Option<(u64, u32)> {
         if !self.started {
             return None;
         }
@@ -302,15 +329,48 @@ impl Channel {
         }
     }
 
-    /// Time of the counter's next event that raises the interrupt or moves a TIOA that may trigger the ADC.
-    pub fn next_event(&self) -> Option<Cycles> {
+    /// True if an external event raises the interrupt.
+    pub fn event_raises(&self) -> bool {
+        self.interrupt_mask & ETRGS & !self.status != 0
+    }
+
+    /// Ticks to the counter's next event that raises the interrupt or moves a TIOA that may trigger the ADC.
+    pub fn ticks_to_event(&self) -> Option<u64> {
         let raises = self.interrupt_mask & COUNTER_EVENTS & !self.status != 0;
         let moves = self.triggers && self.mode.is_waveform() && (self.mode.a_at_ra() != 0 || self.mode.a_at_rc() != 0);
         if !(raises || moves) {
             return None;
         }
-        let (ticks, _) = self.next_meeting()?;
-        self.clock.time(self.value_tick + ticks)
+        self.next_meeting().map(|(ticks, _)| ticks)
+    }
+
+    /// A lower bound of the ticks to the `count`th rise, or fall, of TIOA: two changes in one direction are a whole period
+    /// apart, or two of three where the counter turns.
+    pub fn ticks_to_edges(&self, count: u64) -> Option<u64> {
+        let (first, _) = self.next_meeting()?;
+        let top = if self.rc == 0 { 1 << 32 } else { u64::from(self.rc) };
+        let (edges, period) = match self.mode.waveform() {
+            Waveform::Up => (1, 1 << 32),
+            Waveform::UpRc => (1, top),
+            Waveform::UpDown => (2, 1 << 33),
+            Waveform::UpDownRc => (2, 2 * top),
+        };
+        Some(first.saturating_add((count.saturating_sub(1) / edges).saturating_mul(period)))
+    }
+
+    /// Level of TIOA where it is an output.
+    pub fn tioa_output(&self) -> Option<bool> {
+        self.mode.is_waveform().then_some(self.tioa)
+    }
+
+    /// Level of TIOB where it is an output.
+    pub fn tiob_output(&self) -> Option<bool> {
+        (self.mode.is_waveform() && !self.mode.tiob_is_input()).then_some(self.tiob)
+    }
+
+    /// True if the counter runs.
+    pub fn runs(&self) -> bool {
+        self.started
     }
 }
 

@@ -2,14 +2,15 @@
 //!
 //! Channel `c` has its registers at `0x40 · c`; the block's own follow at 0xC0. There is an interrupt line for each
 //! channel. Block 0 signals the rising edges of its TIOA outputs, which may trigger the ADC, each at its time. The quadrature
-//! decoder is not modelled, and the external clocks XC0 to XC2 do not run.
+//! decoder and the burst gates are not modelled, and nothing drives the pins TCLK0 to TCLK8.
 
 mod capture;
+mod chaining;
 mod channel;
 mod mode;
 mod waveform;
 
-use crate::model::{Context, Cycles, Peripheral, Pin, Signal};
+use crate::model::{Context, Cycles, Peripheral, Pin, Side, Signal};
 use crate::write_protection::WriteProtection;
 use channel::Channel;
 
@@ -25,7 +26,7 @@ const WPMR: u32 = 0xE4;
 const SYNC: u32 = 1;
 const QDEN: u32 = 1 << 8;
 
-/// TIOA and TIOB of the nine channels (datasheet 9.3).
+/// TIOA and TIOB of the nine channels: as peripheral A on PIOA, as peripheral B elsewhere (datasheet 9.3).
 const PINS: [(Pin, Pin); 9] = [
     (pin(1, 25), pin(1, 27)),
     (pin(0, 2), pin(0, 3)),
@@ -47,6 +48,8 @@ const fn pin(port: u8, line: u8) -> Pin {
 pub struct Tc {
     block: usize,
     channels: [Channel; 3],
+    /// Levels of TIOA whose edges the chained channels have counted.
+    levels: [bool; 3],
     block_mode: u32,
     fault_mode: u32,
     protection: WriteProtection,
@@ -58,13 +61,16 @@ impl Tc {
         Self {
             block,
             channels: std::array::from_fn(|_| Channel::new(block == 0)),
+            levels: [false; 3],
             block_mode: 0,
             fault_mode: 0,
             protection: WriteProtection::new(*b"TIM"),
         }
     }
 
+    /// Passes edges of TIOA on, to chained channels and to the chip.
     fn signal_edges(&mut self, context: &mut Context) {
+        self.count_edges(context.now);
         for (number, channel) in (0..).zip(&mut self.channels) {
             let edges = std::mem::take(&mut channel.edges);
             context.signals.extend((0..edges).map(|_| Signal::Tioa(number)));
@@ -84,6 +90,16 @@ impl Tc {
         }
     }
 
+    /// Warns of running channels whose clock is a pin.
+    fn check_clocks(&self, context: &mut Context) {
+        for (index, pin) in (0..3).filter_map(|index| Some((index, self.missing_clock(index)?))) {
+            let name = self.name();
+            let text =
+                format!("{name}: channel {index} stands still: its clock is the pin TCLK{pin}, which nothing drives");
+            context.warnings.warn_once(text);
+        }
+    }
+
     fn name(&self) -> &'static str {
         ["TC0", "TC1", "TC2"].get(self.block).copied().unwrap_or("TC")
     }
@@ -96,7 +112,7 @@ impl Tc {
                 }
             }
             BMR if self.protection.permits(offset) => {
-                self.block_mode = value;
+                self.set_block_mode(value);
                 if value & QDEN != 0 {
                     context.warnings.unmodelled(self.name(), offset);
                 }
@@ -140,6 +156,7 @@ impl Peripheral for Tc {
         let Some(channel) = self.channels.get_mut((offset / 0x40) as usize) else {
             self.write_block(offset, value, context);
             self.signal_edges(context);
+            self.check_clocks(context);
             return;
         };
         if channel::is_protected(offset % 0x40) && !self.protection.permits(offset) {
@@ -149,14 +166,30 @@ impl Peripheral for Tc {
             context.warnings.unmodelled(name, offset);
         }
         self.signal_edges(context);
+        self.check_clocks(context);
     }
 
     fn advance(&mut self, context: &mut Context) {
-        for channel in &mut self.channels {
-            channel.advance(context);
-        }
+        self.advance_channels(context);
         self.watch_pins(context);
         self.signal_edges(context);
+    }
+
+    fn next_output_edge(&self, pin: Pin, side: Side, now: Cycles) -> Option<Cycles> {
+        let mut pins = PINS[3 * self.block..].iter().take(3);
+        let index = pins.position(|(tioa, tiob)| pin == *tioa || pin == *tiob)?;
+        self.output(pin, side, now)?;
+        self.next_meeting(index)
+    }
+
+    fn output(&self, pin: Pin, side: Side, _now: Cycles) -> Option<bool> {
+        let expected = if pin.port == 0 { Side::A } else { Side::B };
+        let mut outputs = PINS[3 * self.block..].iter().zip(&self.channels).filter(|_| side == expected);
+        outputs.find_map(|((tioa, tiob), channel)| match pin {
+            _ if pin == *tioa => channel.tioa_output(),
+            _ if pin == *tiob => channel.tiob_output(),
+            _ => None,
+        })
     }
 
     /// At another master clock the counters continue from their values.
@@ -167,7 +200,7 @@ impl Peripheral for Tc {
     }
 
     fn next_event(&self) -> Option<Cycles> {
-        self.channels.iter().filter_map(Channel::next_event).min()
+        (0..3).filter_map(|index| self.next_channel_event(index)).min()
     }
 
     fn interrupt(&self) -> bool {
@@ -183,5 +216,7 @@ impl Peripheral for Tc {
     }
 }
 
+#[cfg(test)]
+mod chaining_tests;
 #[cfg(test)]
 mod tests;

@@ -33,7 +33,7 @@ impl Mode {
         self.0 & (1 << bit) != 0
     }
 
-    /// Frequency of the source and its divisor: TIMER_CLOCK1…5; nothing drives XC0…2.
+    /// Frequency of the source and its divisor: TIMER_CLOCK1…5. XC0…2 are counted edge by edge.
     pub fn clock(self, master_clock_hz: u32) -> (u32, u32) {
         match self.0 & 7 {
             0 => (master_clock_hz, 2),
@@ -45,9 +45,19 @@ impl Mode {
         }
     }
 
-    /// XC0…2 as the clock, or a burst gate.
-    pub fn needs_external_signal(self) -> bool {
-        self.0 & 7 > 4 || self.field(4) != 0
+    /// The line XC0…2 that is the clock.
+    pub fn external_clock(self) -> Option<usize> {
+        (self.0 as usize & 7).checked_sub(5)
+    }
+
+    /// CLKI: the counter counts falling edges of its clock.
+    pub fn counts_falling_edges(self) -> bool {
+        self.bit(3)
+    }
+
+    /// BURST: a line XC0…2 gates the clock.
+    pub fn has_burst_gate(self) -> bool {
+        self.field(4) != 0
     }
 
     pub fn is_waveform(self) -> bool {
@@ -75,6 +85,11 @@ impl Mode {
 
     pub fn disables_at_rc(self) -> bool {
         self.bit(7)
+    }
+
+    /// The line XC0…2 that is the external event (EEVT = 1…3).
+    pub fn event_line(self) -> Option<usize> {
+        (self.field(10) as usize).checked_sub(1)
     }
 
     /// TIOB is an input: the external event (EEVT = 0).

@@ -1,38 +1,38 @@
 use super::Tc;
-use crate::model::{Peripheral, Pin, Signal};
+use crate::model::{Peripheral, Pin, Side, Signal};
 use crate::test_support::Bench;
 
-const CCR: u32 = 0x00;
-const CMR: u32 = 0x04;
-const CV: u32 = 0x10;
-const RA: u32 = 0x14;
+pub const CCR: u32 = 0x00;
+pub const CMR: u32 = 0x04;
+pub const CV: u32 = 0x10;
+pub const RA: u32 = 0x14;
 const RB: u32 = 0x18;
-const RC: u32 = 0x1C;
-const SR: u32 = 0x20;
-const IER: u32 = 0x24;
+pub const RC: u32 = 0x1C;
+pub const SR: u32 = 0x20;
+pub const IER: u32 = 0x24;
 const BCR: u32 = 0xC0;
 const WPMR: u32 = 0xE4;
 
-const START: u32 = 0b101;
+pub const START: u32 = 0b101;
 const CLKDIS: u32 = 0b10;
 const COVFS: u32 = 1 << 0;
 const LOVRS: u32 = 1 << 1;
 const CPAS: u32 = 1 << 2;
 const CPBS: u32 = 1 << 3;
-const CPCS: u32 = 1 << 4;
+pub const CPCS: u32 = 1 << 4;
 const LDRAS: u32 = 1 << 5;
 const LDRBS: u32 = 1 << 6;
-const ETRGS: u32 = 1 << 7;
+pub const ETRGS: u32 = 1 << 7;
 const CLKSTA: u32 = 1 << 16;
 const MTIOA: u32 = 1 << 17;
 const MTIOB: u32 = 1 << 18;
 
-const WAVE: u32 = 1 << 15;
-const UP_RC: u32 = 2 << 13;
+pub const WAVE: u32 = 1 << 15;
+pub const UP_RC: u32 = 2 << 13;
 const UP_DOWN_RC: u32 = 3 << 13;
 /// TIOA: set by RA, cleared by RC.
-const A_PULSE: u32 = 1 << 16 | 2 << 18;
-const EEVT_XC0: u32 = 1 << 10;
+pub const A_PULSE: u32 = 1 << 16 | 2 << 18;
+pub const EEVT_XC0: u32 = 1 << 10;
 
 /// Channel 0 of TC0 with these registers, started at time 0.
 fn started(mode: u32, ra: u32, rb: u32, rc: u32) -> Bench<Tc> {
@@ -259,4 +259,16 @@ fn write_protection_keeps_the_registers() {
     bench.write(WPMR, 0x5449_4D01);
     bench.write(RC, 9);
     assert_eq!(bench.read(RC), 3);
+}
+
+#[test]
+fn tioa_is_an_output_in_waveform_mode() {
+    let tioa = Pin { port: 1, line: 25 };
+    let mut bench = started(WAVE | UP_RC | A_PULSE, 25, 0, 100);
+    assert_eq!(bench.model.output(tioa, Side::B, 0), Some(false));
+    bench.run(50);
+    assert_eq!(bench.model.output(tioa, Side::B, 50), Some(true));
+    assert_eq!(bench.model.output(tioa, Side::A, 50), None);
+    bench.write(CMR, 0);
+    assert_eq!(bench.model.output(tioa, Side::B, 50), None);
 }

@@ -69,9 +69,9 @@ impl Channel {
         }
     }
 
-    /// An edge of TIOB as the external event.
+    /// An edge of the external event, which EEVT selects.
     pub(super) fn external_event(&mut self, level: bool, at: Cycles) {
-        if !self.mode.tiob_is_input() || !self.mode.event_edges().include(level) {
+        if !self.mode.is_waveform() || !self.mode.event_edges().include(level) {
             return;
         }
         self.status |= ETRGS;
