@@ -157,15 +157,18 @@ fn three_crashes_in_a_minute_leave_the_arm_vented_and_the_telemetry_alive() {
     for crashes in 1..=3 {
         break_the_tick(&mut board, &UNDEFINED);
         assert_eq!(hello_after(&mut board).boot, crashes + 1);
-        assert_eq!(board.request(Command::Arm), RequestOutcome::Ack);
-        assert_eq!(board.request(pressures()), RequestOutcome::Ack);
-        assert_eq!(board.is_vented(), crashes == 3, "after {crashes} crashes");
+        if crashes < 3 {
+            assert_eq!(board.request(Command::Arm), RequestOutcome::Ack);
+            assert_eq!(board.request(pressures()), RequestOutcome::Ack);
+            assert!(!board.is_vented(), "after {crashes} crashes");
+        }
     }
+    assert_eq!(board.request(Command::Arm), RequestOutcome::Nack(Refusal::SafeMode));
     let counts = |board: &Board| [board.samples().count(), board.estimates().count(), board.healths().count()];
     let before = counts(&board);
     board.run_ms(10_000);
     for (before, after) in before.into_iter().zip(counts(&board)) {
-        assert!(after >= before + 49, "{before} messages, {after} after 10 s");
+        assert!(after >= before + 39, "{before} messages, {after} after 10 s");
     }
     assert!(board.is_vented());
 }
