@@ -25,12 +25,14 @@ mod cpu;
 mod dwt;
 mod elf;
 mod engine;
+mod faults;
 mod machine;
 mod memory;
 mod memory_map;
 mod peripheral_map;
 pub mod rig;
 
+pub use faults::FaultSchedule;
 pub use firmware_image::ImageError;
 pub use machine::{FLASH_BYTES, Machine, Reset};
 pub use rig::WiredRig;

@@ -2,7 +2,6 @@
 
 mod arm_file;
 mod error;
-#[cfg(unix)]
 mod fault_injection;
 mod flash_file;
 #[cfg(unix)]
@@ -12,6 +11,7 @@ mod stdio;
 
 use clap::{Parser, Subcommand, ValueEnum};
 use error::Error;
+use fault_injection::FaultInjector;
 use flash_file::FlashFile;
 use rig_twin::Scenario;
 use run::Run;
@@ -55,6 +55,9 @@ struct Arguments {
     /// File of the chip's flash, 512 KiB, kept between runs; the firmware is written over it. Made if there is none.
     #[arg(long, value_name = "FILE")]
     flash: Option<PathBuf>,
+    /// File of faults: lines of `SECONDS FAULT` or `SECONDS+DURATION FAULT`, such as `12.5 imu3:reset`.
+    #[arg(long, value_name = "FILE")]
+    faults: Option<PathBuf>,
     /// Virtual seconds to run; without it the run lasts until Ctrl-C.
     #[arg(long, value_parser = seconds)]
     seconds: Option<f64>,
@@ -81,7 +84,7 @@ enum Serial {
     /// This process' input and output. A file is read at the port's baud rate in virtual time.
     Stdio,
     /// A pseudo-terminal, whose path is printed. Opening it resets the board, as it does on a Due. Lines on the standard
-    /// input inject faults: `unplug imu3`, `plug imu3`, `unplug bend2a`.
+    /// input inject faults: `imu3:reset`, `sda:held`, `clear sda:held`, `unplug bend2a`.
     #[cfg(unix)]
     Pty,
 }
@@ -100,16 +103,18 @@ impl Cli {
             let shown = path.display().to_string();
             FlashFile::load(path, &mut machine).map_err(|error| Error::Flash { path: shown, error })
         });
+        let faults = arguments.faults.map(|path| FaultInjector::of_file(&path, &machine)).transpose()?;
+        let mut faults = faults.unwrap_or_default();
         let paced = arguments.speed == Speed::Real;
         let mut run = Run::new(machine, flash.transpose()?, arguments.seconds, paced);
         match arguments.serial {
-            Serial::Stdio => run.execute(&mut stdio::Stdio::new()?, |_| ())?,
+            Serial::Stdio => run.execute(&mut stdio::Stdio::new()?, |machine| faults.apply(machine))?,
             #[cfg(unix)]
             Serial::Pty => {
                 let mut pty = pty::Pty::new()?;
                 eprintln!("serial port: {}", pty.path());
-                let injector = fault_injection::FaultInjector::new();
-                run.execute(&mut pty, |rig| injector.apply(rig))?;
+                let mut faults = faults.reading_stdin();
+                run.execute(&mut pty, |machine| faults.apply(machine))?;
             }
         }
         Ok(run.summary())

@@ -54,7 +54,11 @@ impl Run {
     }
 
     /// Runs to the end, or until Ctrl-C, or until the reader has gone; calls `inject` before every slice.
-    pub fn execute(&mut self, line: &mut dyn Line, mut inject: impl FnMut(&mut WiredRig)) -> std::io::Result<()> {
+    pub fn execute(
+        &mut self,
+        line: &mut dyn Line,
+        mut inject: impl FnMut(&mut Machine<WiredRig>),
+    ) -> std::io::Result<()> {
         let stop = Arc::new(AtomicBool::new(false));
         let flag = Arc::clone(&stop);
         ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed)).map_err(std::io::Error::other)?;
@@ -68,7 +72,7 @@ impl Run {
             if !bytes.is_empty() {
                 self.machine.world_mut().send(PORT, &bytes, now);
             }
-            inject(self.machine.world_mut());
+            inject(&mut self.machine);
             now = end.min(now + SLICE);
             self.machine.run_until(now);
             // After a reset the board may say what its flash holds: the file must hold it, too.

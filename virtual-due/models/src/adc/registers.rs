@@ -135,12 +135,13 @@ impl Peripheral for Adc {
     fn advance(&mut self, context: &mut Context) {
         while let Some(conversion) = self.sequence.take_completed(self.setup(), context) {
             let counts = context.world.adc_counts(conversion.channel, conversion.sampled_at).min(0xFFF);
-            self.complete(conversion.channel, counts, context);
+            let tag = context.world.adc_tag(conversion.channel);
+            self.complete(conversion.channel, (counts, tag), context);
         }
     }
 
     fn signal(&mut self, signal: Signal, context: &mut Context) {
-        if Mode(self.mode).trigger() == Some(signal) {
+        if Mode(self.mode).trigger() == Some(signal) && !context.world.adc_is_stopped() {
             self.start(context.now, context);
         }
     }
