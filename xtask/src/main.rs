@@ -6,6 +6,7 @@ mod board;
 mod commands;
 mod demo;
 mod dist;
+mod faults;
 mod pictures;
 mod results;
 mod style;
@@ -24,10 +25,13 @@ fn main() -> ExitCode {
         Some("dist") => dist::run(),
         Some("results") => results::run(),
         Some("style") => style::run(),
+        Some("faults") => faults::run(),
         Some("commands") => commands::run(),
         Some("pictures") => pictures::run(),
-        _ => Err("usage: cargo xtask demo | verify | bench | dist | style | results | commands | pictures | accept"
-            .to_owned()),
+        _ => Err(
+            "usage: cargo xtask demo | verify | bench | dist | style | results | faults | commands | pictures | accept"
+                .to_owned(),
+        ),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

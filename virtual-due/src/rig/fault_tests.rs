@@ -47,11 +47,11 @@ fn tags_are_wrong_in_every_scan_or_in_every_second() {
     let mut rig = with("adc:tags");
     assert_eq!((rig.adc_tag(7), rig.adc_tag(15)), (8, 0));
     let mut rig = with("adc:tags-every-other");
-    let tags = [0; 4].map(|_| {
-        rig.adc_counts(7, SECOND);
-        rig.adc_tag(7)
+    let tags = [3, 7, 3, 7, 3, 7].map(|channel| {
+        rig.adc_counts(channel, SECOND);
+        rig.adc_tag(channel)
     });
-    assert!(tags == [7, 8, 7, 8] || tags == [8, 7, 8, 7], "{tags:?}");
+    assert!(tags == [3, 7, 4, 8, 3, 7] || tags == [4, 8, 3, 7, 4, 8], "{tags:?}");
 }
 
 #[test]

@@ -11,6 +11,8 @@ pub(super) struct Faults {
     /// Something holds SCL low.
     pub scl: Option<Hold>,
     pub adc: Option<AdcFault>,
+    /// The last channel that was converted, and whether that was in an odd scan.
+    converted: (u8, bool),
 }
 
 /// Fault of the multiplexer.
@@ -38,6 +40,17 @@ pub(super) enum AdcFault {
 }
 
 impl Faults {
+    /// Counts scans: a scan converts its channels in rising order, unless a firmware gives an order of its own.
+    pub fn note_conversion(&mut self, channel: u8) {
+        let (last, is_odd) = self.converted;
+        self.converted = (channel, is_odd ^ (channel <= last));
+    }
+
+    /// True in every second scan.
+    pub fn is_odd_scan(&self) -> bool {
+        self.converted.1
+    }
+
     /// Sets or ends a fault; false if it is another device's.
     pub fn set(&mut self, fault: Fault, is_present: bool) -> bool {
         match fault {

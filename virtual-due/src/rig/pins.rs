@@ -13,6 +13,7 @@ pub const MUX_RESET: Pin = Pin { port: PIOB, line: 26 };
 impl World for WiredRig {
     fn adc_counts(&mut self, channel: u8, now: Cycles) -> u16 {
         self.advance_to(now);
+        self.faults.note_conversion(channel);
         if channel == self.pins.scan_channel {
             self.scans += 1;
             self.truth_at_scan = self.truth();
@@ -24,7 +25,7 @@ impl World for WiredRig {
     fn adc_tag(&mut self, channel: u8) -> u8 {
         let is_wrong = match self.faults.adc {
             Some(AdcFault::Tags) => true,
-            Some(AdcFault::TagsEveryOther) => self.scans % 2 == 1,
+            Some(AdcFault::TagsEveryOther) => self.faults.is_odd_scan(),
             Some(AdcFault::Stopped) | None => false,
         };
         if is_wrong { (channel + 1) % 16 } else { channel }
