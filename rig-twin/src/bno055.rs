@@ -3,6 +3,7 @@
 use crate::actuator::Lag;
 use crate::arm::ImuParameters;
 use crate::constants::{ACCELERATION_LAG_S, DRIFT_SESSION_SIGMA, FUSION_S, QUATERNION_UNIT_STEPS};
+use crate::faults::ImuFaults;
 use crate::gauss_markov::GaussMarkov;
 use crate::noise::{Noise, Seeds, Source};
 use crate::pose::EndPose;
@@ -21,6 +22,7 @@ pub(crate) struct Imu {
     error: Lag,
     noise: Noise,
     quaternion: [i16; 4],
+    faults: ImuFaults,
 }
 
 /// The mount's last pose and velocity, from which its acceleration follows.
@@ -62,6 +64,7 @@ impl Imu {
             error: Lag::new(0.0, ACCELERATION_LAG_S, FUSION_S),
             noise,
             quaternion: [0; 4],
+            faults: ImuFaults::new(of(Source::Fault)),
         };
         imu.fuse(pose, 0.0);
         imu
@@ -75,8 +78,14 @@ impl Imu {
         self.drift(temperature_k);
         let noise = parameters.heading_noise_rad * self.noise.gaussian();
         let turned = parameters.sensitivity * pose.heading_rad;
-        let heading = self.mount_rad + turned + self.drift_rad + error + noise + self.plane_error(pose.heading_rad);
-        self.quaternion = quaternion(-heading, parameters.pitch_rad, parameters.roll_rad);
+        let mut heading = self.mount_rad + turned + self.drift_rad + error + noise + self.plane_error(pose.heading_rad);
+        if self.faults.step() {
+            self.mount_rad -= heading;
+            heading = 0.0;
+        }
+        heading += self.faults.jump_rad();
+        let fused = quaternion(-heading, parameters.pitch_rad, parameters.roll_rad);
+        self.quaternion = self.faults.output(fused, self.quaternion);
     }
 
     /// Integrates the rate's bias: random walk, instability, temperature, and the rate's white noise.
@@ -95,9 +104,14 @@ impl Imu {
         -tilt * tilt / 4.0 * libm::sin(2.0 * (heading_rad - self.parameters.plane_direction_rad))
     }
 
-    /// The fusion's last output: w, x, y, z.
-    pub(crate) fn quaternion(&self) -> [i16; 4] {
-        self.quaternion
+    /// The fusion's last output: w, x, y, z; `None` without power and while it starts.
+    pub(crate) fn quaternion(&self) -> Option<[i16; 4]> {
+        self.faults.has_output().then_some(self.quaternion)
+    }
+
+    /// The faults on it.
+    pub(crate) fn faults_mut(&mut self) -> &mut ImuFaults {
+        &mut self.faults
     }
 }
 

@@ -32,6 +32,11 @@
 //! all sessions. The flaws' sizes were chosen so that the errors of maps and drift are near the paper's: agreement of
 //! results on the twin with the paper's is no evidence for either.
 //!
+//! # Faults
+//!
+//! [`Rig::inject`] lets sensors fail: a [`Fault`] has a name, such as `imu3:reset` or `bend2a:factor=1.3`, and a
+//! [`TimedFault`] a begin and an end. A rig without faults is the same to the bit as one that knows none.
+//!
 //! Contacts are modelled by their effect on the curvature; there are no forces.
 //!
 //! # Example
@@ -57,6 +62,7 @@ mod bno055;
 mod camera;
 mod constants;
 mod contact;
+mod faults;
 mod flaws;
 mod flex;
 mod gauss_markov;
@@ -76,6 +82,7 @@ mod temperature;
 pub use camera::{Camera, Frame};
 pub use constants::{BEND_SENSORS, MAX_REGULATORS, MAX_SEGMENTS, REGULATORS, SEGMENTS};
 pub use contact::Push;
+pub use faults::{BendPlace, Fault, FaultError, Hold, SegmentNumber, TimedFault, parse_schedule, reference_table};
 pub use heading_drift::HeadingDrift;
 pub use layout::{Layout, LayoutError, PerBendSensor, PerRegulator, PerSegment, SegmentLayout};
 pub use motion::Motion;

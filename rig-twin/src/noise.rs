@@ -32,6 +32,7 @@ pub(crate) enum Source {
     Instability,
     HeadingWalk,
     Schedule,
+    Fault,
 }
 
 /// A stream of random numbers.

@@ -8,6 +8,7 @@ use crate::constants::{
     SENSORS_PER_SEGMENT,
 };
 use crate::contact::{Contacts, Push};
+use crate::faults::{Fault, FaultError, SensorFaults, TimedFault};
 use crate::flex::{BendSensor, PairError, PairErrors};
 use crate::layout::{PerBendSensor, PerRegulator, PerSegment};
 use crate::noise::{Noise, Source};
@@ -39,6 +40,7 @@ pub struct Rig {
     temperature_k: f64,
     imus: PerSegment<Option<Imu>>,
     converter_noise: Noise,
+    faults: SensorFaults,
 }
 
 impl Rig {
@@ -81,6 +83,7 @@ impl Rig {
             imus: imus.map(|(segment, (imu, pose))| Some(Imu::new(imu?, segment, seeds, pose))).collect(),
             curves,
             converter_noise: Noise::of_session(seeds, Source::Converter, 0),
+            faults: SensorFaults::default(),
         }
     }
 
@@ -111,7 +114,7 @@ impl Rig {
             actuator.step(right - left)
         });
         let free_rad: PerSegment<f64> = free_rad.collect();
-        let touches = self.contacts.touches(self.grid_points as f64 * GRID_S, &free_rad);
+        let touches = self.contacts.touches(self.grid_s(), &free_rad);
         for (segment, curve) in self.curves.iter_mut().enumerate() {
             curve.bend(free_rad[segment], touches[segment], of_segment(&pressures_pa, segment));
         }
@@ -121,6 +124,7 @@ impl Rig {
                 sensor.step(&self.curves[segment], self.pair_error[segment], self.temperature_k);
             }
         }
+        self.apply_imu_faults();
         if self.grid_points % GRID_POINTS_PER_FUSION == 0 {
             self.temperature_k = self.temperature.step();
             self.pair_error = self.pair_errors.iter_mut().map(|errors| errors.step(self.temperature_k)).collect();
@@ -132,9 +136,49 @@ impl Rig {
         }
     }
 
+    /// Lets a sensor fail. Two faults of one sensor act one after the other, in the order of these calls.
+    ///
+    /// # Errors
+    /// [`FaultError::NotOnArm`] for a sensor that the arm does not have, [`FaultError::NotInSession`] for a fault that
+    /// does not act on a sensor's readings.
+    pub fn inject(&mut self, timed: TimedFault) -> Result<(), FaultError> {
+        let has_bend = |index| self.bend_sensors.get(index).is_some_and(Option::is_some);
+        let has_imu = |segment| self.imus.get(segment).is_some_and(Option::is_some);
+        let fault = timed.fault;
+        if !(fault.bend_sensor().is_none_or(has_bend) && fault.imu().is_none_or(has_imu)) {
+            return Err(FaultError::NotOnArm(fault.to_string()));
+        }
+        self.faults.add(timed)?;
+        self.apply_imu_faults();
+        Ok(())
+    }
+
+    /// Ends a fault now.
+    pub fn clear(&mut self, fault: Fault) {
+        self.faults.end(fault, self.grid_s());
+        self.apply_imu_faults();
+    }
+
+    fn apply_imu_faults(&mut self) {
+        if self.faults.is_empty() {
+            return;
+        }
+        let time_s = self.grid_s();
+        for (segment, imu) in self.imus.iter_mut().enumerate() {
+            if let Some(imu) = imu {
+                self.faults.apply_to_imu(segment, imu.faults_mut(), time_s);
+            }
+        }
+    }
+
+    /// Time of the last grid point, s.
+    fn grid_s(&self) -> f64 {
+        self.grid_points as f64 * GRID_S
+    }
+
     /// Time since the start, s.
     pub fn time_s(&self) -> f64 {
-        self.grid_points as f64 * GRID_S + self.pending_s
+        self.grid_s() + self.pending_s
     }
 
     /// True world pose of each segment's end, at the last grid point.
@@ -151,14 +195,14 @@ impl Rig {
     /// One fresh conversion of one bend sensor, counted from 0 in the order of [`adc_counts`](Self::adc_counts), for a
     /// converter that samples one channel after the other; `None`: no such sensor.
     pub fn convert(&mut self, sensor: usize) -> Option<u16> {
-        let sensor = self.bend_sensors.get(sensor)?.as_ref()?;
-        Some(sensor.convert(&mut self.converter_noise))
+        let counts = self.bend_sensors.get(sensor)?.as_ref()?.convert(&mut self.converter_noise);
+        Some(self.faults.convert(sensor, counts, self.grid_s()))
     }
 
     /// The IMUs' last fusion output, at most 10 ms old: w, x, y, z of each segment's unit, in steps of 1/16384; `None`:
-    /// no such unit.
+    /// no such unit, or one that a fault silences.
     pub fn imu_quaternions(&self) -> PerSegment<Option<[i16; 4]>> {
-        self.imus.iter().map(|imu| imu.as_ref().map(Imu::quaternion)).collect()
+        self.imus.iter().map(|imu| imu.as_ref().and_then(Imu::quaternion)).collect()
     }
 
     /// Bend angle that contacts add to each segment now, rad; 0 without contact.

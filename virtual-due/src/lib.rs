@@ -27,6 +27,7 @@ mod debugger;
 mod dwt;
 mod elf;
 mod engine;
+mod faults;
 mod machine;
 mod memory;
 mod memory_map;
@@ -36,6 +37,7 @@ mod pins;
 mod report;
 pub mod rig;
 
+pub use faults::FaultSchedule;
 pub use firmware_image::ImageError;
 pub use machine::{FLASH_BYTES, Machine, Reset};
 pub use pins::PinChange;

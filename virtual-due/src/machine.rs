@@ -213,6 +213,12 @@ impl<W: World> Machine<W> {
         self.reset(Cause::User);
     }
 
+    /// Power comes up again after it was lost: RAM and backup registers hold nothing of before.
+    pub fn power_on(&mut self) {
+        self.chip.memories.lose_ram();
+        self.reset(Cause::General);
+    }
+
     /// Board time: cycles of 84 MHz since power-on.
     pub fn now(&self) -> Cycles {
         self.chip.clock.now(self.cpu.instructions())

@@ -62,6 +62,14 @@ impl Memories {
         }
     }
 
+    /// RAM after a loss of power: a pattern, as it is not defined.
+    pub fn lose_ram(&mut self) {
+        for (start, region) in [(SRAM0, &self.sram0), (SRAM1, &self.sram1), (NFC_SRAM, &self.nfc_sram)] {
+            region.fill(0xA5);
+            self.changed.push((start, region.len() as u32));
+        }
+    }
+
     /// Maps all but the boot memory into the CPU.
     pub fn map(&self, cpu: &mut Engine) {
         // Flash is read-only here: stores reach the EEFC's latch buffer.

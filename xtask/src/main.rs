@@ -6,6 +6,7 @@ mod board;
 mod commands;
 mod demo;
 mod dist;
+mod faults;
 mod panics;
 mod pictures;
 mod results;
@@ -26,10 +27,11 @@ fn main() -> ExitCode {
         Some("dist") => dist::run(),
         Some("results") => results::run(),
         Some("style") => style::run(),
+        Some("faults") => faults::run(),
         Some("commands") => commands::run(),
         Some("pictures") => pictures::run(),
         _ => Err(
-            "usage: cargo xtask demo | verify | bench | panics | dist | style | results | commands | pictures | accept"
+            "usage: cargo xtask demo | verify | bench | faults | panics | dist | style | results | commands | pictures | accept"
                 .to_owned(),
         ),
     };

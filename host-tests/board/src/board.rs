@@ -75,6 +75,22 @@ impl Board {
         }
     }
 
+    /// Begins a fault, by its name.
+    ///
+    /// # Panics
+    /// If there is no such fault, or the board cannot have it.
+    pub fn inject(&mut self, fault: &str) {
+        self.machine.inject(fault.parse().expect("a fault")).expect("the board can have it");
+    }
+
+    /// Ends a fault, by its name.
+    ///
+    /// # Panics
+    /// If there is no such fault.
+    pub fn clear(&mut self, fault: &str) {
+        self.machine.clear(fault.parse().expect("a fault"));
+    }
+
     /// Runs the board, and receives its messages. A frame that a reset cut short is counted, and left out.
     pub fn run_ms(&mut self, ms: u64) {
         let end = self.machine.now() + ms * CYCLES_PER_SECOND / 1000;

@@ -49,7 +49,7 @@ impl DueProcess {
         Self { child, faults, port }
     }
 
-    /// Injects a fault: `unplug imu3`, `plug imu3`, `unplug bend2a`.
+    /// Injects a fault: `imu3:unplugged`, `clear imu3:unplugged`, `bend2a:open`.
     ///
     /// # Panics
     /// If it has ended.

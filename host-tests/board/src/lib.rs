@@ -6,8 +6,10 @@ mod board;
 pub mod browser;
 mod build;
 pub mod due;
+pub mod fault_rows;
 mod flash;
 mod replay;
+mod trial;
 mod view;
 
 pub use arms::WiredArm;
@@ -15,4 +17,5 @@ pub use board::{Board, Received, UART};
 pub use build::{elf, firmware};
 pub use flash::{flash_with, machine, stored_table};
 pub use replay::{Replayed, replay, table};
+pub use trial::Trial;
 pub use view::View;

@@ -170,3 +170,9 @@ fn string_length(source: &str) -> usize {
     }
     source.len()
 }
+
+/// Returns whether a file below `src` is compiled for tests alone, by its name.
+pub fn is_test(path: &str) -> bool {
+    let name = path.rsplit('/').next().unwrap_or(path);
+    name == "tests.rs" || name == "test_support.rs" || name.ends_with("_tests.rs") || path.contains("/tests/")
+}

@@ -9,6 +9,7 @@ use std::path::PathBuf;
 use clap::builder::Styles;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
+use rig_twin::TimedFault;
 
 pub use arm::NewArmArgs;
 pub use force::ForceArgs;
@@ -233,6 +234,10 @@ pub struct SimulateArgs {
     /// Write the truth as a camera above the arm sees it, into a file of its own and by its own clock
     #[arg(long, value_name = "CAMERA.csv")]
     pub camera: Option<PathBuf>,
+    /// Faults of the sensors: their names, each with its begin in s and, after a plus sign, its duration, such as
+    /// imu3:reset@12.5,imu2:jump=30@20+0.05; the reference has all names
+    #[arg(long, value_name = "FAULT@S", value_delimiter = ',')]
+    pub fault: Vec<TimedFault>,
     /// Session to write
     #[arg(short, long, value_name = "SESSION.csv")]
     pub output: PathBuf,

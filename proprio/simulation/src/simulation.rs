@@ -1,7 +1,9 @@
 //! The twin as a rig that is recorded: its own duty programme, sampled at a fixed rate.
 
 use proprio_session::check_seconds;
-use rig_twin::{Camera, EndPose, Frame, HeadingDrift, MotionProgram, PerBendSensor, PerSegment, Rig, Scenario, Setup};
+use rig_twin::{
+    Camera, EndPose, Frame, HeadingDrift, MotionProgram, PerBendSensor, PerSegment, Rig, Scenario, Setup, TimedFault,
+};
 
 use crate::error::SimulationError;
 
@@ -79,6 +81,15 @@ impl Simulation {
     #[must_use]
     pub fn with_rest(self, at_s: f64, for_s: f64) -> Self {
         Self { pause: Some((at_s, for_s)), ..self }
+    }
+
+    /// The same run with a fault of a sensor.
+    ///
+    /// # Errors
+    /// [`SimulationError::Fault`] if the arm does not have the sensor, or the fault is none of a sensor's readings.
+    pub fn with_fault(mut self, fault: TimedFault) -> Result<Self, SimulationError> {
+        self.rig.inject(fault)?;
+        Ok(self)
     }
 
     /// The rig at the newest sample.

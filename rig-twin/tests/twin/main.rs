@@ -4,6 +4,7 @@ mod calibration;
 mod camera;
 mod determinism;
 mod family;
+mod faults;
 mod kinematics;
 mod layouts;
 mod motion;

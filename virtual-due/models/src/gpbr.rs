@@ -1,6 +1,6 @@
 //! GPBR: eight words that keep their value over every reset except power-on (datasheet 18).
 
-use crate::model::{Context, Peripheral};
+use crate::model::{Cause, Context, Peripheral, Signal};
 
 /// The general purpose backup registers.
 #[derive(Debug, Default)]
@@ -27,6 +27,13 @@ impl Peripheral for Gpbr {
     }
 
     fn reset(&mut self) {}
+
+    /// Power-on clears the words.
+    fn signal(&mut self, signal: Signal, _context: &mut Context) {
+        if signal == Signal::Reset(Cause::General) {
+            self.words = [0; 8];
+        }
+    }
 }
 
 #[cfg(test)]

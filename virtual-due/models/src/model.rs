@@ -171,6 +171,16 @@ pub trait World {
     /// Result of converting an ADC channel, 0…15, now: counts 0…4095.
     fn adc_counts(&mut self, channel: u8, now: Cycles) -> u16;
 
+    /// The channel number that a conversion of `channel` is tagged with; another than its own is a fault of the converter.
+    fn adc_tag(&mut self, channel: u8) -> u8 {
+        channel
+    }
+
+    /// True if the converter ignores its triggers, which is a fault.
+    fn adc_is_stopped(&mut self) -> bool {
+        false
+    }
+
     /// The devices on the wires of TWI0 or TWI1.
     fn i2c(&mut self, twi: usize) -> &mut dyn I2c;
 

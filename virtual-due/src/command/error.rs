@@ -3,7 +3,7 @@
 use std::net::SocketAddr;
 
 use calibration_tables::FileError;
-use rig_twin::{LayoutError, MAX_SEGMENTS};
+use rig_twin::{FaultError, LayoutError, MAX_SEGMENTS};
 use virtual_due::ImageError;
 
 /// Reason why the firmware cannot be run.
@@ -72,6 +72,24 @@ pub enum Error {
         address: SocketAddr,
         /// The system's error.
         error: std::io::Error,
+    },
+    /// The file of faults cannot be read.
+    #[error("{path}: {error}; --faults takes a file of lines such as `12.5 imu3:reset`")]
+    FaultFile {
+        /// The path as it was given.
+        path: String,
+        /// The system's error.
+        error: std::io::Error,
+    },
+    /// A line of the file of faults is wrong.
+    #[error("{path}, line {line}: {error}; docs/reference/faults.md lists all faults")]
+    Fault {
+        /// The path as it was given.
+        path: String,
+        /// The line, counted from 1.
+        line: usize,
+        /// The reason.
+        error: FaultError,
     },
     /// The serial port cannot be opened.
     #[error("serial port: {0}")]

@@ -19,7 +19,7 @@ use gdbstub::target::ext::target_description_xml_override::{
     TargetDescriptionXmlOverride, TargetDescriptionXmlOverrideOps,
 };
 use gdbstub::target::{Target, TargetError, TargetResult};
-use virtual_due::rig::WiredRig;
+use virtual_due::{Machine, WiredRig};
 
 use super::gdb_connection::GdbConnection;
 use super::run::{Line, Progress, Run};
@@ -37,7 +37,7 @@ const CORE: std::ops::Range<u32> = 0xE000_0000..0xE010_0000;
 pub fn debug(
     run: &mut Run,
     line: &mut dyn Line,
-    inject: &mut dyn FnMut(&mut WiredRig),
+    inject: &mut dyn FnMut(&mut Machine<WiredRig>),
     address: SocketAddr,
 ) -> io::Result<()> {
     let listener = TcpListener::bind(address)?;
@@ -68,7 +68,7 @@ fn io_error(error: GdbStubError<io::Error, io::Error>) -> io::Error {
 struct Board<'a> {
     run: &'a mut Run,
     line: &'a mut dyn Line,
-    inject: &'a mut dyn FnMut(&mut WiredRig),
+    inject: &'a mut dyn FnMut(&mut Machine<WiredRig>),
     /// GDB wants one instruction.
     steps: bool,
 }

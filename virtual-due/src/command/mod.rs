@@ -2,7 +2,6 @@
 
 mod arm_file;
 mod error;
-#[cfg(unix)]
 mod fault_injection;
 mod flash_file;
 mod gdb;
@@ -17,6 +16,7 @@ mod truth_file;
 
 use clap::{Parser, Subcommand, ValueEnum};
 use error::Error;
+use fault_injection::FaultInjector;
 use flash_file::FlashFile;
 use observation::{Expectations, Observer};
 use pins_file::PinsFile;
@@ -66,6 +66,9 @@ struct Arguments {
     /// File of the chip's flash, 512 KiB, kept between runs; the firmware is written over it. Made if there is none.
     #[arg(long, value_name = "FILE")]
     flash: Option<PathBuf>,
+    /// File of faults: lines of `SECONDS FAULT` or `SECONDS+DURATION FAULT`, such as `12.5 imu3:reset`.
+    #[arg(long, value_name = "FILE")]
+    faults: Option<PathBuf>,
     /// Virtual seconds to run; without it the run lasts until Ctrl-C.
     #[arg(long, value_parser = seconds)]
     seconds: Option<f64>,
@@ -108,7 +111,7 @@ enum Serial {
     /// This process' input and output. A file is read at the port's baud rate in virtual time.
     Stdio,
     /// A pseudo-terminal, whose path is printed. Opening it resets the board, as it does on a Due. Lines on the standard
-    /// input inject faults: `unplug imu3`, `plug imu3`, `unplug bend2a`.
+    /// input inject faults: `imu3:reset`, `sda:held`, `clear sda:held`, `unplug bend2a`.
     #[cfg(unix)]
     Pty,
 }
@@ -142,20 +145,22 @@ impl Cli {
         let observer = Observer::new(&arguments.expectations);
         let (flash, truth, pins) = (flash.transpose()?, truth.transpose()?, pins.transpose()?);
         let recorders = Recorders { flash, truth, pins, observer };
+        let faults = arguments.faults.map(|path| FaultInjector::of_file(&path, &machine)).transpose()?;
+        let mut faults = faults.unwrap_or_default();
         let paced = arguments.speed == Speed::Real;
         let mut run = Run::new(machine, recorders, arguments.seconds, paced)?;
-        let mut drive = |line: &mut dyn Line, inject: &mut dyn FnMut(&mut WiredRig)| match arguments.gdb {
+        let mut drive = |line: &mut dyn Line, inject: &mut dyn FnMut(&mut Machine<WiredRig>)| match arguments.gdb {
             Some(address) => gdb::debug(&mut run, line, inject, address).map_err(|error| Error::Gdb { address, error }),
             None => run.execute(line, inject).map_err(Error::Serial),
         };
         match arguments.serial {
-            Serial::Stdio => drive(&mut stdio::Stdio::new()?, &mut |_| ())?,
+            Serial::Stdio => drive(&mut stdio::Stdio::new()?, &mut |machine| faults.apply(machine))?,
             #[cfg(unix)]
             Serial::Pty => {
                 let mut pty = pty::Pty::new()?;
                 eprintln!("serial port: {}", pty.path());
-                let injector = fault_injection::FaultInjector::new();
-                drive(&mut pty, &mut |rig| injector.apply(rig))?;
+                let mut faults = faults.reading_stdin();
+                drive(&mut pty, &mut |machine| faults.apply(machine))?;
             }
         }
         Ok(run.summary())

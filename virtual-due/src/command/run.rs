@@ -114,14 +114,22 @@ impl Run {
     }
 
     /// Runs to the end, or until Ctrl-C, a verdict, or until the reader has gone; calls `inject` before every slice.
-    pub fn execute(&mut self, line: &mut dyn Line, inject: &mut dyn FnMut(&mut WiredRig)) -> std::io::Result<()> {
+    pub fn execute(
+        &mut self,
+        line: &mut dyn Line,
+        inject: &mut dyn FnMut(&mut Machine<WiredRig>),
+    ) -> std::io::Result<()> {
         while self.advance(line, inject)? != Progress::Over {}
         line.end_line();
         self.finish()
     }
 
     /// Runs to the end of the slice, or to a breakpoint.
-    pub fn advance(&mut self, line: &mut dyn Line, inject: &mut dyn FnMut(&mut WiredRig)) -> std::io::Result<Progress> {
+    pub fn advance(
+        &mut self,
+        line: &mut dyn Line,
+        inject: &mut dyn FnMut(&mut Machine<WiredRig>),
+    ) -> std::io::Result<Progress> {
         if !self.begin_slice(line, inject)? {
             return Ok(Progress::Over);
         }
@@ -133,7 +141,11 @@ impl Run {
     }
 
     /// Runs one instruction, or sleeps to the end of the slice.
-    pub fn step(&mut self, line: &mut dyn Line, inject: &mut dyn FnMut(&mut WiredRig)) -> std::io::Result<Progress> {
+    pub fn step(
+        &mut self,
+        line: &mut dyn Line,
+        inject: &mut dyn FnMut(&mut Machine<WiredRig>),
+    ) -> std::io::Result<Progress> {
         if !self.begin_slice(line, inject)? {
             return Ok(Progress::Over);
         }
@@ -145,7 +157,11 @@ impl Run {
     }
 
     /// Begins a slice, unless one is under way; false if the run is over.
-    fn begin_slice(&mut self, line: &mut dyn Line, inject: &mut dyn FnMut(&mut WiredRig)) -> std::io::Result<bool> {
+    fn begin_slice(
+        &mut self,
+        line: &mut dyn Line,
+        inject: &mut dyn FnMut(&mut Machine<WiredRig>),
+    ) -> std::io::Result<bool> {
         if self.in_slice {
             return Ok(true);
         }
@@ -163,7 +179,7 @@ impl Run {
         if !bytes.is_empty() {
             self.machine.world_mut().send(PORT, &bytes, now);
         }
-        inject(self.machine.world_mut());
+        inject(&mut self.machine);
         self.slice_end = end.min(now + SLICE);
         self.in_slice = true;
         Ok(true)

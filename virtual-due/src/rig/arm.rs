@@ -109,6 +109,11 @@ impl DrivenArm {
         &self.twin
     }
 
+    /// The twin, for faults of its sensors.
+    pub fn twin_mut(&mut self) -> &mut Twin {
+        &mut self.twin
+    }
+
     /// A conversion of a bend sensor; `None`: the arm does not have it.
     pub fn convert(&mut self, sensor: usize) -> Option<u16> {
         self.twin.convert(sensor)

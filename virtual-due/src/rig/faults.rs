@@ -1,69 +1,78 @@
-//! Faults of the rig that tests and users inject.
+//! The present faults of bus, multiplexer and converter; those of sensors are in the simulated arm.
 
-use rig_twin::MAX_SEGMENTS;
+use rig_twin::{Fault, Hold};
 
 /// The present faults.
 #[derive(Debug, Clone, Default)]
-pub struct Faults {
-    /// Bend sensors 1a, 1b, 2a, …; those that the arm does not have stay without effect.
-    pub bend: [Option<Rail>; 2 * MAX_SEGMENTS],
-    /// IMUs of segments 1, 2, …; those that the arm does not have stay without effect.
-    pub imus: [ImuFault; MAX_SEGMENTS],
-    /// The multiplexer.
+pub(super) struct Faults {
     pub mux: Option<MuxFault>,
     /// Something holds SDA low.
-    pub sda: Option<HeldLow>,
+    pub sda: Option<Hold>,
     /// Something holds SCL low.
-    pub scl: Option<HeldLow>,
+    pub scl: Option<Hold>,
+    pub adc: Option<AdcFault>,
+    /// The last channel that was converted, and whether that was in an odd scan.
+    converted: (u8, bool),
 }
 
-/// Level of a broken bend sensor's input.
+/// Fault of the multiplexer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Rail {
-    /// 0 counts: the strip is shorted.
-    Low,
-    /// 4095 counts: the strip is open.
-    High,
-}
-
-/// Fault of an IMU.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub enum ImuFault {
-    /// Nothing.
-    #[default]
-    None,
-    /// It has no power and does not answer. When this ends it boots.
-    Unplugged,
-    /// Its data never change.
-    Frozen,
-}
-
-/// Fault of the multiplexer, until its RESET.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum MuxFault {
-    /// It does not answer; the channels stay as they are.
+pub(super) enum MuxFault {
+    /// It does not answer; the channels stay as they are. Its RESET ends it.
     Silent,
-    /// It acknowledges, but its channels and its register stay as they are.
+    /// It acknowledges, but its channels and its register stay as they are. Its RESET ends it.
     Stuck,
+    /// It connects a channel that is so many further on, and reads back what it has connected.
+    Wrong(u8),
+    /// It connects a channel that is so many further on, and reads back the one requested.
+    Lying(u8),
 }
 
-/// Duration for which a line is held low.
+/// Fault of the converter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum HeldLow {
-    /// Until the fault is removed.
-    UntilRemoved,
-    /// For this many more clock pulses, generated with SCL as a GPIO.
-    Clocks(u32),
-    /// Until the multiplexer is reset, which disconnects the culprit.
-    UntilMuxReset,
+pub(super) enum AdcFault {
+    /// It ignores its triggers.
+    Stopped,
+    /// Every conversion has the tag of the next channel.
+    Tags,
+    /// The same in every second scan.
+    TagsEveryOther,
 }
 
-impl HeldLow {
-    /// The rest of the duration after a clock pulse.
-    pub(super) fn clocked(self) -> Option<Self> {
-        match self {
-            Self::Clocks(left) => left.checked_sub(1).filter(|left| *left > 0).map(Self::Clocks),
-            other => Some(other),
+impl Faults {
+    /// Counts scans: a scan converts its channels in rising order, unless a firmware gives an order of its own.
+    pub fn note_conversion(&mut self, channel: u8) {
+        let (last, is_odd) = self.converted;
+        self.converted = (channel, is_odd ^ (channel <= last));
+    }
+
+    /// True in every second scan.
+    pub fn is_odd_scan(&self) -> bool {
+        self.converted.1
+    }
+
+    /// Sets or ends a fault; false if it is another device's.
+    pub fn set(&mut self, fault: Fault, is_present: bool) -> bool {
+        match fault {
+            Fault::SdaHeld(hold) => self.sda = is_present.then_some(hold),
+            Fault::SclHeld(hold) => self.scl = is_present.then_some(hold),
+            Fault::MuxSilent => self.mux = is_present.then_some(MuxFault::Silent),
+            Fault::MuxStuck => self.mux = is_present.then_some(MuxFault::Stuck),
+            Fault::MuxWrong(channels) => self.mux = is_present.then_some(MuxFault::Wrong(channels)),
+            Fault::MuxLying(channels) => self.mux = is_present.then_some(MuxFault::Lying(channels)),
+            Fault::AdcStopped => self.adc = is_present.then_some(AdcFault::Stopped),
+            Fault::AdcTags => self.adc = is_present.then_some(AdcFault::Tags),
+            Fault::AdcTagsEveryOther => self.adc = is_present.then_some(AdcFault::TagsEveryOther),
+            _ => return false,
         }
+        true
+    }
+}
+
+/// The rest of the time for which a line is held low, after a clock pulse.
+pub(super) fn clocked(hold: Hold) -> Option<Hold> {
+    match hold {
+        Hold::Clocks(left) => left.checked_sub(1).filter(|left| *left > 0).map(Hold::Clocks),
+        other => Some(other),
     }
 }

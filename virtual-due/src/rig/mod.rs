@@ -21,6 +21,7 @@
 mod arm;
 mod bno055;
 mod faults;
+mod line;
 mod pin_map;
 mod pins;
 mod sensors;
@@ -30,32 +31,34 @@ mod wires;
 
 use arm::DrivenArm;
 use board_table::Wiring;
-pub use faults::{Faults, HeldLow, ImuFault, MuxFault, Rail};
+use faults::Faults;
 use pin_map::Pins;
-use rig_twin::{EndPose, Layout, PerRegulator, PerSegment, Scenario, Setup};
-use sam3x_models::model::Cycles;
+use rig_twin::{EndPose, Fault, FaultError, Layout, PerRegulator, PerSegment, Scenario, Setup, TimedFault};
+use sam3x_models::model::{CYCLES_PER_SECOND, Cycles};
 use sensors::Sensors;
 use serial::Port;
 use wires::{NoDevices, Wires};
 
 /// UART and USART0 … USART3.
 const PORTS: usize = 5;
+/// The UART.
+const PROGRAMMING_PORT: usize = 0;
 
 /// The rig.
 ///
 /// ```
 /// use rig_twin::Scenario;
 /// use virtual_due::model::{CYCLES_PER_SECOND, World};
-/// use virtual_due::rig::{Rail, WiredRig};
+/// use virtual_due::rig::WiredRig;
 ///
 /// let mut rig = WiredRig::new(Scenario::FreeSwing, 7);
-/// rig.faults.bend[0] = Some(Rail::High);
+/// rig.inject("bend1a:open".parse()?)?;
 /// assert_eq!(rig.adc_counts(7, CYCLES_PER_SECOND), 4095);
+/// # Ok::<(), rig_twin::FaultError>(())
 /// ```
 #[derive(Debug, Clone)]
 pub struct WiredRig {
-    /// The present faults.
-    pub faults: Faults,
+    faults: Faults,
     now: Cycles,
     wiring: Wiring,
     pins: Pins,
@@ -79,7 +82,7 @@ impl WiredRig {
     pub fn of(setup: &Setup, wiring: &Wiring) -> Self {
         let wiring = of_arm(wiring, &setup.layout);
         let arm = DrivenArm::new(setup, &wiring);
-        let sensors = Sensors::new(&wiring, arm.twin().imu_quaternions());
+        let sensors = Sensors::new(&wiring, arm.twin().imu_quaternions(), setup.seed);
         let truth_at_scan = arm.twin().truth();
         Self {
             faults: Faults::default(),
@@ -89,7 +92,7 @@ impl WiredRig {
             arm,
             sensors,
             wires: Wires::default(),
-            ports: std::array::from_fn(|_| Port::default()),
+            ports: std::array::from_fn(|_| Port::new(setup.seed)),
             no_devices: NoDevices,
             scans: 0,
             truth_at_scan,
@@ -100,7 +103,6 @@ impl WiredRig {
     pub fn advance_to(&mut self, now: Cycles) {
         self.now = self.now.max(now);
         self.arm.advance_to(now);
-        self.sensors.apply_power_faults(&self.faults, self.now);
     }
 
     /// True world pose of each segment's end, at the last multiple of 2 ms before the rig's time.
@@ -124,9 +126,65 @@ impl WiredRig {
         self.arm.twin()
     }
 
-    /// Resets the IMU of segment `imu`, counted from 0, to its CONFIG mode at the rig's time, as a dip of its supply does.
-    pub fn brown_out(&mut self, imu: usize) {
-        self.sensors.brown_out(imu, self.now);
+    /// Begins a fault of a sensor, the bus or the serial line of the programming port, at the rig's time.
+    ///
+    /// # Errors
+    /// [`FaultError`] if the arm does not have the sensor, or the fault is one of the chip.
+    pub fn inject(&mut self, fault: Fault) -> Result<(), FaultError> {
+        self.check(fault)?;
+        if fault.acts_on_readings() {
+            let time_s = self.arm.twin().time_s();
+            self.arm.twin_mut().inject(TimedFault::from(fault, time_s))?;
+        }
+        self.set(fault, true);
+        Ok(())
+    }
+
+    /// Ends a fault, at the rig's time.
+    pub fn clear(&mut self, fault: Fault) {
+        self.arm.twin_mut().clear(fault);
+        self.set(fault, false);
+    }
+
+    /// Checks that the rig can have a fault.
+    ///
+    /// # Errors
+    /// [`FaultError::NotOnArm`].
+    pub fn check(&self, fault: Fault) -> Result<(), FaultError> {
+        let wired = |segment: usize| self.wiring.segments.get(segment);
+        let has_bend = |index: usize| wired(index / 2).is_some_and(|segment| segment.bend[index % 2].is_some());
+        let has_imu = |segment: usize| wired(segment).is_some_and(|segment| segment.imu.is_some());
+        let is_there = fault.bend_sensor().is_none_or(has_bend) && fault.imu().is_none_or(has_imu);
+        if is_there { Ok(()) } else { Err(FaultError::NotOnArm(fault.to_string())) }
+    }
+
+    /// Sets or ends a fault of the devices on the pins.
+    fn set(&mut self, fault: Fault, is_present: bool) {
+        if self.faults.set(fault, is_present) || self.ports[PROGRAMMING_PORT].faults.set(fault, is_present) {
+            return;
+        }
+        let now = self.now;
+        let Some(unit) = fault.imu().and_then(|segment| self.sensors.unit(segment)) else { return };
+        match fault {
+            Fault::ImuUnplugged(_) => {
+                if !is_present && !unit.powered {
+                    unit.imu.power_returns(now);
+                }
+                unit.powered = !is_present;
+            }
+            Fault::ImuReset(_) if is_present => unit.imu.power_on_reset(now),
+            Fault::ImuBrownOut(_) if is_present => unit.imu.brown_out(now),
+            Fault::ImuNack(_, share) => unit.nack_share = if is_present { share } else { 0.0 },
+            Fault::ImuStretch(_, ms) => {
+                unit.stretch = if is_present { (ms / 1e3 * CYCLES_PER_SECOND as f64) as Cycles } else { 0 };
+            }
+            _ => {}
+        }
+    }
+
+    /// The supply of IMUs and multiplexer was cut, and returns at the rig's time.
+    pub(crate) fn cut_power(&mut self) {
+        self.sensors.cut_power(self.now);
     }
 
     /// The wiring, without the sensors that the arm does not have.
@@ -159,6 +217,8 @@ fn of_arm(wiring: &Wiring, arm: &Layout) -> Wiring {
     wiring
 }
 
+#[cfg(test)]
+mod fault_tests;
 #[cfg(test)]
 mod tests;
 #[cfg(test)]

@@ -1,7 +1,8 @@
 //! The rig as the chip's world: ADC channels, PWM, GPIOs, serial ports, and the I²C bus of TWI1.
 
 use super::WiredRig;
-use super::faults::{HeldLow, Rail};
+use super::faults::{AdcFault, MuxFault, clocked};
+use rig_twin::Hold;
 use sam3x_models::model::{Cycles, I2c, Pin, Reception, World};
 
 const PIOB: u8 = 1;
@@ -12,17 +13,26 @@ pub const MUX_RESET: Pin = Pin { port: PIOB, line: 26 };
 impl World for WiredRig {
     fn adc_counts(&mut self, channel: u8, now: Cycles) -> u16 {
         self.advance_to(now);
+        self.faults.note_conversion(channel);
         if channel == self.pins.scan_channel {
             self.scans += 1;
             self.truth_at_scan = self.truth();
         }
         let Some(sensor) = self.pins.sensor(channel) else { return 0 };
-        let Some(counts) = self.arm.convert(sensor) else { return 0 };
-        match self.faults.bend[sensor] {
-            None => counts,
-            Some(Rail::Low) => 0,
-            Some(Rail::High) => 4095,
-        }
+        self.arm.convert(sensor).unwrap_or(0)
+    }
+
+    fn adc_tag(&mut self, channel: u8) -> u8 {
+        let is_wrong = match self.faults.adc {
+            Some(AdcFault::Tags) => true,
+            Some(AdcFault::TagsEveryOther) => self.faults.is_odd_scan(),
+            Some(AdcFault::Stopped) | None => false,
+        };
+        if is_wrong { (channel + 1) % 16 } else { channel }
+    }
+
+    fn adc_is_stopped(&mut self) -> bool {
+        self.faults.adc == Some(AdcFault::Stopped)
     }
 
     fn i2c(&mut self, twi: usize) -> &mut dyn I2c {
@@ -73,12 +83,12 @@ impl I2c for WiredRig {
     fn start(&mut self, address: u8, read: bool, now: Cycles) -> bool {
         self.advance_to(now);
         let orientations = self.arm.twin().imu_quaternions();
-        self.sensors.start(address, read, now, &orientations, &self.faults)
+        self.sensors.start(address, read, now, &orientations, self.faults.mux)
     }
 
     fn write(&mut self, byte: u8, now: Cycles) -> bool {
         self.advance_to(now);
-        self.sensors.write(byte, now, &self.faults)
+        self.sensors.write(byte, now, self.faults.mux)
     }
 
     fn read(&mut self, now: Cycles) -> u8 {
@@ -101,8 +111,8 @@ impl I2c for WiredRig {
 
     /// Counts a clock pulse for a line that is held low for a number of them.
     fn pulse(&mut self, _now: Cycles) {
-        self.faults.sda = self.faults.sda.and_then(HeldLow::clocked);
-        self.faults.scl = self.faults.scl.and_then(HeldLow::clocked);
+        self.faults.sda = self.faults.sda.and_then(clocked);
+        self.faults.scl = self.faults.scl.and_then(clocked);
     }
 }
 
@@ -130,9 +140,9 @@ impl WiredRig {
         let low = level == Some(false);
         self.sensors.mux.set_reset(low);
         if low {
-            self.faults.mux = None;
-            self.faults.sda = self.faults.sda.filter(|held| *held != HeldLow::UntilMuxReset);
-            self.faults.scl = self.faults.scl.filter(|held| *held != HeldLow::UntilMuxReset);
+            self.faults.mux = self.faults.mux.filter(|fault| matches!(fault, MuxFault::Wrong(_) | MuxFault::Lying(_)));
+            self.faults.sda = self.faults.sda.filter(|held| *held != Hold::UntilMuxReset);
+            self.faults.scl = self.faults.scl.filter(|held| *held != Hold::UntilMuxReset);
         }
     }
 }

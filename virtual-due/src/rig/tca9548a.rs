@@ -7,6 +7,8 @@ use super::faults::MuxFault;
 pub struct Tca9548a {
     /// The control register: a bit for each channel.
     control: u8,
+    /// The byte that is read back.
+    read_back: u8,
     /// The connected channels: the register at the last stop condition (SCPS207 8.6.2).
     connected: u8,
     held_in_reset: bool,
@@ -23,14 +25,18 @@ impl Tca9548a {
 
     /// A byte written to it; of several the last counts.
     pub fn write(&mut self, byte: u8, fault: Option<MuxFault>) {
-        if fault.is_none() {
-            self.control = byte;
-        }
+        let (control, read_back) = match fault {
+            None => (byte, byte),
+            Some(MuxFault::Wrong(channels)) => (byte.rotate_left(channels.into()), byte.rotate_left(channels.into())),
+            Some(MuxFault::Lying(channels)) => (byte.rotate_left(channels.into()), byte),
+            Some(MuxFault::Silent | MuxFault::Stuck) => return,
+        };
+        (self.control, self.read_back) = (control, read_back);
     }
 
-    /// The control register.
+    /// The control register as it is read back.
     pub fn read(&self) -> u8 {
-        self.control
+        self.read_back
     }
 
     /// Handles a stop condition, which connects the channels in the register.
@@ -47,8 +53,7 @@ impl Tca9548a {
     pub fn set_reset(&mut self, low: bool) {
         self.held_in_reset = low;
         if low {
-            self.control = 0;
-            self.connected = 0;
+            (self.control, self.read_back, self.connected) = (0, 0, 0);
         }
     }
 }
@@ -75,6 +80,16 @@ mod tests {
         assert_eq!((mux.connected(), mux.answers(None)), (0, false));
         mux.set_reset(false);
         assert_eq!((mux.read(), mux.answers(None)), (0, true));
+    }
+
+    #[test]
+    fn wrong_one_connects_another_channel_and_a_lying_one_denies_it() {
+        for (fault, read_back) in [(MuxFault::Wrong(1), 0b1000), (MuxFault::Lying(1), 0b100)] {
+            let mut mux = Tca9548a::default();
+            mux.write(0b100, Some(fault));
+            mux.stop();
+            assert_eq!((mux.connected(), mux.read()), (0b1000, read_back));
+        }
     }
 
     #[test]

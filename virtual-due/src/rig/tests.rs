@@ -1,13 +1,23 @@
 #![expect(clippy::float_cmp, reason = "set-points are exact")]
 
+use super::WiredRig;
 use super::pin_map::PIOC;
 use super::pins::{MUX_RESET, SCL, SDA};
-use super::{HeldLow, ImuFault, MuxFault, Rail, WiredRig};
 use rig_twin::Scenario;
 use sam3x_models::model::{CYCLES_PER_SECOND, Cycles, I2c, Pin, World};
 
 const SECOND: Cycles = CYCLES_PER_SECOND;
 const D6: Pin = Pin { port: PIOC, line: 24 };
+
+/// Begins a fault.
+fn inject(rig: &mut WiredRig, fault: &str) {
+    rig.inject(fault.parse().expect("a fault")).expect("the arm has the sensor");
+}
+
+/// Ends a fault.
+fn clear(rig: &mut WiredRig, fault: &str) {
+    rig.clear(fault.parse().expect("a fault"));
+}
 
 fn rig() -> WiredRig {
     WiredRig::new(Scenario::FreeSwing, 7)
@@ -57,8 +67,8 @@ fn each_bend_sensor_is_on_its_channel() {
 #[test]
 fn broken_bend_sensor_lies_at_a_rail() {
     let mut rig = rig();
-    rig.faults.bend[0] = Some(Rail::High);
-    rig.faults.bend[11] = Some(Rail::Low);
+    inject(&mut rig, "bend1a:open");
+    inject(&mut rig, "bend6b:short");
     assert_eq!((rig.adc_counts(7, 0), rig.adc_counts(13, 0)), (4095, 0));
 }
 
@@ -118,10 +128,11 @@ fn two_channels_at_once_give_the_and_of_both() {
 #[test]
 fn unplugged_imu_does_not_answer_and_boots_when_it_is_back() {
     let mut rig = fusing();
-    rig.faults.imus[2] = ImuFault::Unplugged;
+    inject(&mut rig, "imu3:unplugged");
     assert_eq!(quaternion(&mut rig, 2, SECOND), None);
     assert!(quaternion(&mut rig, 3, SECOND).is_some());
-    rig.faults.imus[2] = ImuFault::None;
+    rig.advance_to(2 * SECOND);
+    clear(&mut rig, "imu3:unplugged");
     assert_eq!(quaternion(&mut rig, 2, 2 * SECOND), None);
     assert_eq!(quaternion(&mut rig, 2, 2 * SECOND + 2 * SECOND / 5), Some([0; 4]), "it is in CONFIG");
 }
@@ -130,17 +141,17 @@ fn unplugged_imu_does_not_answer_and_boots_when_it_is_back() {
 fn frozen_imu_keeps_showing_the_same() {
     let mut rig = fusing();
     let before = quaternion(&mut rig, 5, SECOND);
-    rig.faults.imus[5] = ImuFault::Frozen;
+    inject(&mut rig, "imu6:frozen");
     assert_eq!(quaternion(&mut rig, 5, 20 * SECOND), before);
-    rig.faults.imus[5] = ImuFault::None;
-    assert_ne!(quaternion(&mut rig, 5, 20 * SECOND), before);
+    clear(&mut rig, "imu6:frozen");
+    assert_ne!(quaternion(&mut rig, 5, 20 * SECOND + SECOND / 100), before);
 }
 
 #[test]
 fn browned_out_imu_reads_as_zero() {
     let mut rig = fusing();
     assert_ne!(quaternion(&mut rig, 0, SECOND), Some([0; 4]));
-    rig.brown_out(0);
+    inject(&mut rig, "imu1:brown-out");
     assert_eq!(quaternion(&mut rig, 0, SECOND), Some([0; 4]));
 }
 
@@ -148,7 +159,7 @@ fn browned_out_imu_reads_as_zero() {
 fn reset_pin_ends_what_is_wrong_with_the_mux() {
     let mut rig = rig();
     assert!(select(&mut rig, 1, SECOND));
-    rig.faults.mux = Some(MuxFault::Silent);
+    inject(&mut rig, "mux:silent");
     assert!(!select(&mut rig, 2, SECOND));
     rig.drive(MUX_RESET, Some(false), SECOND);
     assert!(!select(&mut rig, 2, SECOND), "it is in reset");
@@ -161,7 +172,7 @@ fn reset_pin_ends_what_is_wrong_with_the_mux() {
 #[test]
 fn data_line_is_freed_by_clock_pulses() {
     let mut rig = rig();
-    rig.faults.sda = Some(HeldLow::Clocks(9));
+    inject(&mut rig, "sda:held-clocks=9");
     for pulse in 0..9 {
         assert_eq!(rig.level(SDA, 0), Some(false), "after {pulse} pulses");
         rig.drive(SCL, Some(false), 0);

@@ -7,7 +7,6 @@ use std::process::{Child, Command, Stdio};
 
 use crate::terminal::Terminal;
 use crate::tools::{Running, folder, proprio, replayed, table};
-use virtual_due::rig::{HeldLow, Rail};
 
 /// Half a second up to 60 kPa on module 1's right, a second of that, and a step down to 20 kPa on module 2's left.
 const PROFILE: &str = "time_s,pressure1_kpa,pressure2_kpa,pressure3_kpa,pressure4_kpa,pressure5_kpa,pressure6_kpa\n\
@@ -35,6 +34,10 @@ fn ended(mut drive: Running) -> (Option<i32>, String) {
     let mut messages = String::new();
     drive.0.stderr.take().expect("a pipe").read_to_string(&mut messages).expect("the tool writes UTF-8");
     (drive.0.wait().expect("it has ended").code(), messages)
+}
+
+fn inject(terminal: &mut Terminal, fault: &str) {
+    terminal.machine.inject(fault.parse().expect("a fault")).expect("the board can have it");
 }
 
 fn is_vented(terminal: &Terminal) -> bool {
@@ -137,7 +140,7 @@ fn a_board_with_another_table_is_not_armed() {
 #[test]
 fn a_board_without_any_imu_is_not_armed() {
     let mut terminal = Terminal::new();
-    terminal.machine.world_mut().faults.sda = Some(HeldLow::UntilRemoved);
+    inject(&mut terminal, "sda:held");
     let messages = refused("drive blind", &mut terminal, &["profile.csv"]);
     assert!(messages.contains("no IMU reads well"), "{messages}");
 }
@@ -145,8 +148,8 @@ fn a_board_without_any_imu_is_not_armed() {
 #[test]
 fn a_drive_ends_when_the_board_holds_the_pressures_back() {
     let mut terminal = Terminal::new();
-    terminal.machine.world_mut().faults.bend[2] = Some(Rail::High);
-    terminal.machine.world_mut().faults.bend[3] = Some(Rail::Low);
+    inject(&mut terminal, "bend2a:open");
+    inject(&mut terminal, "bend2b:short");
     let messages = refused("drive held back", &mut terminal, &["--kpa", "80,0,80,0,80,0"]);
     assert!(messages.contains("the board keeps pressure 1 at 0.0 kPa"), "{messages}");
 }

@@ -4,7 +4,6 @@ use board_tests::Board;
 use rig_twin::Scenario;
 use telemetry::{Command, Event, RequestOutcome, ResetCause, SetPressures};
 use virtual_due::WiredRig;
-use virtual_due::rig::HeldLow;
 
 /// Address of the core's register that disables interrupts 0 to 31 (ARMv7-M, B3.4.5).
 const NVIC_ICER0: u32 = 0xE000_E180;
@@ -44,7 +43,7 @@ fn a_reset_by_the_port_starts_over() {
 #[test]
 fn a_stuck_bus_costs_the_imus_and_no_tick() {
     let mut board = ready();
-    board.machine.world_mut().faults.sda = Some(HeldLow::UntilRemoved);
+    board.inject("sda:held");
     board.run_ms(1000);
     let sample = board.samples().next_back().expect("samples come");
     assert!(sample.imu.iter().all(Option::is_none) && sample.bend.iter().all(Option::is_some), "{sample:?}");
@@ -56,7 +55,7 @@ fn a_stuck_bus_costs_the_imus_and_no_tick() {
 #[test]
 fn a_bus_that_a_unit_holds_is_clocked_free() {
     let mut board = ready();
-    board.machine.world_mut().faults.sda = Some(HeldLow::Clocks(5));
+    board.inject("sda:held-clocks=5");
     board.run_ms(1500);
     assert!(board.events().any(|event| event == Event::BusRecovery));
     let sample = board.samples().next_back().expect("samples come");
@@ -66,7 +65,7 @@ fn a_bus_that_a_unit_holds_is_clocked_free() {
 #[test]
 fn an_imu_that_browns_out_is_back_within_two_seconds() {
     let mut board = ready();
-    board.machine.world_mut().brown_out(3);
+    board.inject("imu4:brown-out");
     board.run_ms(50);
     assert!(board.samples().next_back().expect("samples come").imu[3].is_none());
     board.run_ms(2000);

@@ -5,6 +5,7 @@ mod boot;
 #[cfg(unix)]
 mod drive;
 mod engine;
+mod fault_rows;
 mod faults;
 #[cfg(unix)]
 mod flash;

@@ -1,12 +1,11 @@
 //! Requests over the serial line.
 
 use board_tests::{Board, UART};
-use rig_twin::{MAX_SEGMENTS, Scenario};
+use rig_twin::Scenario;
 use telemetry::{
     Command, Encoder, Event, MAX_FRAME, Message, PressureLimit, Rates, Refusal, Request, RequestOutcome, ResetCause,
     SetPressures, TareMode, protocol_2,
 };
-use virtual_due::rig::ImuFault;
 use virtual_due::{CYCLES_PER_SECOND, WiredRig};
 
 fn ready() -> Board {
@@ -140,7 +139,9 @@ fn a_disarm_vents_whatever_its_number_and_session() {
 fn set_points_that_would_rise_without_imus_are_answered_as_limited() {
     let mut board = ready();
     assert_eq!(board.request(Command::Arm), RequestOutcome::Ack);
-    board.machine.world_mut().faults.imus = [ImuFault::Unplugged; MAX_SEGMENTS];
+    for imu in 1..=6 {
+        board.inject(&format!("imu{imu}:unplugged"));
+    }
     board.run_ms(100);
     let set =
         |pa: u32| Command::SetPressures(SetPressures { pressures_pa: [pa; 6].into_iter().collect(), valid_ms: 1000 });

@@ -6,7 +6,6 @@ use board_tests::Board;
 use rig_twin::Scenario;
 use telemetry::SensorState;
 use virtual_due::WiredRig;
-use virtual_due::rig::{ImuFault, Rail};
 
 const SEGMENTS: usize = 6;
 const BEND_SENSORS: usize = 12;
@@ -55,13 +54,13 @@ fn the_quaternion_of_each_imu_is_that_of_its_unit() {
 fn a_bend_sensor_at_a_rail_is_lost_alone() {
     let mut board = ready();
     for sensor in 0..BEND_SENSORS {
-        let rail = if sensor % 2 == 0 { Rail::Low } else { Rail::High };
-        board.machine.world_mut().faults.bend[sensor] = Some(rail);
+        let fault = format!("bend{}{}", sensor / 2 + 1, if sensor % 2 == 0 { "a:short" } else { "b:open" });
+        board.inject(&fault);
         board.run_ms(100);
         let sample = board.samples().next_back().expect("samples come");
         let lost: Vec<_> = (0..BEND_SENSORS).filter(|other| sample.bend[*other].is_none()).collect();
         assert_eq!(lost, [sensor]);
-        board.machine.world_mut().faults.bend[sensor] = None;
+        board.clear(&fault);
         // Until it is trusted again.
         board.run_ms(600);
     }
@@ -71,12 +70,13 @@ fn a_bend_sensor_at_a_rail_is_lost_alone() {
 fn an_unplugged_imu_is_lost_alone() {
     let mut board = ready();
     for imu in 0..SEGMENTS {
-        board.machine.world_mut().faults.imus[imu] = ImuFault::Unplugged;
+        let fault = format!("imu{}:unplugged", imu + 1);
+        board.inject(&fault);
         board.run_ms(100);
         let sample = board.samples().next_back().expect("samples come");
         let lost: Vec<_> = (0..SEGMENTS).filter(|other| sample.imu[*other].is_none()).collect();
         assert_eq!(lost, [imu]);
-        board.machine.world_mut().faults.imus[imu] = ImuFault::None;
+        board.clear(&fault);
         // Until it is found, starts, and reads again.
         board.run_ms(2000);
     }
@@ -84,9 +84,8 @@ fn an_unplugged_imu_is_lost_alone() {
 
 #[test]
 fn an_imu_that_is_absent_at_boot_leaves_the_others_running() {
-    let mut rig = WiredRig::new(Scenario::FreeSwing, 1);
-    rig.faults.imus[2] = ImuFault::Unplugged;
-    let mut board = Board::new(rig);
+    let mut board = Board::new(WiredRig::new(Scenario::FreeSwing, 1));
+    board.inject("imu3:unplugged");
     board.run_ms(4000);
     let sample = board.samples().next_back().expect("samples come");
     let read: Vec<_> = sample.imu.iter().map(Option::is_some).collect();
@@ -100,11 +99,10 @@ fn an_imu_that_is_absent_at_boot_leaves_the_others_running() {
 
 #[test]
 fn an_imu_that_is_plugged_in_later_is_taken_in() {
-    let mut rig = WiredRig::new(Scenario::FreeSwing, 1);
-    rig.faults.imus[4] = ImuFault::Unplugged;
-    let mut board = Board::new(rig);
+    let mut board = Board::new(WiredRig::new(Scenario::FreeSwing, 1));
+    board.inject("imu5:unplugged");
     board.run_ms(1500);
-    board.machine.world_mut().faults.imus[4] = ImuFault::None;
+    board.clear("imu5:unplugged");
     board.run_ms(2000);
     let sample = board.samples().next_back().expect("samples come");
     assert!(sample.imu.iter().all(Option::is_some), "{sample:?}");

@@ -21,6 +21,9 @@ pub fn run(args: &SimulateArgs) -> Result<(), Error> {
         seed: args.seed,
     };
     let mut simulation = Simulation::of(&setup, args.seconds, args.rate)?;
+    for fault in &args.fault {
+        simulation = simulation.with_fault(*fault)?;
+    }
     if args.camera.as_ref() == Some(&args.output) {
         return Err(Error::OutputTwice(args.output.clone()));
     }

@@ -1,5 +1,7 @@
 //! Remedies of the errors that join those of the libraries.
 
+use proprio_simulation::SimulationError;
+
 use super::Help;
 use crate::arm::NewArmError;
 use crate::error::Error;
@@ -23,6 +25,9 @@ impl Help for Error {
             Self::Stdout(_) => "write to a disk with free space, or use --out",
             Self::SessionWithoutTable | Self::CheckWithoutTable(_) => "give the arm's table with --table",
             Self::OneSession(_) => "replay the sessions one by one",
+            Self::Simulation(SimulationError::Fault(_)) => {
+                "give faults of sensors that the arm has; docs/reference/faults.md lists them"
+            }
             Self::Simulation(_) | Self::Seconds(_) | Self::Pressure(_) | Self::Ramp(_) => "give a value in this range",
         };
         help.to_owned()

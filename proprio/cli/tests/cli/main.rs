@@ -40,6 +40,7 @@ mod report_numbers;
 mod restarts;
 mod simulate;
 mod simulate_arms;
+mod simulate_faults;
 mod smooth;
 mod streams;
 mod truth_align;

@@ -91,7 +91,7 @@ impl Adc {
     }
 
     /// A conversion of `channel` is complete (datasheet 43.6.4).
-    fn complete(&mut self, channel: u8, counts: u16, context: &mut Context) {
+    fn complete(&mut self, channel: u8, (counts, tag): (u16, u8), context: &mut Context) {
         let result = if Mode(self.mode).low_resolution() { counts >> 2 } else { counts };
         let index = usize::from(channel & 15);
         let bit = 1 << index;
@@ -102,7 +102,7 @@ impl Adc {
         }
         self.status |= DRDY;
         self.data[index] = result;
-        let tag = if self.extended_mode & TAG != 0 { u32::from(channel) << 12 } else { 0 };
+        let tag = if self.extended_mode & TAG != 0 { u32::from(tag) << 12 } else { 0 };
         self.last = u32::from(result) | tag;
         let compare = CompareMode { extended: self.extended_mode, window: self.compare_window };
         if self.threshold.passes(channel, result, compare) {

@@ -155,12 +155,13 @@ impl Peripheral for Adc {
                 TEMPERATURE => self.temperature_counts(context),
                 channel => context.world.adc_counts(channel, conversion.sampled_at).min(0xFFF),
             };
-            self.complete(conversion.channel, counts, context);
+            let tag = context.world.adc_tag(conversion.channel);
+            self.complete(conversion.channel, (counts, tag), context);
         }
     }
 
     fn signal(&mut self, signal: Signal, context: &mut Context) {
-        if Mode(self.mode).trigger() == Some(signal) {
+        if Mode(self.mode).trigger() == Some(signal) && !context.world.adc_is_stopped() {
             self.start(context.now, context);
         }
     }

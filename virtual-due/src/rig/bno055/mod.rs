@@ -107,11 +107,22 @@ impl Bno055 {
         if std::mem::take(&mut self.fetches) { STRETCH } else { 0 }
     }
 
-    /// Simulates a dip of the supply: it is in CONFIG again, with all its settings lost, and reports nothing.
+    /// Power returns at `now`, after it was lost: it boots.
+    pub fn power_returns(&mut self, now: Cycles) {
+        self.restart(now + POWER_ON);
+    }
+
+    /// A power-on reset at `now` (data sheet 3.2).
+    pub fn power_on_reset(&mut self, now: Cycles) {
+        self.restart(now + RESET);
+    }
+
+    /// A dip of the supply that is too short for a power-on reset: it is in CONFIG again, with all its settings lost.
     pub fn brown_out(&mut self, now: Cycles) {
         self.restart(now);
     }
 
+    /// Loses all but the zero of the heading, which is another one as soon as it has had one.
     fn restart(&mut self, answers_from: Cycles) {
         let mut fusion = std::mem::take(&mut self.fusion);
         fusion.begin_again();

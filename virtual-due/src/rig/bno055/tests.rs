@@ -109,6 +109,22 @@ fn brown_out_falls_back_to_config_and_the_heading_begins_at_zero() {
 }
 
 #[test]
+fn power_that_returns_boots_it_and_its_heading_begins_at_another_zero() {
+    for (silent_ms, restart) in [
+        (400, Bno055::power_returns as fn(&mut Bno055, Cycles)),
+        (650, Bno055::power_on_reset as fn(&mut Bno055, Cycles)),
+    ] {
+        let mut unit = fusing();
+        assert_eq!(quaternion(&mut unit, ms(1000)), TURNED);
+        restart(&mut unit, ms(1000));
+        assert!(!unit.answers(ms(1000 + silent_ms) - 1) && unit.answers(ms(1000 + silent_ms)));
+        assert_eq!(read(&mut unit, 0x3D, ms(1000 + silent_ms)), [CONFIG]);
+        write(&mut unit, 0x3D, &[0x08], ms(1000 + silent_ms));
+        assert_eq!(quaternion(&mut unit, ms(1100 + silent_ms)), [16384, 0, 0, 0]);
+    }
+}
+
+#[test]
 fn acceleration_is_read_without_fusion_too() {
     let mut unit = Bno055::powered(0);
     write(&mut unit, 0x3D, &[0x07], ms(500));

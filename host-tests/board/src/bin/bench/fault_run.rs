@@ -4,7 +4,6 @@ use board_tests::{Board, UART};
 use rig_twin::Scenario;
 use telemetry::{Command, SetPressures, TareMode};
 use virtual_due::WiredRig;
-use virtual_due::rig::{HeldLow, ImuFault, MuxFault, Rail};
 
 /// Requests that the host sends in one burst, more than the line carries in a tick.
 const FLOOD: usize = 40;
@@ -19,16 +18,15 @@ pub fn board(mut run_ms: impl FnMut(&mut Board, u64)) -> Board {
     board.run_ms(50);
     run_ms(&mut board, 1_950);
     for second in 2..20_u32 {
-        let faults = &mut board.machine.world_mut().faults;
         match second {
-            3 => faults.imus[1] = ImuFault::Unplugged,
-            5 => faults.imus[1] = ImuFault::None,
-            7 => faults.sda = Some(HeldLow::Clocks(5)),
-            9 => faults.sda = Some(HeldLow::UntilMuxReset),
-            11 => faults.scl = Some(HeldLow::UntilRemoved),
-            13 => faults.scl = None,
-            14 => faults.mux = Some(MuxFault::Silent),
-            16 => faults.bend[0] = Some(Rail::High),
+            3 => board.inject("imu2:unplugged"),
+            5 => board.clear("imu2:unplugged"),
+            7 => board.inject("sda:held-clocks=5"),
+            9 => board.inject("sda:held-until-reset"),
+            11 => board.inject("scl:held"),
+            13 => board.clear("scl:held"),
+            14 => board.inject("mux:silent"),
+            16 => board.inject("bend1a:open"),
             6 | 17 => (0..FLOOD).for_each(|_| {
                 board.send(Command::Tare(TareMode::Force));
             }),

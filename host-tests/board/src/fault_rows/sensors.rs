@@ -1,0 +1,261 @@
+//! Faults of bend sensors, converter and IMUs.
+
+use telemetry::{Message, SensorState};
+
+use super::measured::{Measured, Row, bend_noticed_ms, imu_back_ms, imu_noticed_ms, text_of, tip, with, within};
+use crate::trial::Trial;
+
+pub(super) const ROWS: &[(&str, Row)] = &[
+    ("bend_open", bend_open),
+    ("bend_short", bend_short),
+    ("bend_intermittent", bend_intermittent),
+    ("bend_offset", bend_offset),
+    ("bend_drift", bend_drift),
+    ("bend_factor", bend_factor),
+    ("imu_unplugged", imu_unplugged),
+    ("imu_frozen", imu_frozen),
+    ("imu_reset", imu_reset),
+    ("imu_brown_out", imu_brown_out),
+    ("imu_replugged", imu_replugged),
+    ("imu_zeros", imu_zeros),
+    ("imu_norm", imu_norm),
+    ("imu_single_wrong", imu_single_wrong),
+    ("imu_jump", imu_jump),
+    ("imu_short_jump", imu_short_jump),
+    ("imu_nack", imu_nack),
+    ("imu_stretch", imu_stretch),
+    ("two_imus_reset", two_imus_reset),
+    ("reset_and_open", reset_and_open),
+];
+
+fn bend_lost(row: &'static str, injected: &'static str) -> Measured {
+    let trial = with(injected, 8_000);
+    let noticed = bend_noticed_ms(&trial, 2);
+    let used = trial.samples(20.0, 8e3).filter(|sample| sample.bend[2].is_some()).count();
+    let (tip, is_near) = tip(&trial, 0.0, 8e3);
+    Measured {
+        row,
+        injected,
+        promise: "not ok within 50 ms, no reading of it used after 20 ms, the estimate stays near",
+        measured: format!("not ok after {}; {used} readings used; {tip}", text_of(noticed)),
+        holds: within(noticed, 50.0) && used == 0 && is_near,
+    }
+}
+
+fn bend_open() -> Measured {
+    bend_lost("bend sensor open", "bend2a:open")
+}
+
+fn bend_short() -> Measured {
+    bend_lost("bend sensor short", "bend2a:short")
+}
+
+fn bend_intermittent() -> Measured {
+    let injected = "bend2a:intermittent";
+    let trial = with(injected, 4_000);
+    let noticed = bend_noticed_ms(&trial, 2);
+    let (tip, is_near) = tip(&trial, 0.0, 4e3);
+    Measured {
+        row: "bend sensor lost in every second tick",
+        injected,
+        promise: "not ok within 1 s, the estimate stays near",
+        measured: format!("not ok after {}; {tip}", text_of(noticed)),
+        holds: within(noticed, 1e3) && is_near,
+    }
+}
+
+fn bend_wrong(row: &'static str, injected: &'static str) -> Measured {
+    let trial = with(injected, 12_000);
+    let noticed = bend_noticed_ms(&trial, 2);
+    let (tip, is_near) = tip(&trial, 0.0, 12e3);
+    Measured {
+        row,
+        injected,
+        promise: "named within 1 s, the estimate stays near",
+        measured: format!("named after {}; {tip}", text_of(noticed)),
+        holds: within(noticed, 1e3) && is_near,
+    }
+}
+
+fn bend_offset() -> Measured {
+    bend_wrong("bend sensor wrong", "bend2a:offset=300")
+}
+
+fn bend_factor() -> Measured {
+    bend_wrong("bend sensor with another scale", "bend2a:factor=1.3")
+}
+
+fn bend_drift() -> Measured {
+    bend_wrong("bend sensor that drifts", "bend2a:drift=30")
+}
+
+fn imu_unplugged() -> Measured {
+    let injected = "imu3:unplugged";
+    let trial = with(injected, 8_000);
+    let noticed = imu_noticed_ms(&trial, 2);
+    let lost = trial.samples(0.0, 8e3).filter(|sample| (0..6).any(|imu| imu != 2 && sample.imu[imu].is_none())).count();
+    let (tip, is_near) = tip(&trial, 0.0, 8e3);
+    Measured {
+        row: "IMU unplugged",
+        injected,
+        promise: "not ok within 50 ms, the other five read in every tick, the estimate stays near",
+        measured: format!("not ok after {}; {lost} ticks without one of the others; {tip}", text_of(noticed)),
+        holds: within(noticed, 50.0) && lost == 0 && is_near,
+    }
+}
+
+fn imu_frozen() -> Measured {
+    let injected = "imu3:frozen";
+    let trial = with(injected, 8_000);
+    let is_stuck = |event| event == telemetry::Event::Imu(2, SensorState::Stuck);
+    let noticed = trial.noticed_ms(is_stuck);
+    let (tip, is_near) = tip(&trial, 0.0, 8e3);
+    Measured {
+        row: "IMU frozen while the others move",
+        injected,
+        promise: "stuck within 0.52 s, the estimate stays near",
+        measured: format!("stuck after {}; {tip}", text_of(noticed)),
+        holds: within(noticed, 520.0) && is_near,
+    }
+}
+
+fn imu_restarted(row: &'static str, injected: &'static str, trial: &Trial) -> Measured {
+    let (noticed, back) = (imu_noticed_ms(trial, 2), imu_back_ms(trial, 2));
+    let (tip, is_near) = tip(trial, 0.0, 12e3);
+    Measured {
+        row,
+        injected,
+        promise: "noticed within 100 ms, ok again within 2 s, no step in the estimate",
+        measured: format!("noticed after {}, ok after {}; {tip}", text_of(noticed), text_of(back)),
+        holds: within(noticed, 100.0) && within(back, 2e3) && is_near,
+    }
+}
+
+fn imu_reset() -> Measured {
+    imu_restarted("IMU reset: 650 ms of boot, another zero", "imu3:reset", &with("imu3:reset", 12_000))
+}
+
+fn imu_brown_out() -> Measured {
+    imu_restarted("IMU brown-out: CONFIG mode, another zero", "imu3:brown-out", &with("imu3:brown-out", 12_000))
+}
+
+fn imu_replugged() -> Measured {
+    let mut trial = with("imu3:unplugged", 500);
+    trial.board.clear("imu3:unplugged");
+    trial.run_ms(11_500);
+    imu_restarted("IMU unplugged for 0.5 s: another zero", "imu3:unplugged+0.5", &trial)
+}
+
+fn imu_invalid(row: &'static str, injected: &'static str) -> Measured {
+    let trial = with(injected, 8_000);
+    let noticed = imu_noticed_ms(&trial, 2);
+    let used = trial.samples(20.0, 8e3).filter(|sample| sample.imu[2].is_some()).count();
+    let (tip, is_near) = tip(&trial, 0.0, 8e3);
+    Measured {
+        row,
+        injected,
+        promise: "no reading of it used after 20 ms, garbage within 50 ms, the estimate stays near",
+        measured: format!("garbage after {}; {used} readings used; {tip}", text_of(noticed)),
+        holds: used == 0 && within(noticed, 50.0) && is_near,
+    }
+}
+
+fn imu_zeros() -> Measured {
+    imu_invalid("IMU with quaternions of zeros", "imu3:zeros")
+}
+
+fn imu_norm() -> Measured {
+    imu_invalid("IMU with quaternions of norm 0.7", "imu3:norm=0.7")
+}
+
+fn imu_single_wrong() -> Measured {
+    let mut trial = with("imu3:random", 10);
+    trial.board.clear("imu3:random");
+    trial.run_ms(7_990);
+    let (tip, holds) = tip(&trial, 0.0, 8e3);
+    Measured {
+        row: "a single wrong output of an IMU",
+        injected: "imu3:random+0.01",
+        promise: "no step in the estimate",
+        measured: tip,
+        holds,
+    }
+}
+
+fn imu_jump() -> Measured {
+    let injected = "imu3:jump=30";
+    let trial = with(injected, 12_000);
+    let noticed = imu_noticed_ms(&trial, 2);
+    let (tip, is_near) = tip(&trial, 0.0, 12e3);
+    Measured {
+        row: "heading jump of 30°",
+        injected,
+        promise: "reported within 30 ms, no step in the estimate",
+        measured: format!("reported after {}; {tip}", text_of(noticed)),
+        holds: within(noticed, 30.0) && is_near,
+    }
+}
+
+fn imu_short_jump() -> Measured {
+    let mut trial = with("imu3:jump=30", 50);
+    trial.board.clear("imu3:jump=30");
+    trial.run_ms(11_950);
+    let (tip, holds) = tip(&trial, 0.0, 12e3);
+    Measured {
+        row: "heading jump of 30° for 50 ms",
+        injected: "imu3:jump=30+0.05",
+        promise: "no step in the estimate",
+        measured: tip,
+        holds,
+    }
+}
+
+fn imu_nack() -> Measured {
+    let injected = "imu3:nack=0.1";
+    let trial = with(injected, 8_000);
+    let others =
+        trial.samples(0.0, 8e3).filter(|sample| (0..6).any(|imu| imu != 2 && sample.imu[imu].is_none())).count();
+    let (tip, is_near) = tip(&trial, 0.0, 8e3);
+    Measured {
+        row: "IMU that refuses a tenth of its addresses",
+        injected,
+        promise: "the other five read in every tick, the estimate stays near",
+        measured: format!("{others} ticks without one of the others; {tip}"),
+        holds: others == 0 && is_near,
+    }
+}
+
+fn imu_stretch() -> Measured {
+    let injected = "imu3:stretch=20";
+    let trial = with(injected, 4_000);
+    let overruns = trial.board.healths().next_back().map_or(u32::MAX, |health| health.overruns);
+    let noticed = imu_noticed_ms(&trial, 2);
+    let (tip, is_near) = tip(&trial, 0.0, 4e3);
+    Measured {
+        row: "IMU that stretches the clock by 20 ms",
+        injected,
+        promise: "not ok within 50 ms, no overrun, the estimate stays near",
+        measured: format!("not ok after {}; {overruns} overruns; {tip}", text_of(noticed)),
+        holds: within(noticed, 50.0) && overruns == 0 && is_near,
+    }
+}
+
+fn two_imus_reset() -> Measured {
+    let injected = "imu3:reset imu5:reset";
+    imu_restarted("two IMUs reset at once", injected, &with(injected, 12_000))
+}
+
+fn reset_and_open() -> Measured {
+    let injected = "bend2a:open imu3:reset";
+    imu_restarted("IMU reset while a bend sensor is open", injected, &with(injected, 12_000))
+}
+
+impl Trial {
+    /// Samples from one time after the fault to another.
+    fn samples(&self, from_ms: f64, to_ms: f64) -> impl Iterator<Item = &telemetry::Sample> {
+        self.received(from_ms, to_ms).filter_map(|message| match message {
+            Message::Sample(sample) => Some(sample),
+            _ => None,
+        })
+    }
+}

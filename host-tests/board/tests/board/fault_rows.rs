@@ -1,0 +1,114 @@
+//! Promises about faults that are injected by name: times of events, and the estimate beside the truth.
+
+use board_tests::fault_rows::measure;
+
+/// Checks that the firmware keeps the promise of a row.
+fn assert_holds(row: &str) {
+    let measured = measure(row);
+    assert!(measured.holds, "{measured:#?}");
+}
+
+#[test]
+fn an_imu_that_resets_is_back_with_another_zero_and_no_step() {
+    assert_holds("imu_reset");
+}
+
+#[test]
+fn an_imu_that_browns_out_is_back_with_another_zero_and_no_step() {
+    assert_holds("imu_brown_out");
+}
+
+#[test]
+fn an_imu_that_is_replugged_is_back_with_another_zero_and_no_step() {
+    assert_holds("imu_replugged");
+}
+
+#[test]
+fn a_heading_that_jumps_for_50_ms_leaves_no_step() {
+    assert_holds("imu_short_jump");
+}
+
+#[test]
+fn a_single_wrong_output_leaves_no_step() {
+    assert_holds("imu_single_wrong");
+}
+
+#[test]
+fn an_unplugged_imu_costs_the_others_no_reading_and_the_tip_stays() {
+    assert_holds("imu_unplugged");
+}
+
+#[test]
+fn a_frozen_imu_is_stuck_after_half_a_second_and_the_tip_stays() {
+    assert_holds("imu_frozen");
+}
+
+#[test]
+fn quaternions_of_zeros_are_never_used() {
+    assert_holds("imu_zeros");
+}
+
+#[test]
+fn quaternions_that_are_no_orientations_are_never_used() {
+    assert_holds("imu_norm");
+}
+
+#[test]
+fn a_silent_multiplexer_never_exchanges_imus() {
+    assert_holds("mux_silent");
+}
+
+#[test]
+fn a_stuck_multiplexer_never_exchanges_imus() {
+    assert_holds("mux_stuck");
+}
+
+#[test]
+fn a_multiplexer_on_the_wrong_channel_never_exchanges_imus() {
+    assert_holds("mux_wrong");
+}
+
+#[test]
+fn a_stopped_converter_costs_bend_sensors_and_no_tick() {
+    assert_holds("adc_stopped");
+}
+
+#[test]
+fn random_bytes_at_line_rate_cost_no_tick_and_the_arm_is_vented() {
+    assert_holds("line_flood");
+}
+
+#[test]
+fn a_host_that_is_gone_leaves_the_arm_vented() {
+    assert_holds("line_cut");
+}
+
+#[test]
+fn flipped_bits_of_the_stored_table_are_found_at_boot() {
+    assert_holds("flash_flip");
+}
+
+#[test]
+fn a_power_cut_leaves_the_arm_vented() {
+    assert_holds("power_cut");
+}
+
+#[test]
+fn a_tick_that_is_held_up_ends_in_a_reset_and_the_arm_is_vented() {
+    assert_holds("tick_held");
+}
+
+#[test]
+fn a_stack_overflow_ends_in_a_reset_and_the_arm_is_vented() {
+    assert_holds("stack_overflow");
+}
+
+#[test]
+fn an_open_bend_sensor_is_lost_alone_and_the_tip_stays() {
+    assert_holds("bend_open");
+}
+
+#[test]
+fn a_held_data_line_leaves_the_estimate_by_bend_sensors() {
+    assert_holds("sda_held");
+}
