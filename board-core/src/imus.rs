@@ -22,7 +22,7 @@
 //! | the same reading while another IMU turns | readings are rejected until one differs | `Stuck` after 50 ticks |
 //! | the same readings as another IMU, while they change | those of both are rejected until they differ | `Invalid` after 5 changes |
 //! | more than one reading in twenty is missing | those that are read pass | `Intermittent` |
-//! | readings that the estimator finds implausible | they pass: it leaves them out until it has the new zero | `Inconsistent` after three ticks |
+//! | readings that the estimator finds implausible | they pass: it leaves them out until it has the new zero | `Inconsistent` |
 //!
 //! An IMU that was `NoResponse` may have restarted, and its heading with it: a user of headings aligns them again after
 //! an [`Event::Imu`] with `NoResponse`. After a supply dip the chip does not answer for 650 ms; it is polled at most 250 ms

@@ -110,9 +110,9 @@ impl BoardEstimator {
         if !tick.is_multiple_of(CONDITION_TICKS) {
             return;
         }
-        for ((segment, now), reported) in (0..).zip(self.conditions()).zip(&mut self.conditions) {
-            if core::mem::replace(reported, now) != now {
-                report(Event::Condition(segment, now));
+        for ((segment, now), reported) in (0..).zip(&self.conditions()).zip(&mut self.conditions) {
+            if core::mem::replace(reported, *now) != *now {
+                report(Event::Condition(segment, *now));
             }
         }
     }

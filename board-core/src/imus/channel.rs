@@ -41,8 +41,6 @@ pub(super) struct ImuChannel {
     /// Gaps while it responds.
     gaps: GapCounter,
     stuck: StuckDetector,
-    /// Ticks in a row in which the estimator left the reading out.
-    implausible_in_a_row: u8,
     health: SensorHealth,
 }
 
@@ -59,7 +57,6 @@ impl ImuChannel {
             pending_fault: SensorState::NoResponse,
             gaps: GapCounter::default(),
             stuck: StuckDetector::NEVER_READ,
-            implausible_in_a_row: 0,
             health: SensorHealth { state: SensorState::NoResponse, missed: 0 },
         })
     }
@@ -103,8 +100,6 @@ impl ImuChannel {
     ) -> Option<[i16; 4]> {
         let quaternion = self.quaternion();
         let outcome = core::mem::replace(&mut self.outcome, Outcome::Skipped);
-        let is_implausible = is_implausible && quaternion.is_some();
-        self.implausible_in_a_row = if is_implausible { self.implausible_in_a_row.saturating_add(1) } else { 0 };
         let is_intermittent = self.gaps.update(quaternion.is_some());
         if let Some(quaternion) = quaternion {
             self.bad_in_a_row = 0;
@@ -116,7 +111,7 @@ impl ImuChannel {
                 SensorState::Invalid
             } else if is_intermittent {
                 SensorState::Intermittent
-            } else if self.implausible_in_a_row >= BAD_TICKS {
+            } else if is_implausible {
                 SensorState::Inconsistent
             } else {
                 SensorState::Ok
