@@ -112,3 +112,43 @@ fn an_open_bend_sensor_is_lost_alone_and_the_tip_stays() {
 fn a_held_data_line_leaves_the_estimate_by_bend_sensors() {
     assert_holds("sda_held");
 }
+
+#[test]
+fn a_shorted_bend_sensor_is_lost_alone_and_the_tip_stays() {
+    assert_holds("bend_short");
+}
+
+#[test]
+fn a_bend_sensor_that_comes_and_goes_is_reported() {
+    assert_holds("bend_intermittent");
+}
+
+#[test]
+fn a_bend_sensor_that_steps_is_named_within_a_second_and_the_tip_stays() {
+    assert_holds("bend_offset");
+}
+
+#[test]
+fn a_heading_that_jumps_is_reported_within_30_ms_and_leaves_no_step() {
+    assert_holds("imu_jump");
+}
+
+#[test]
+fn an_imu_that_refuses_some_polls_costs_the_others_nothing() {
+    assert_holds("imu_nack");
+}
+
+#[test]
+fn wrong_tags_in_every_second_scan_are_reported() {
+    assert_holds("adc_tags_every_other");
+}
+
+#[test]
+fn bytes_that_arrive_again_three_seconds_later_move_nothing() {
+    assert_holds("line_replay");
+}
+
+#[test]
+fn a_disarm_that_arrives_behind_a_later_request_vents() {
+    assert_holds("line_reorder");
+}
