@@ -102,7 +102,7 @@ impl Held {
         let counts = frame.counts.as_flattened().iter().zip(self.counts.as_flattened());
         let counts = counts.filter_map(|(now, last)| Some((*now)? != (*last)?));
         let headings = frame.heading.iter().zip(&self.headings).filter(|(now, last)| !(*now - *last).is_nan());
-        let changes = counts.chain(headings.map(|(now, last)| now != last));
+        let changes = counts.chain(headings.map(|(now, last)| now.to_bits() != last.to_bits()));
         let (changed, read) = changes.fold((0, 0), |(changed, read), is| (changed + i32::from(is), read + 1));
         (1.0 - f64::from(changed) / f64::from(read.max(1))).powi(read)
     }
