@@ -163,7 +163,8 @@ impl Logger {
         }
         let run = std::mem::take(&mut self.run);
         let is_old = run.count > 0 && run.to_s - self.from_s >= AGE_S;
-        let is_no_chance = run.count > 0 && self.chance.max(chance) < CHANCE;
+        // More repeats may be a rest, in which readings without noise do not change.
+        let is_no_chance = (1..REPEATS).contains(&run.count) && self.chance.max(chance) < CHANCE;
         if is_no_chance || is_old && self.step.min(step) >= MOVES {
             self.held.append(&run);
         } else if is_old && run.count >= REPEATS && step >= CATCHES_UP {

@@ -136,7 +136,6 @@ fn a_recording_of_a_silent_board_ends_after_its_time_with_an_error_and_no_file()
     drop(port);
     let error = folder.refused(&["record", "--port", &name, "-o", "a.mcap", "--seconds", "1"]);
     assert!(error.contains(&format!("{name}: no Hello and Health within 1 s; 0 frames were read")), "{error}");
-    assert!(error.contains("check that the firmware is on the board"), "{error}");
 }
 
 #[test]
