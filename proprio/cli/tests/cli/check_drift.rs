@@ -101,7 +101,9 @@ fn exchanged_plugs_are_found_by_few_swings() {
     session.swap("imu2_deg", "imu5_deg");
     text_of(&session, "imu2 and imu5", "exchanged");
     session.swap("imu2_deg", "imu5_deg");
-    ["a", "b"].iter().for_each(|place| session.swap(&format!("bend2{place}_adc"), &format!("bend5{place}_adc")));
+    for place in ["a", "b"] {
+        session.swap(&format!("bend2{place}_adc"), &format!("bend5{place}_adc"));
+    }
     text_of(&session, "bend2 and bend5", "exchanged");
 }
 
@@ -109,7 +111,7 @@ fn exchanged_plugs_are_found_by_few_swings() {
 fn single_rows_that_are_held_at_100_hz_are_found() {
     let mut session = simulate("--scenario 1 --seconds 20 --rate 100 --seed 61");
     assert_eq!(findings(&session), Vec::<[String; 3]>::new());
-    let names: Vec<String> = session.names.iter().filter(|name| !name.starts_with("t")).cloned().collect();
+    let names: Vec<String> = session.names.iter().filter(|name| !name.starts_with('t')).cloned().collect();
     for row in (600..2000).step_by(10) {
         for name in &names {
             let before = session.cell(row - 1, name).to_owned();
