@@ -50,6 +50,14 @@ pub struct WiredWorld<'a, W> {
 }
 
 impl<W: World> World for WiredWorld<'_, W> {
+    fn adc_tag(&mut self, channel: u8) -> u8 {
+        self.world.adc_tag(channel)
+    }
+
+    fn adc_is_stopped(&mut self) -> bool {
+        self.world.adc_is_stopped()
+    }
+
     fn adc_counts(&mut self, channel: u8, now: Cycles) -> u16 {
         self.world.adc_counts(channel, now)
     }

@@ -23,7 +23,9 @@ impl Finding {
     /// True for a finding about the bend sensors of a segment, from 1.
     fn is_about_bend(&self, number: usize) -> bool {
         match self.sensor {
-            Source::Bend { segment, .. } => segment == number,
+            Source::Bend { segment, .. } | Source::Twins { segment } | Source::ImuOrBend { segment } => {
+                segment == number
+            }
             Source::TwoBends { segment, other } => segment == number || other == number,
             Source::TwoPlugs { segments, .. } => segments.contains(&number),
             Source::AllBend => true,
@@ -34,7 +36,7 @@ impl Finding {
     /// True for a finding about the IMU of a segment, from 1.
     fn is_about_imu(&self, number: usize) -> bool {
         match self.sensor {
-            Source::Imu { segment } => segment == number,
+            Source::Imu { segment } | Source::ImuOrBend { segment } => segment == number,
             Source::TwoImus { segment, other } => segment == number || other == number,
             Source::AllImus => true,
             _ => false,

@@ -136,6 +136,9 @@ fn angles(sensor: &BendSensorConfig<f64>) -> Angles {
 
 /// An angle within ±180°.
 pub(super) fn wrapped(degrees: f64) -> f64 {
+    if degrees.abs() < 180.0 {
+        return degrees;
+    }
     degrees - 360.0 * (degrees / 360.0).round()
 }
 

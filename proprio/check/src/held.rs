@@ -24,6 +24,8 @@ const AGE_S: f64 = 0.08;
 /// Least number of readings of a row, and of repeats of a finding.
 const READINGS: usize = 4;
 const LEAST: u64 = 5;
+/// Probability below which no readings are equal by chance, those that change being as many as in the steps before and after.
+const CHANCE: f64 = 1e-7;
 
 /// Repeats of all readings.
 #[derive(Debug, Clone, Copy, Default)]
@@ -33,6 +35,8 @@ struct Logger {
     /// Time of that row, s.
     from_s: f64,
     run: Rows,
+    /// Probability of that row's readings to be equal to those of the row before by chance.
+    chance: f64,
     /// Repeats that have ended, and the step after them: they are wrong if the next step is smaller.
     ended: Option<(Rows, f64)>,
     held: Rows,
@@ -77,7 +81,7 @@ impl Held {
         let turns = frame.heading.iter().zip(&self.headings).map(|(to, from)| (to - from).abs());
         let step = turns.filter(|turn| !turn.is_nan()).fold(0.0, f64::max);
         let is_repeated = self.is_repeated(frame);
-        self.logger.update(frame, is_repeated, step);
+        self.logger.update(frame, is_repeated, step, self.chance(frame));
         for (i, imu) in self.imus.iter_mut().enumerate() {
             imu.update(frame, i);
         }
@@ -90,6 +94,17 @@ impl Held {
         let headings = frame.heading.iter().filter(|heading| !heading.is_nan()).count();
         let are_equal = frame.heading.iter().zip(&self.headings).all(|(now, last)| now.to_bits() == last.to_bits());
         !frame.starts && headings > 0 && read + headings >= READINGS && are_equal && frame.counts == self.counts
+    }
+
+    /// Probability that all readings are equal by chance where as many of them change as from the row before: those of an arm that
+    /// moves, and noise.
+    fn chance(&self, frame: &Frame) -> f64 {
+        let counts = frame.counts.as_flattened().iter().zip(self.counts.as_flattened());
+        let counts = counts.filter_map(|(now, last)| Some((*now)? != (*last)?));
+        let headings = frame.heading.iter().zip(&self.headings).filter(|(now, last)| !(*now - *last).is_nan());
+        let changes = counts.chain(headings.map(|(now, last)| now.to_bits() != last.to_bits()));
+        let (changed, read) = changes.fold((0, 0), |(changed, read), is| (changed + i32::from(is), read + 1));
+        (1.0 - f64::from(changed) / f64::from(read.max(1))).powi(read)
     }
 
     pub fn finish(&mut self, findings: &mut Vec<Finding>) {
@@ -130,7 +145,7 @@ impl Held {
 }
 
 impl Logger {
-    fn update(&mut self, frame: &Frame, is_repeated: bool, step: f64) {
+    fn update(&mut self, frame: &Frame, is_repeated: bool, step: f64, chance: f64) {
         if frame.starts {
             *self = Self { held: self.held, ..Self::default() };
             return;
@@ -148,12 +163,14 @@ impl Logger {
         }
         let run = std::mem::take(&mut self.run);
         let is_old = run.count > 0 && run.to_s - self.from_s >= AGE_S;
-        if is_old && self.step.min(step) >= MOVES {
+        // More repeats may be a rest, in which readings without noise do not change.
+        let is_no_chance = (1..REPEATS).contains(&run.count) && self.chance.max(chance) < CHANCE;
+        if is_no_chance || is_old && self.step.min(step) >= MOVES {
             self.held.append(&run);
         } else if is_old && run.count >= REPEATS && step >= CATCHES_UP {
             self.ended = Some((run, step));
         }
-        (self.step, self.from_s) = (step, frame.time_s);
+        (self.step, self.from_s, self.chance) = (step, frame.time_s, chance);
     }
 
     /// Ends the repeats at the end of the session, from where the arm did not stop.

@@ -55,6 +55,8 @@ pub enum Kind {
     Gaps,
     /// The bend sensor departs from its twin and from the IMU; angle, deg.
     LeavesTwin,
+    /// An IMU and bend sensors part by more than the table's drift; angle, deg.
+    Drift,
     /// Places of exactly 0, as of a lost marker; share, %.
     TruthZeros,
     /// The last pose is repeated while the arm moves; share, %.

@@ -4,7 +4,8 @@
 //! sweep of its own) in scenarios 1 to 3 and all motions that begin with a straight arm at rest, and judged on arms 21 to 29. That
 //! of `twins.rs` was raised once after a look at sessions of another simulator. Those of `held.rs`, `common_zero.rs` and
 //! `steps/exchanges.rs` were chosen on arms 1 to 8, and judged on arms 501 to 506; that of a common turn was raised once after arm
-//! 502.
+//! 502. Those of `drift.rs`, `counts_scale.rs`, of repeats that are no chance and of few swings were chosen on arms 1 to 8, and
+//! judged on arms 601 to 614.
 //!
 //! | file | rule |
 //! |---|---|
@@ -24,12 +25,16 @@
 //! | `quaternions.rs` | quaternions in another order, IMUs on their side |
 //! | `truth/` | the truth by itself, against the lengths and against the sensors' clock |
 //! | `clock_fit/` | the camera's clock against the sensors', by their motion |
+//! | `drift.rs` | drift of an IMU, or of both bend sensors of a segment |
+//! | `counts_scale.rs` | counts of an ADC whose reference is off by some percent |
 //! | `twins.rs` | a bend sensor that leaves its twin and the IMU |
 
 mod bend_range;
 mod clock;
 pub mod clock_fit;
 mod common_zero;
+mod counts_scale;
+mod drift;
 mod finding;
 mod frame;
 mod frozen;
@@ -50,6 +55,7 @@ mod twins;
 
 use std::path::Path;
 
+use calibration_tables::ArmFile;
 use proprio_session::{Error, FileDefects, LoadedTable, MissingHistory, Progress, RequiredColumns, Row, SessionReader};
 
 pub use finding::{Finding, Kind, Rows, Source};
@@ -57,6 +63,7 @@ pub use finding::{Finding, Kind, Rows, Source};
 use self::bend_range::BendRange;
 use self::clock::Clock;
 use self::common_zero::CommonZero;
+use self::drift::Drift;
 use self::frame::Decoder;
 use self::frozen::Frozen;
 use self::held::Held;
@@ -70,6 +77,7 @@ use self::twins::Twins;
 
 /// A check of one session, row by row.
 pub struct SessionCheck {
+    arm: ArmFile,
     decoder: Decoder,
     /// The rules before the first row.
     start: Rules,
@@ -89,6 +97,7 @@ struct Rules {
     new_zero: NewZero,
     steps: Steps,
     twins: Twins,
+    drift: Drift,
     truth: TruthCheck,
 }
 
@@ -112,9 +121,10 @@ impl SessionCheck {
             new_zero: NewZero::new(),
             steps: Steps::new(segments, Plugs::new(&table.file, &decoder)),
             twins: Twins::new(&table.file),
+            drift: Drift::new(&table.file),
             truth: TruthCheck::new(&table.file),
         };
-        Ok(Self { decoder, start: rules.clone(), rules })
+        Ok(Self { arm: table.file.clone(), decoder, start: rules.clone(), rules })
     }
 
     /// Starts again before the next row, which becomes row 1.
@@ -137,6 +147,7 @@ impl SessionCheck {
         rules.new_zero.update(frame);
         rules.steps.update(frame);
         rules.twins.update(frame);
+        rules.drift.update(frame);
         if row.truth.iter().any(Option::is_some) {
             rules.truth.update(&TruthRow::new(row, frame.row, &frame.headings));
         }
@@ -145,12 +156,12 @@ impl SessionCheck {
     /// The findings in the rows so far.
     #[must_use]
     pub fn findings(&self) -> Vec<Finding> {
-        self.rules.clone().finish()
+        self.rules.clone().finish(&self.arm)
     }
 }
 
 impl Rules {
-    fn finish(mut self) -> Vec<Finding> {
+    fn finish(mut self, arm: &ArmFile) -> Vec<Finding> {
         let mut findings = Vec::new();
         // The other rules take times for seconds.
         if !self.clock.finish(&mut findings) {
@@ -167,6 +178,8 @@ impl Rules {
         self.common_zero.finish(&mut findings);
         self.tare.finish(&mut findings);
         self.twins.finish(&mut findings);
+        self.drift.finish(&mut findings);
+        counts_scale::finish(arm, &self.steps.plugs, &mut findings);
         let is_held = findings.iter().any(|finding| finding.kind == Kind::Held);
         let mut of_truth = self.truth.finish().0.findings;
         // It is the repeats that are late.

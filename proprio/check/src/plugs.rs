@@ -8,8 +8,8 @@ use super::frame::{Decoder, Frame};
 use super::median::median;
 use super::tare::reference_angles;
 
-/// Least number of steps, and least root mean square of them, deg.
-const STEPS: f64 = 20.0;
+/// Least number of steps in which the arm moves, and least root mean square of them, deg.
+const STEPS: f64 = 10.0;
 const MOTION: f64 = 2.0;
 /// Correlation below which a sensor may follow another segment than its own, from which on it follows one, and by how much more
 /// than its own.
@@ -35,6 +35,15 @@ struct Expected {
     counts: f64,
     /// Counts per degree about it.
     slope: f64,
+}
+
+/// Counts of a sensor in the tare.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct AtRest {
+    /// Over those of the map.
+    pub ratio: f64,
+    /// Slope of the map over its counts, 1/deg.
+    pub slope: f64,
 }
 
 /// Sums over the steps of a sensor's counts and of a segment's angle by the IMUs.
@@ -98,6 +107,18 @@ impl Plugs {
                 }
             }
         }
+    }
+
+    /// All rows.
+    pub const fn rows(&self) -> Rows {
+        self.rows
+    }
+
+    /// The counts of a sensor in the tare; `None` where it was not read there.
+    pub fn at_rest(&self, i: usize, place: usize) -> Option<AtRest> {
+        let plug = &self.pairs[i][place];
+        let (ratio, expected) = plug.factor_at_rest().zip(plug.expected)?;
+        Some(AtRest { ratio, slope: expected.slope / expected.counts })
     }
 
     /// Adds a step of the counts, and of the bend angles by the IMUs.

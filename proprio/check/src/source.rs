@@ -31,6 +31,16 @@ pub enum Source {
         /// The places.
         places: [usize; 2],
     },
+    /// Both bend sensors of a segment.
+    Twins {
+        /// Segment.
+        segment: usize,
+    },
+    /// The IMU or the bend sensors of a segment, which cannot be told apart at the tip.
+    ImuOrBend {
+        /// Segment.
+        segment: usize,
+    },
     /// All bend sensors.
     AllBend,
     /// The IMU at a segment's end.
@@ -84,6 +94,8 @@ impl fmt::Display for Source {
                 write!(f, "bend{segment}{} and bend{other}{}", SENSOR_NAMES[*place], SENSOR_NAMES[*of])
             }
             Self::TwoBends { segment, other } => write!(f, "bend{segment} and bend{other}"),
+            Self::Twins { segment } => write!(f, "bend{segment}a and bend{segment}b"),
+            Self::ImuOrBend { segment } => write!(f, "imu{segment} or bend{segment}"),
             Self::AllBend => f.write_str("all bend sensors"),
             Self::Imu { segment } => write!(f, "imu{segment}"),
             Self::TwoImus { segment, other } => write!(f, "imu{segment} and imu{other}"),

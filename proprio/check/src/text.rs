@@ -77,6 +77,20 @@ impl fmt::Display for Finding {
             Kind::EqualTimes => write!(f, "{figure:.0} rows have the time of the row before"),
             Kind::Gaps => write!(f, "rows are missing, {figure:.2} s at most"),
             Kind::LeavesTwin => write!(f, "departs by {figure:.0}° from its twin and the IMU"),
+            Kind::Drift => match sensor {
+                Source::Imu { .. } => write!(f, "the heading drifts by {figure:.0}° against the bend sensors"),
+                Source::ImuOrBend { .. } => {
+                    write!(
+                        f,
+                        "they part by {figure:.0}°; without a segment behind them it cannot be told which of them drifts"
+                    )
+                }
+                Source::Twins { segment } => write!(
+                    f,
+                    "both drift by {figure:.0}° against the IMUs, unless all IMUs from imu{segment} on drift alike"
+                ),
+                _ => write!(f, "the bend angle drifts by {figure:.0}° against the IMUs"),
+            },
             Kind::TruthZeros => write!(f, "the place is exactly 0, 0 in {figure:.2} % of the rows"),
             Kind::TruthRepeated => {
                 write!(f, "the last pose is repeated while the arm moves, in {figure:.2} % of the rows")

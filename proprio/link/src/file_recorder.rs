@@ -118,6 +118,17 @@ impl FileRecorder {
         recorder.finish().map(drop).map_err(|source| Error::Output { path, source })
     }
 
+    /// Removes the file, of a board that has sent nothing. What a pipe or device has got stays there.
+    ///
+    /// # Errors
+    /// [`Error::Output`].
+    pub fn discard(self) -> Result<(), Error> {
+        let Self { recorder, path, .. } = self;
+        drop(recorder);
+        let removed = if !is_stdout(&path) && path.is_file() { fs::remove_file(&path) } else { Ok(()) };
+        removed.map_err(|source| Error::Output { path, source })
+    }
+
     /// Names the file in an error.
     fn named(&self, written: io::Result<()>) -> Result<(), Error> {
         written.map_err(|source| Error::Output { path: self.path.clone(), source })

@@ -100,7 +100,8 @@ impl Link {
     }
 
     /// The error of a board that was silent for so long.
-    pub(crate) fn silent(&self, time: Duration) -> LinkError {
+    #[must_use]
+    pub fn silent(&self, time: Duration) -> LinkError {
         let state = self.state();
         if let Some(mismatch) = state.mismatches.first() {
             return LinkError::Ended(mismatch.to_string());

@@ -14,14 +14,14 @@ const MAX_TIME_S: f64 = 100.0 * 365.25 * 86_400.0;
 
 /// The number in a cell; `None` for an empty one.
 pub(crate) fn number(cell: &str) -> Result<Option<f64>, SessionProblem> {
-    let cell = cell.trim();
-    if cell.is_empty() {
-        return Ok(None);
-    }
     match cell.parse::<f64>() {
         Ok(value) if value.is_finite() => Ok(Some(value)),
         Ok(_) => Err(SessionProblem::NotFinite(shown(cell))),
-        Err(_) => Err(SessionProblem::NotANumber(shown(cell))),
+        Err(_) => match cell.trim() {
+            "" => Ok(None),
+            trimmed if trimmed.len() < cell.len() => number(trimmed),
+            _ => Err(SessionProblem::NotANumber(shown(cell))),
+        },
     }
 }
 

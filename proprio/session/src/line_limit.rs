@@ -28,17 +28,19 @@ impl<R> LineLimit<R> {
 
 impl<R: Read> Read for LineLimit<R> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        let count = self.source.read(buffer)?;
-        for piece in buffer[..count].split_inclusive(|byte| matches!(byte, b'\n' | b'\r')) {
-            self.length += piece.len();
-            if self.length > LONGEST_LINE {
-                return Err(io::Error::other(LongLine { line: self.line }));
-            }
-            self.line += u64::from(piece.ends_with(b"\n"));
-            if piece.ends_with(b"\n") || piece.ends_with(b"\r") {
-                self.length = 0;
-            }
+        // A line within what is read at once is not too long; the first and the last may go on outside of it.
+        let room = buffer.len().min(LONGEST_LINE);
+        let count = self.source.read(&mut buffer[..room])?;
+        let text = &buffer[..count];
+        let is_end = |byte: &u8| matches!(byte, b'\n' | b'\r');
+        self.length += text.iter().position(is_end).map_or(count, |first| first + 1);
+        if self.length > LONGEST_LINE {
+            return Err(io::Error::other(LongLine { line: self.line }));
         }
+        if let Some(last) = text.iter().rposition(is_end) {
+            self.length = count - (last + 1);
+        }
+        self.line += text.iter().map(|byte| u64::from(*byte == b'\n')).sum::<u64>();
         Ok(count)
     }
 }

@@ -127,8 +127,9 @@ impl LowFrequencyDifference {
     /// The differences of a signal; `None` without any motion.
     fn of(signal: &Signal) -> Option<Self> {
         let [_, end_s] = signal.ends_s()?;
-        let steps: Vec<Option<f64>> =
-            (0..(end_s / GRID_S) as usize).map(|k| signal.step(k as f64 * GRID_S).map(|[step, _]| step)).collect();
+        let mut of_signal = signal.steps();
+        let step = |k: usize| of_signal.at_time(k as f64 * GRID_S).map(|[step, _]| step);
+        let steps: Vec<Option<f64>> = (0..(end_s / GRID_S) as usize).map(step).collect();
         let known = steps.iter().flatten().count();
         let mean_square = steps.iter().flatten().map(|step| step * step).sum::<f64>() / known as f64;
         (mean_square > LEAST_STEP * LEAST_STEP).then(|| Self {

@@ -4,7 +4,7 @@ mod motion;
 mod signal;
 
 pub use motion::{ComparedSensors, Motion, Pair};
-pub use signal::{GRID_S, Reading, Signal};
+pub use signal::{GRID_S, Reading, Signal, Steps};
 
 use crate::median::median;
 
@@ -57,15 +57,10 @@ pub struct ClockFit {
     pub matched: usize,
 }
 
-/// Differences of all sensors that were read at one moment.
-struct Moment {
-    time_s: f64,
-    steps: Vec<Step>,
-}
-
 /// Difference of a pair's sensor, its rate of change, and the difference of the camera's column at the same time.
 struct Step {
     pair: usize,
+    time_s: f64,
     value: f64,
     rate: f64,
     camera: Option<f64>,
@@ -80,7 +75,8 @@ pub fn fit(motion: &Motion, lag_s: f64) -> Option<ClockFit> {
     loop {
         compare(motion, &mut windows, clocks);
         let gains = gains(motion, &windows);
-        let lags: Vec<WindowLag> = windows.iter().filter_map(|window| window_lag(window, &gains)).collect();
+        let scales: Vec<[f64; 2]> = gains.iter().map(|gain| [gain.value(), gain.noise()]).collect();
+        let lags: Vec<WindowLag> = windows.iter().filter_map(|window| window_lag(window, &scales)).collect();
         let line = Line::through(&lags)?;
         clocks = Clocks { lag_s: clocks.lag_s + line.at(0.0), skew: clocks.skew + line.slope };
         rounds += 1;
@@ -109,33 +105,42 @@ fn median_correlation(by: ComparedSensors, gains: &[Gain]) -> f64 {
 }
 
 /// Number of moments at which a sensor's difference has one of the camera.
-fn matched(windows: &[Vec<Moment>]) -> usize {
-    let has_like = |moment: &&Moment| moment.steps.iter().any(|step| step.camera.is_some());
-    windows.iter().flatten().filter(has_like).count()
+fn matched(windows: &[Vec<Step>]) -> usize {
+    let mut times: Vec<f64> =
+        windows.iter().flatten().filter(|step| step.camera.is_some()).map(|step| step.time_s).collect();
+    // Those of one moment are in succession.
+    times.dedup();
+    times.len()
 }
 
-/// The sensors' steps in windows.
-fn windows(motion: &Motion) -> Vec<Vec<Moment>> {
+/// The sensors' steps in windows, moment by moment.
+fn windows(motion: &Motion) -> Vec<Vec<Step>> {
     let ends_s = motion.pairs.iter().filter_map(|pair| pair.sensor.ends_s());
     let end_s = ends_s.map(|[_, end_s]| end_s).fold(0.0, f64::max);
     let per_window = (WINDOW_S / GRID_S).round() as usize;
-    let moment = |k: usize| {
-        let time_s = k as f64 * GRID_S;
-        let step = |(pair, of): (usize, &Pair)| {
-            let [value, rate] = of.sensor.step(time_s)?;
-            Some(Step { pair, value, rate, camera: None })
-        };
-        Moment { time_s, steps: motion.pairs.iter().enumerate().filter_map(step).collect() }
-    };
-    let moments: Vec<usize> = (0..(end_s / GRID_S) as usize).collect();
-    moments.chunks(per_window).map(|window| window.iter().copied().map(moment).collect()).collect()
+    let mut sensors: Vec<Steps> = motion.pairs.iter().map(|pair| pair.sensor.steps()).collect();
+    let moments = (end_s / GRID_S) as usize;
+    let mut windows = Vec::with_capacity(moments.div_ceil(per_window));
+    for first in (0..moments).step_by(per_window) {
+        let mut window = Vec::with_capacity(per_window * sensors.len());
+        for k in first..moments.min(first + per_window) {
+            let time_s = k as f64 * GRID_S;
+            for (pair, sensor) in sensors.iter_mut().enumerate() {
+                let step = sensor.at_time(time_s);
+                window.extend(step.map(|[value, rate]| Step { pair, time_s, value, rate, camera: None }));
+            }
+        }
+        windows.push(window);
+    }
+    windows
 }
 
 /// Sets the camera's differences, by a guess of the clocks.
-fn compare(motion: &Motion, windows: &mut [Vec<Moment>], clocks: Clocks) {
-    for moment in windows.iter_mut().flatten() {
-        let camera_s = clocks.camera_s(moment.time_s);
-        moment.steps.iter_mut().for_each(|step| step.camera = motion.camera_step(step.pair, camera_s));
+fn compare(motion: &Motion, windows: &mut [Vec<Step>], clocks: Clocks) {
+    let mut cameras: Vec<Steps> = motion.pairs.iter().map(|pair| motion.cameras[pair.camera].steps()).collect();
+    for step in windows.iter_mut().flatten() {
+        let of_camera = cameras[step.pair].at_time(clocks.camera_s(step.time_s));
+        step.camera = of_camera.map(|[value, _]| value);
     }
 }
 
@@ -172,9 +177,9 @@ impl Gain {
     }
 }
 
-fn gains(motion: &Motion, windows: &[Vec<Moment>]) -> Vec<Gain> {
+fn gains(motion: &Motion, windows: &[Vec<Step>]) -> Vec<Gain> {
     let mut gains = vec![Gain::default(); motion.pairs.len()];
-    for step in windows.iter().flatten().flat_map(|moment| &moment.steps) {
+    for step in windows.iter().flatten() {
         if let Some(camera) = step.camera {
             gains[step.pair].add(step.value, camera);
         }
@@ -193,17 +198,15 @@ struct WindowLag {
 }
 
 /// One Gauss–Newton step: the lag that maps the camera's differences to the sensors'. The slope is that of the sensors, which is
-/// less noisy than a single camera's.
-fn window_lag(window: &[Moment], gains: &[Gain]) -> Option<WindowLag> {
+/// less noisy than a single camera's. `scales` has the value and the noise of each pair's gain.
+fn window_lag(window: &[Step], scales: &[[f64; 2]]) -> Option<WindowLag> {
     let (mut pull, mut weight, mut time) = (0.0, 0.0, 0.0);
-    for moment in window {
-        for Step { pair, value, rate, camera } in &moment.steps {
-            let (gain, noise) = (gains[*pair].value(), gains[*pair].noise());
-            if let Some(camera) = camera.filter(|_| noise > 0.0) {
-                pull += rate * (value - gain * camera) / noise;
-                weight += rate * rate / noise;
-                time += rate * rate / noise * moment.time_s;
-            }
+    for Step { pair, time_s, value, rate, camera } in window {
+        let [gain, noise] = scales[*pair];
+        if let Some(camera) = camera.filter(|_| noise > 0.0) {
+            pull += rate * (value - gain * camera) / noise;
+            weight += rate * rate / noise;
+            time += rate * rate / noise * time_s;
         }
     }
     let lag_s = (pull / weight).clamp(-LONGEST_MOVE_S, LONGEST_MOVE_S);

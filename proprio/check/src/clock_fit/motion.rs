@@ -48,11 +48,3 @@ impl ComparedSensors {
         }
     }
 }
-
-impl Motion {
-    /// Difference of the camera's column of a pair.
-    #[must_use]
-    pub fn camera_step(&self, pair: usize, time_s: f64) -> Option<f64> {
-        self.cameras[self.pairs[pair].camera].step(time_s).map(|[step, _]| step)
-    }
-}

@@ -58,9 +58,30 @@ impl Signal {
         Some([self.points.first()?.time_s, self.points.last()?.time_s])
     }
 
-    fn at(&self, time_s: f64) -> Option<Point> {
-        let after = self.points.partition_point(|point| point.time_s <= time_s);
-        let (from, to) = (self.points.get(after.checked_sub(1)?)?, self.points.get(after)?);
+    /// The differences, from the first on.
+    #[must_use]
+    pub const fn steps(&self) -> Steps<'_> {
+        Steps { points: self.points.as_slice(), after: [0; 3] }
+    }
+}
+
+/// Differences of a signal, one after another: each search begins where the last one has ended.
+pub struct Steps<'s> {
+    points: &'s [Point],
+    /// Number of readings up to the begin, the middle and the end of the last difference.
+    after: [usize; 3],
+}
+
+impl Steps<'_> {
+    fn at(&mut self, place: usize, time_s: f64) -> Option<Point> {
+        let after = &mut self.after[place];
+        while self.points.get(*after).is_some_and(|point| point.time_s <= time_s) {
+            *after += 1;
+        }
+        while self.points[..*after].last().is_some_and(|point| point.time_s > time_s) {
+            *after -= 1;
+        }
+        let (from, to) = (self.points.get(after.checked_sub(1)?)?, self.points.get(*after)?);
         let value = from.value + (to.value - from.value) * (time_s - from.time_s) / (to.time_s - from.time_s);
         Some(from.line_to(time_s, value, to.is_hidden))
     }
@@ -68,8 +89,10 @@ impl Signal {
     /// The difference at `time_s`, which is the mean over the span after it less the mean over the span before, and its rate
     /// of change; `None` where the column has a pause in these spans.
     #[must_use]
-    pub fn step(&self, time_s: f64) -> Option<[f64; 2]> {
-        let [before, now, after] = [-SPAN_S, 0.0, SPAN_S].map(|offset_s| self.at(time_s + offset_s));
+    pub fn at_time(&mut self, time_s: f64) -> Option<[f64; 2]> {
+        let before = self.at(0, time_s - SPAN_S);
+        let now = self.at(1, time_s);
+        let after = self.at(2, time_s + SPAN_S);
         let (before, now, after) = (before?, now?, after?);
         let seen = after.hidden_s <= before.hidden_s;
         let second_difference = |of: fn(&Point) -> f64| (of(&after) - 2.0 * of(&now) + of(&before)) / SPAN_S;
@@ -95,7 +118,7 @@ mod tests {
     fn a_ramp_has_a_difference_of_its_slope_times_the_span_at_any_sampling() {
         let times = [0.0, 1.0, 1.1, 1.11, 3.0, 3.5, 6.0];
         let signal = Signal::new(&times.map(|time| (time, 3.0 * time)), &[]);
-        let [step, rate] = signal.step(2.5).expect("it lies within");
+        let [step, rate] = signal.steps().at_time(2.5).expect("it lies within");
         assert!((step - 6.0).abs() < 1e-12 && rate.abs() < 1e-12, "{step}, {rate}");
     }
 
@@ -103,7 +126,8 @@ mod tests {
     fn there_is_no_step_across_a_pause_or_beyond_the_ends() {
         let times = (0..400).map(|k| f64::from(k) / 20.0).filter(|t| !(8.0..8.4).contains(t));
         let signal = Signal::new(&times.map(|time| (time, time)).collect::<Vec<_>>(), &[]);
-        let known = [1.9, 2.1, 5.9, 6.2, 8.2, 10.3, 10.5, 17.9, 18.0].map(|time| signal.step(time).is_some());
+        let mut steps = signal.steps();
+        let known = [1.9, 2.1, 5.9, 6.2, 8.2, 10.3, 10.5, 17.9, 18.0].map(|time| steps.at_time(time).is_some());
         assert_eq!(known, [false, true, true, false, false, false, true, true, false]);
     }
 }

@@ -3,8 +3,8 @@
 use super::moments::{Matrix, Moments};
 use super::wiring::Wiring;
 
-/// Least number of steps.
-const STEPS: f64 = 20.0;
+/// Least number of steps in which the arm moves.
+const STEPS: f64 = 10.0;
 /// Least root mean square of a segment's steps, deg; its square is added to the denominator of the misfit.
 const MOTION: f64 = 2.0;
 /// Misfit above which a segment's sensors disagree.

@@ -26,6 +26,8 @@ use super::quaternions::Quaternions;
 /// Shortest and longest interval of a step, s. Sessions at less than 1 Hz have their own interval.
 const INTERVAL_S: f64 = 0.999;
 const LONGEST_S: f64 = 3.0;
+/// Step of a segment of an arm that moves, deg.
+const MOVES: f64 = 2.0;
 
 /// Headings and bend angles at the end of the last step.
 #[derive(Debug, Clone, Copy)]
@@ -104,7 +106,11 @@ impl Steps {
         let heading: [f64; MAX_SEGMENTS] =
             std::array::from_fn(|i| if self.broken[i] { f64::NAN } else { to.heading[i] - from.heading[i] });
         let theta: [f64; MAX_SEGMENTS] = std::array::from_fn(|i| to.theta[i] - from.theta[i]);
-        let by_imu = std::array::from_fn(|i| difference(&heading, i));
+        let by_imu: [f64; MAX_SEGMENTS] = std::array::from_fn(|i| difference(&heading, i));
+        // The noise of an arm at rest would hide the few swings of a long session.
+        if !by_imu.iter().chain(&theta).any(|step| step.abs() >= MOVES) {
+            return;
+        }
         let counts = std::array::from_fn(|i| [0, 1].map(|place| to.counts[i][place] - from.counts[i][place]));
         self.plugs.add(&counts, &by_imu);
         let bend_heading = std::array::from_fn(|i| to.bend_heading[i] - from.bend_heading[i]);

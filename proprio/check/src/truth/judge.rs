@@ -10,7 +10,7 @@ use proprio_session::Truth;
 
 use super::fault::{Fault, FaultKind};
 use super::holds::Holds;
-use super::links::{BASE, Chain, distance, wrapped};
+use super::links::{BASE, Chain, Links, distance, wrapped};
 use super::row::TruthRow;
 use super::usual::Usual;
 
@@ -41,6 +41,13 @@ struct Suspects {
 /// True end of each segment less the expected one, in the frame of the segment's start, m; `None` without the poses.
 type Residuals = [Option<Vector2<f64>>; MAX_SEGMENTS];
 
+/// A row with its links.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct LinkedRow {
+    pub row: TruthRow,
+    pub links: Links,
+}
+
 /// The judge.
 #[derive(Debug, Clone)]
 pub(super) struct Judge {
@@ -49,7 +56,7 @@ pub(super) struct Judge {
     is_usual_known: bool,
     /// Rows that wait until the usual values are known.
     waiting: Vec<TruthRow>,
-    current: Option<(TruthRow, Residuals)>,
+    current: Option<LinkedRow>,
     /// Residuals of the last good row.
     residuals: Residuals,
     /// Mean change of the residuals from row to row, m.
@@ -78,7 +85,7 @@ impl Judge {
     }
 
     /// Adds a row. Adds the faults that are found to `faults`, and the earlier rows without their wrong poses to `judged`.
-    pub fn update(&mut self, mut row: TruthRow, faults: &mut Vec<Fault>, judged: &mut Vec<TruthRow>) {
+    pub fn update(&mut self, mut row: TruthRow, faults: &mut Vec<Fault>, judged: &mut Vec<LinkedRow>) {
         take_zeros(&mut row, self.chain.count(), faults);
         if self.is_usual_known {
             self.advance(&row, faults, judged);
@@ -91,15 +98,15 @@ impl Judge {
     }
 
     /// Judges the last rows.
-    pub fn finish(&mut self, faults: &mut Vec<Fault>, judged: &mut Vec<TruthRow>) {
+    pub fn finish(&mut self, faults: &mut Vec<Fault>, judged: &mut Vec<LinkedRow>) {
         self.judge_waiting(faults, judged);
-        if let Some((last, own)) = self.current.take() {
-            self.judge(last, own, None, faults, judged);
+        if let Some(last) = self.current.take() {
+            self.judge(last, None, faults, judged);
         }
         self.holds.finish(faults);
     }
 
-    fn judge_waiting(&mut self, faults: &mut Vec<Fault>, judged: &mut Vec<TruthRow>) {
+    fn judge_waiting(&mut self, faults: &mut Vec<Fault>, judged: &mut Vec<LinkedRow>) {
         if !self.waiting.is_empty() {
             self.usual = Usual::of(&self.waiting, &self.chain);
             self.is_usual_known = true;
@@ -110,26 +117,28 @@ impl Judge {
         }
     }
 
-    fn advance(&mut self, next: &TruthRow, faults: &mut Vec<Fault>, judged: &mut Vec<TruthRow>) {
-        let of_next = self.residuals_of(next);
-        if let Some((row, own)) = self.current.replace((*next, of_next)) {
-            self.judge(row, own, Some(&of_next), faults, judged);
+    fn advance(&mut self, next: &TruthRow, faults: &mut Vec<Fault>, judged: &mut Vec<LinkedRow>) {
+        let links = self.chain.links(&next.poses);
+        if let Some(current) = self.current.replace(LinkedRow { row: *next, links }) {
+            let of_next = self.residuals(&links);
+            self.judge(current, Some(&of_next), faults, judged);
         }
     }
 
     fn judge(
         &mut self,
-        mut row: TruthRow,
-        mut own: Residuals,
+        LinkedRow { mut row, mut links }: LinkedRow,
         next: Option<&Residuals>,
         faults: &mut Vec<Fault>,
-        judged: &mut Vec<TruthRow>,
+        judged: &mut Vec<LinkedRow>,
     ) {
         let original = row;
+        let mut own = self.residuals(&links);
         let suspects = self.suspects(&row, &own, next);
         if !suspects.is_empty() {
             self.blame(&mut row, next, &suspects, faults);
-            own = self.residuals_of(&row);
+            links = self.chain.links(&row.poses);
+            own = self.residuals(&links);
         }
         self.holds.update(&original, self.usual.scale, faults);
         for (i, residual) in own.into_iter().enumerate().take(self.chain.count()) {
@@ -141,7 +150,7 @@ impl Judge {
                 self.noise[i] += NOISE_WEIGHT * (change - self.noise[i]);
             }
         }
-        judged.push(row);
+        judged.push(LinkedRow { row, links });
     }
 
     /// Length of a segment with its connector in the truth's own unit.
@@ -149,12 +158,12 @@ impl Judge {
         self.chain.lengths[i] * self.usual.scale
     }
 
+    fn residuals(&self, links: &Links) -> Residuals {
+        links.map(|link| link.map(|link| link.end - link.expected * self.usual.scale))
+    }
+
     fn residuals_of(&self, row: &TruthRow) -> Residuals {
-        let mut residuals = [None; MAX_SEGMENTS];
-        for (i, residual) in residuals.iter_mut().enumerate().take(self.chain.count()) {
-            *residual = self.chain.link(i, &row.poses).map(|link| link.end - link.expected * self.usual.scale);
-        }
-        residuals
+        self.residuals(&self.chain.links(&row.poses))
     }
 
     /// Links of a row that cannot be right.

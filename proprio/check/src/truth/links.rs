@@ -19,7 +19,7 @@ pub fn geometry(segment: &SegmentToml) -> SegmentConfig<f64> {
 /// Segments of an arm.
 #[derive(Debug, Clone)]
 pub(super) struct Chain {
-    segments: Vec<SegmentConfig<f64>>,
+    segments: Vec<Pcc<f64>>,
     /// Length of each segment with its connector, m.
     pub lengths: Vec<f64>,
 }
@@ -35,13 +35,17 @@ pub(super) struct Link {
     pub start_rad: f64,
 }
 
+/// The links of a row; `None` without the poses.
+pub(super) type Links = [Option<Link>; MAX_SEGMENTS];
+
 /// Pose of the base.
 pub(super) const BASE: Truth = Truth { x_m: 0.0, y_m: 0.0, heading_rad: Some(0.0) };
 
 impl Chain {
     pub fn new(arm: &ArmFile) -> Self {
         let lengths = arm.segments.iter().map(|segment| (segment.length_mm + segment.offset_mm) / 1000.0).collect();
-        Self { segments: arm.segments.iter().map(geometry).collect(), lengths }
+        let segments = arm.segments.iter().map(|segment| Pcc::new(&geometry(segment))).collect();
+        Self { segments, lengths }
     }
 
     pub fn count(&self) -> usize {
@@ -56,8 +60,17 @@ impl Chain {
         let turn = wrapped(own.heading_rad? - start_rad);
         // Headings are clockwise, so that this turns back.
         let end = Rotation2::new(start_rad) * Vector2::new(own.x_m - before.x_m, own.y_m - before.y_m);
-        let expected = Pcc::new(&self.segments[i]).link(Angle::from(turn)).end;
+        let expected = self.segments[i].link(Angle::from(turn)).end;
         Some(Link { end, expected, start_rad })
+    }
+
+    /// All links of a row.
+    pub fn links(&self, poses: &[Option<Truth>; MAX_SEGMENTS]) -> Links {
+        let mut links = [None; MAX_SEGMENTS];
+        for (i, link) in links.iter_mut().enumerate().take(self.count()) {
+            *link = self.link(i, poses);
+        }
+        links
     }
 }
 
@@ -68,5 +81,8 @@ pub(super) fn distance(a: &Truth, b: &Truth) -> f64 {
 
 /// An angle within half a turn, rad.
 pub(super) fn wrapped(rad: f64) -> f64 {
+    if rad.abs() < std::f64::consts::PI {
+        return rad;
+    }
     rad - std::f64::consts::TAU * (rad / std::f64::consts::TAU).round()
 }

@@ -31,8 +31,7 @@ pub use left_out::LeftOut;
 pub use links::geometry;
 pub use row::TruthRow;
 
-use self::judge::Judge;
-use self::links::Chain;
+use self::judge::{Judge, LinkedRow};
 use self::pieces::{Pieces, Values};
 use self::tally::Tally;
 use super::finding::{Finding, Kind, Source};
@@ -56,7 +55,7 @@ pub struct TruthCheck {
     pieces: Pieces,
     tally: Tally,
     faults: Vec<Fault>,
-    judged: Vec<TruthRow>,
+    judged: Vec<LinkedRow>,
 }
 
 /// Result of a check of the truth.
@@ -78,7 +77,7 @@ impl TruthCheck {
     pub fn new(arm: &ArmFile) -> Self {
         Self {
             judge: Judge::new(arm),
-            pieces: Pieces::new(Chain::new(arm)),
+            pieces: Pieces::new(arm.segments.len()),
             tally: Tally::new(arm.segments.len()),
             faults: Vec::new(),
             judged: Vec::new(),

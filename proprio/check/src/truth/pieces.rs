@@ -1,8 +1,8 @@
 //! Pieces of a session: scale of the truth, unit of its headings, and lag against the IMUs. The session's values are the medians
 //! over its pieces, so that a fault of some of them does not decide about all.
 
-use super::links::{Chain, wrapped};
-use super::row::TruthRow;
+use super::judge::LinkedRow;
+use super::links::wrapped;
 use crate::clock_fit::{ComparedSensors, Motion, Pair, Reading, Signal, fit};
 use crate::median::median;
 
@@ -36,7 +36,7 @@ pub(super) struct Values {
 }
 
 /// Sums and readings of a piece.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone)]
 struct Piece {
     from_s: Option<f64>,
     last_s: f64,
@@ -54,7 +54,7 @@ struct Piece {
 /// The pieces of a session: the memory holds one of them, and three numbers of each of the others.
 #[derive(Debug, Clone)]
 pub(super) struct Pieces {
-    chain: Chain,
+    segments: usize,
     current: Piece,
     all: Vec<Values>,
     /// Lag at which the fit of the next piece begins, s; `None` before one was searched for.
@@ -62,33 +62,33 @@ pub(super) struct Pieces {
 }
 
 impl Pieces {
-    pub fn new(chain: Chain) -> Self {
-        Self { chain, current: Piece::default(), all: Vec::new(), start_s: None }
+    pub fn new(segments: usize) -> Self {
+        Self { segments, current: Piece::new(segments), all: Vec::new(), start_s: None }
     }
 
     /// Adds a row without its wrong poses.
-    pub fn add(&mut self, row: &TruthRow) {
-        let from_s = *self.current.from_s.get_or_insert(row.time_s);
-        if row.time_s - from_s >= PIECE_S {
-            let piece = std::mem::take(&mut self.current);
-            self.end(&piece);
-            self.current.from_s = Some(row.time_s);
+    pub fn add(&mut self, row: &LinkedRow) {
+        let time_s = row.row.time_s;
+        let from_s = *self.current.from_s.get_or_insert(time_s);
+        if time_s - from_s >= PIECE_S {
+            self.end();
+            self.current.from_s = Some(time_s);
         }
-        self.current.add(row, &self.chain);
+        self.current.add(row);
     }
 
     /// The medians over the pieces.
     pub fn finish(mut self) -> Values {
         let seconds = self.current.from_s.map_or(0.0, |from_s| self.current.last_s - from_s);
         if seconds >= LEAST_S || self.all.is_empty() {
-            let piece = std::mem::take(&mut self.current);
-            self.end(&piece);
+            self.end();
         }
         let of = |value: fn(&Values) -> Option<f64>| median(self.all.iter().filter_map(value).collect());
         Values { scale: of(|piece| piece.scale), turn: of(|piece| piece.turn), lag_s: of(|piece| piece.lag_s) }
     }
 
-    fn end(&mut self, piece: &Piece) {
+    fn end(&mut self) {
+        let piece = std::mem::replace(&mut self.current, Piece::new(self.segments));
         let mut values = piece.values();
         let is_compared = self.all.len() < FIRST_PIECES || self.all.len().is_multiple_of(EVERY);
         if let Some(motion) = piece.motion().filter(|_| is_compared) {
@@ -104,16 +104,28 @@ impl Pieces {
 }
 
 impl Piece {
-    fn add(&mut self, row: &TruthRow, chain: &Chain) {
+    fn new(segments: usize) -> Self {
+        Self {
+            from_s: None,
+            last_s: 0.0,
+            lengths: [0.0; 2],
+            directions: [0.0; 2],
+            squares: 0.0,
+            count: 0.0,
+            starts_s: Vec::new(),
+            imu: vec![Vec::new(); segments],
+            truth: vec![Vec::new(); segments],
+        }
+    }
+
+    fn add(&mut self, LinkedRow { row, links }: &LinkedRow) {
         let time_s = row.time_s - self.from_s.unwrap_or(row.time_s);
         self.last_s = row.time_s;
         self.starts_s.extend(row.starts.then_some(time_s));
-        self.imu.resize(chain.count(), Vec::new());
-        self.truth.resize(chain.count(), Vec::new());
-        for i in 0..chain.count() {
-            push_unwrapped(&mut self.imu[i], time_s, row.imu[i]);
-            push_unwrapped(&mut self.truth[i], time_s, row.poses[i].and_then(|pose| pose.heading_rad));
-            let Some(link) = chain.link(i, &row.poses) else { continue };
+        for (i, (imu, truth)) in self.imu.iter_mut().zip(&mut self.truth).enumerate() {
+            push_unwrapped(imu, time_s, row.imu[i]);
+            push_unwrapped(truth, time_s, row.poses[i].and_then(|pose| pose.heading_rad));
+            let Some(link) = links[i] else { continue };
             let expected = link.expected.norm();
             self.lengths[0] += link.end.norm() * expected;
             self.lengths[1] += expected * expected;

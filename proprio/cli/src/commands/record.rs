@@ -113,9 +113,14 @@ impl Session {
     /// Takes the events that have come, and completes the file.
     fn finish(mut self, link: Link, events: &Subscription) -> Result<(), Error> {
         let counts = link.state().counts;
+        let silent = link.silent(self.start.elapsed());
         // No more events come.
         drop(link);
         self.recorder.remaining_events(events)?;
+        if self.ended.is_none() && self.recorder.samples() == 0 && counts == Counts::default() {
+            self.recorder.discard()?;
+            return Err(silent.into());
+        }
         let rate_hz = self.recorder.samples() as f64 / self.start.elapsed().as_secs_f64();
         let line = self.line(counts, events, rate_hz);
         let path = self.recorder.path().to_owned();

@@ -63,6 +63,12 @@ impl Help for Finding {
             (Kind::LeavesTwin, _) => {
                 "check the sensor's mount and plug, or leave its cells empty from there on; where many do, take the table of this arm"
             }
+            (Kind::Drift, Source::Imu { .. }) => {
+                "check the IMU's supply, its mode and its mount; leave its cells empty from there on"
+            }
+            (Kind::Drift, _) => {
+                "check the mount of the bend sensors and their supply, and the IMUs; leave the cells of those that drift empty from there on"
+            }
             (Kind::TruthZeros | Kind::TruthRepeated, _) => {
                 "let the camera program leave the cells of a lost marker empty; calibrate, align and tune leave these rows out"
             }

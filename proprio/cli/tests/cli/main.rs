@@ -11,6 +11,7 @@ mod calibrate;
 mod calibrate_faults;
 mod calibrate_gaps;
 mod check;
+mod check_drift;
 mod check_elsewhere;
 mod check_parts;
 mod common;

@@ -105,4 +105,7 @@ const WHAT_IT_IS_NOT: &str = "\
 ## Reading it
 
 A fault comes once in a session, at one moment: a row is one draw, not a statistic. The clean error of a session is one draw as well,
-and small by chance in some.";
+and small by chance in some.
+
+What `proprio check` finds of such faults in a session, and what looks the same as a good one, is in [checking a
+session](../how-to/checking-a-session.md#what-it-cannot-tell).";
