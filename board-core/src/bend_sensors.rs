@@ -46,7 +46,7 @@ const MAX_COUNTS: u16 = 4095;
 /// let mut monitor = BendSensorMonitor::new(&Wiring::reference(6));
 /// let mut scan = [2000; 12];
 /// scan[4] = 4095; // 3a is open
-/// let counts = monitor.step(Some(&scan), 0, |_| {});
+/// let counts = monitor.step(Some(&scan), |_| {});
 /// assert_eq!((counts[3], counts[4]), (Some(2000), None));
 /// ```
 #[derive(Debug)]
@@ -61,26 +61,34 @@ impl BendSensorMonitor {
         Self { sensors: vector(pins.map(|pin| pin.map(Sensor::new))) }
     }
 
-    /// Checks the scan of a tick, `None` if it was late or out of order. Bit i of `implausible` is set if the estimator
-    /// leaves sensor i out. Returns the valid counts and reports each change of a sensor's state.
-    pub fn step(
-        &mut self,
-        scan: Option<&Scan>,
-        implausible: u16,
-        mut report: impl FnMut(Event),
-    ) -> Vec<Option<u16>, MAX_BEND_SENSORS> {
+    /// Checks the scan of a tick, `None` if it was late or out of order. Returns the valid counts and reports each change
+    /// of a sensor's state.
+    pub fn step(&mut self, scan: Option<&Scan>, mut report: impl FnMut(Event)) -> Vec<Option<u16>, MAX_BEND_SENSORS> {
         let sensors = self.sensors.iter_mut().zip(0..);
         let counts = sensors.map(|(sensor, index)| {
             let sensor = sensor.as_mut()?;
             let before = sensor.health.state;
             let counts = scan.and_then(|scan| scan.get(usize::from(sensor.pin)).copied());
-            let counts = sensor.step(counts, implausible >> index & 1 != 0);
+            let counts = sensor.step(counts);
             if sensor.health.state != before {
                 report(Event::Bend(index, sensor.health.state));
             }
             counts
         });
         vector(counts)
+    }
+
+    /// Takes the estimator's verdict on the counts of this tick: bit i of `implausible` is set if it leaves sensor i out.
+    /// Reports each change of a sensor's state.
+    pub fn set_implausible(&mut self, implausible: u16, mut report: impl FnMut(Event)) {
+        for (index, sensor) in (0..).zip(&mut self.sensors) {
+            let Some(sensor) = sensor else { continue };
+            sensor.is_implausible = implausible >> index & 1 != 0;
+            let state = sensor.health.state.judged(sensor.is_implausible);
+            if core::mem::replace(&mut sensor.health.state, state) != state {
+                report(Event::Bend(index, state));
+            }
+        }
     }
 
     /// State of each sensor, and its ticks without a valid reading.
@@ -105,15 +113,17 @@ struct Sensor {
     debounce: u8,
     /// Gaps while it responds.
     gaps: GapCounter,
+    /// The estimator leaves it out.
+    is_implausible: bool,
 }
 
 impl Sensor {
     fn new(pin: u8) -> Self {
         let health = SensorHealth { state: SensorState::Ok, missed: 0 };
-        Self { pin, health, responds: true, debounce: 0, gaps: GapCounter::default() }
+        Self { pin, health, responds: true, debounce: 0, gaps: GapCounter::default(), is_implausible: false }
     }
 
-    fn step(&mut self, counts: Option<u16>, is_implausible: bool) -> Option<u16> {
+    fn step(&mut self, counts: Option<u16>) -> Option<u16> {
         let good = counts.filter(|counts| (RAIL_COUNTS..=MAX_COUNTS - RAIL_COUNTS).contains(counts));
         let contradicts = good.is_some() != self.responds;
         self.debounce = if contradicts { self.debounce.saturating_add(1) } else { 0 };
@@ -124,7 +134,7 @@ impl Sensor {
             SensorState::NoResponse
         } else if self.gaps.update(good.is_some()) {
             SensorState::Intermittent
-        } else if is_implausible {
+        } else if self.is_implausible {
             SensorState::Inconsistent
         } else {
             SensorState::Ok

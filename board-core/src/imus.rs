@@ -74,7 +74,7 @@ impl ImuReadings {
 /// /// Called every 10 ms; an application bounds the time of `read`.
 /// async fn tick<I: I2c + BusRecovery, R: OutputPin>(imus: &mut Imus<I, R>, tick: u32) -> ImuReadings {
 ///     imus.read(tick).await;
-///     imus.validate(0)
+///     imus.validate()
 /// }
 /// ```
 #[derive(Debug)]
@@ -113,9 +113,21 @@ impl<I: I2c + BusRecovery, R: OutputPin> Imus<I, R> {
         }
     }
 
-    /// Validates the readings of the last [`read`](Self::read); once a tick, also if that was cut off. Bit i of
-    /// `implausible` is set if the estimator leaves out what IMU i reads.
-    pub fn validate(&mut self, implausible: u8) -> ImuReadings {
+    /// Takes the estimator's verdict on the readings of this tick: bit i of `implausible` is set if it leaves IMU i out.
+    /// Reports each change of an IMU's state.
+    pub fn set_implausible(&mut self, implausible: u8, mut report: impl FnMut(Event)) {
+        for (k, imu) in (0..).zip(&mut self.imus) {
+            let Some(imu) = imu else { continue };
+            let before = imu.health().state;
+            imu.set_implausible(implausible >> k & 1 != 0);
+            if imu.health().state != before {
+                report(Event::Imu(k, imu.health().state));
+            }
+        }
+    }
+
+    /// Validates the readings of the last [`read`](Self::read); once a tick, also if that was cut off.
+    pub fn validate(&mut self) -> ImuReadings {
         let mut quaternions = [None; MAX_SEGMENTS];
         for (quaternion, imu) in quaternions.iter_mut().zip(&self.imus) {
             *quaternion = imu.as_ref().and_then(ImuChannel::quaternion);
@@ -130,7 +142,7 @@ impl<I: I2c + BusRecovery, R: OutputPin> Imus<I, R> {
         let readings = imus.map(|((imu, is_copy), k)| {
             let imu = imu.as_mut()?;
             let before = imu.health().state;
-            let valid = imu.validate(&quaternions, is_copy, implausible >> k & 1 != 0);
+            let valid = imu.validate(&quaternions, is_copy);
             let state = imu.health().state;
             if state != before {
                 let _ = events.push(Event::Imu(k, state));

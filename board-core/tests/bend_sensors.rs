@@ -29,7 +29,7 @@ fn run(monitor: &mut BendSensorMonitor, scan: Option<&Scan>, ticks: u8) -> (Opti
     let mut events = Vec::new();
     let mut last = None;
     for _ in 0..ticks {
-        last = monitor.step(scan, 0, |event| events.push(event)).get(BROKEN).copied().flatten();
+        last = monitor.step(scan, |event| events.push(event)).get(BROKEN).copied().flatten();
     }
     (last, events)
 }
@@ -37,7 +37,7 @@ fn run(monitor: &mut BendSensorMonitor, scan: Option<&Scan>, ticks: u8) -> (Opti
 #[test]
 fn good_counts_pass_unchanged() {
     let mut monitor = monitor();
-    let counts = monitor.step(Some(&GOOD), 0, |event| panic!("{event:?}"));
+    let counts = monitor.step(Some(&GOOD), |event| panic!("{event:?}"));
     assert_eq!(counts, GOOD.map(Some));
     assert!(monitor.health().iter().all(|health| health.state == SensorState::Ok && health.missed == 0));
 }
@@ -45,13 +45,13 @@ fn good_counts_pass_unchanged() {
 #[test]
 fn counts_at_a_rail_are_rejected_at_once_and_the_others_pass() {
     for counts in [0, RAIL_COUNTS - 1, 4096 - RAIL_COUNTS, 4095, u16::MAX] {
-        let given = monitor().step(Some(&scan(counts)), 0, |_| {});
+        let given = monitor().step(Some(&scan(counts)), |_| {});
         let mut expected = GOOD.map(Some);
         expected[BROKEN] = None;
         assert_eq!(given, expected, "{counts}");
     }
     for counts in [RAIL_COUNTS, 4095 - RAIL_COUNTS] {
-        assert_eq!(monitor().step(Some(&scan(counts)), 0, |_| {})[BROKEN], Some(counts));
+        assert_eq!(monitor().step(Some(&scan(counts)), |_| {})[BROKEN], Some(counts));
     }
 }
 
@@ -104,8 +104,8 @@ fn ticks_without_a_reading_are_counted_and_the_count_saturates() {
 #[test]
 fn a_stale_scan_has_no_readings_and_a_stalled_converter_is_detected() {
     let mut monitor = monitor();
-    assert_eq!(monitor.step(None, 0, |event| panic!("{event:?}")), [None; BEND_SENSORS]);
-    assert_eq!(monitor.step(Some(&GOOD), 0, |event| panic!("{event:?}")), GOOD.map(Some));
+    assert_eq!(monitor.step(None, |event| panic!("{event:?}")), [None; BEND_SENSORS]);
+    assert_eq!(monitor.step(Some(&GOOD), |event| panic!("{event:?}")), GOOD.map(Some));
     let (_, events) = run(&mut monitor, None, LOSS_TICKS);
     assert_eq!(events, core::array::from_fn::<_, BEND_SENSORS, _>(|i| Event::Bend(i as u8, SensorState::NoResponse)));
 }
@@ -154,13 +154,15 @@ fn every_other_scan_lost_makes_all_sensors_intermittent() {
 }
 
 #[test]
-fn a_sensor_that_the_estimator_finds_implausible_is_inconsistent_and_its_counts_pass() {
+fn a_sensor_that_the_estimator_finds_implausible_is_inconsistent_at_once_and_its_counts_pass() {
     let mut monitor = monitor();
     let mut events = Vec::new();
-    let counts = monitor.step(Some(&GOOD), 1 << BROKEN, |event| events.push(event));
-    assert_eq!(counts, GOOD.map(Some));
+    monitor.step(Some(&GOOD), |event| panic!("{event:?}"));
+    monitor.set_implausible(1 << BROKEN, |event| events.push(event));
     assert_eq!(events, [Event::Bend(BROKEN as u8, SensorState::Inconsistent)]);
-    assert_eq!(run(&mut monitor, Some(&GOOD), 1).1, [Event::Bend(BROKEN as u8, SensorState::Ok)]);
+    assert_eq!(monitor.step(Some(&GOOD), |event| panic!("{event:?}")), GOOD.map(Some));
+    monitor.set_implausible(0, |event| events.push(event));
+    assert_eq!(events[1..], [Event::Bend(BROKEN as u8, SensorState::Ok)]);
 }
 
 #[test]
@@ -187,7 +189,7 @@ fn each_place_reads_its_own_pin_and_a_place_without_a_sensor_is_no_fault() {
     let mut scan = [4095; BEND_SENSORS];
     (scan[11], scan[0], scan[5]) = (1111, 1000, 1005);
     for _ in 0..200 {
-        let counts = monitor.step(Some(&scan), 0, |event| panic!("{event:?}"));
+        let counts = monitor.step(Some(&scan), |event| panic!("{event:?}"));
         assert_eq!(counts, [Some(1111), None, None, None, Some(1000), Some(1005)]);
     }
     let states: Vec<_> = monitor.health().iter().map(|health| health.state).collect();

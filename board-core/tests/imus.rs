@@ -225,14 +225,16 @@ fn an_imu_that_misses_every_other_reading_is_intermittent_and_its_readings_are_u
 }
 
 #[test]
-fn an_imu_that_the_estimator_finds_implausible_is_inconsistent_and_is_read() {
+fn an_imu_that_the_estimator_finds_implausible_is_inconsistent_at_once_and_is_read() {
     let mut rig = ImuRig::running();
-    rig.implausible = 1 << 3;
+    let mut events = Vec::new();
+    rig.tick();
+    rig.imus.set_implausible(1 << 3, |event| events.push(event));
+    assert_eq!(events, [Event::Imu(3, SensorState::Inconsistent)]);
     let readings = rig.tick();
-    assert_eq!(readings.events, [Event::Imu(3, SensorState::Inconsistent)][..]);
-    assert!(readings.imu[3].is_some());
-    rig.implausible = 0;
-    assert_eq!(rig.tick().events, [Event::Imu(3, SensorState::Ok)][..]);
+    assert!(readings.imu[3].is_some() && readings.events.is_empty(), "{readings:?}");
+    rig.imus.set_implausible(0, |event| events.push(event));
+    assert_eq!(events[1..], [Event::Imu(3, SensorState::Ok)]);
 }
 
 #[test]

@@ -161,8 +161,8 @@ pub struct Condition {
     pub gated: bool,
     /// The IMU is read, but its heading is implausible or frozen: a part of [`imu_absent`](Self::imu_absent).
     pub imu_implausible: bool,
-    /// Bend sensors a and b are read, but excluded or had a new zero within the last minute: a part of
-    /// [`bend_distrusted`](Self::bend_distrusted).
+    /// Bend sensors a and b are read, but excluded, outside their calibration, or had a new zero within the last minute: a
+    /// part of [`bend_distrusted`](Self::bend_distrusted).
     pub bend_implausible: [bool; SENSORS_PER_SEGMENT],
 }
 

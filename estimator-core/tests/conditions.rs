@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{Arm, N, config, segments};
+use common::{Arm, N, config, counts, segments};
 use estimator_core::{Conditions, Estimator, ImuReading, Phase, Q, Sample};
 
 /// Errors of the bend angles and conditions in the last sample of a run.
@@ -81,6 +81,43 @@ fn a_segment_without_any_bend_sensor_that_reads_is_reported() {
     });
     let reported: Vec<bool> = run.conditions.iter().map(|condition| condition.bend_distrusted).collect();
     assert_eq!(reported, [false, false, true]);
+}
+
+#[test]
+fn a_bend_sensor_that_breaks_away_is_named_within_a_second_and_for_a_minute() {
+    let broken = |k: u64, sample: &mut Sample<N>| {
+        if k >= 300 {
+            sample.bend[1][1] = Some(counts(70.0));
+        }
+    };
+    for seconds in [31.0, 60.0] {
+        let run = run(Arm::default(), seconds, broken);
+        let named: Vec<_> = run.conditions.iter().map(|condition| condition.bend_implausible).collect();
+        assert_eq!(named, [[false; 2], [false, true], [false; 2]], "after {seconds} s");
+    }
+}
+
+#[test]
+fn a_bend_sensor_whose_counts_are_outside_its_calibration_is_named() {
+    let run = run(Arm::default(), 31.0, |k, sample| {
+        if k >= 300 {
+            sample.bend[2][0] = Some(4000);
+        }
+    });
+    let named: Vec<_> = run.conditions.iter().map(|condition| condition.bend_implausible).collect();
+    assert_eq!(named, [[false; 2], [false; 2], [true, false]]);
+}
+
+#[test]
+fn an_imu_that_jumps_is_implausible_until_it_has_a_new_zero() {
+    let jumped = |k: u64, sample: &mut Sample<N>| {
+        if k >= 300 {
+            sample.imu[1] = Some(ImuReading::Heading(Phase::from_degrees(123.0)));
+        }
+    };
+    let at = |seconds: f64| run(Arm::default(), seconds, jumped).conditions[1];
+    assert!(!at(29.9).imu_implausible);
+    assert!(at(30.1).imu_implausible && at(30.1).imu_absent);
 }
 
 #[test]

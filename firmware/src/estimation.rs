@@ -169,8 +169,7 @@ impl EstimationTask {
 
     /// Validates the readings and updates the estimator.
     fn run_cycle(&mut self, tick: &Tick, tare: bool) -> CycleResult {
-        let implausible = self.estimator.implausible();
-        let readings = self.sensors.imus.validate(implausible.imu);
+        let readings = self.sensors.imus.validate();
         let all_imus_read = readings.all_are_read(&self.sensors.imus.health());
         self.sensors.rest.step(&readings.imu);
         let mut events = heapless::Vec::new();
@@ -180,7 +179,7 @@ impl EstimationTask {
         if tick.scan.is_none() {
             self.counters.stale_scans = self.counters.stale_scans.saturating_add(1);
         }
-        let bend = self.sensors.bend.step(tick.scan.as_ref(), implausible.bend, |event| {
+        let bend = self.sensors.bend.step(tick.scan.as_ref(), |event| {
             let _ = events.push(event);
         });
         if tare || self.estimator.needs_first_tare(tick.number, all_imus_read) {
@@ -195,6 +194,12 @@ impl EstimationTask {
             imu: readings.imu,
         };
         let estimate = self.estimator.update(&sample);
+        let implausible = self.estimator.implausible();
+        let mut report = |event| {
+            let _ = events.push(event);
+        };
+        self.sensors.imus.set_implausible(implausible.imu, &mut report);
+        self.sensors.bend.set_implausible(implausible.bend, &mut report);
         if let Some(event) = self.estimator.contact_event(tick.number) {
             let _ = events.push(event);
         }

@@ -187,6 +187,18 @@ impl SensorState {
     }
 }
 
+impl SensorState {
+    /// State of a sensor that is otherwise ok once the estimator has found its readings implausible, or plausible again.
+    #[must_use]
+    pub const fn judged(self, is_implausible: bool) -> Self {
+        match self {
+            Self::Ok | Self::Inconsistent if is_implausible => Self::Inconsistent,
+            Self::Inconsistent => Self::Ok,
+            other => other,
+        }
+    }
+}
+
 impl fmt::Display for SensorState {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.pad(match self {

@@ -41,6 +41,8 @@ pub(super) struct ImuChannel {
     /// Gaps while it responds.
     gaps: GapCounter,
     stuck: StuckDetector,
+    /// The estimator leaves its readings out.
+    is_implausible: bool,
     health: SensorHealth,
 }
 
@@ -57,6 +59,7 @@ impl ImuChannel {
             pending_fault: SensorState::NoResponse,
             gaps: GapCounter::default(),
             stuck: StuckDetector::NEVER_READ,
+            is_implausible: false,
             health: SensorHealth { state: SensorState::NoResponse, missed: 0 },
         })
     }
@@ -91,12 +94,11 @@ impl ImuChannel {
     }
 
     /// Ends the tick: updates the state and returns the reading if it is valid. `quaternions` are those of all IMUs in
-    /// this tick; `is_copy`: another IMU gives the same ones; `is_implausible`: the estimator leaves its readings out.
+    /// this tick; `is_copy`: another IMU gives the same ones.
     pub(super) fn validate(
         &mut self,
         quaternions: &[Option<[i16; 4]>; MAX_SEGMENTS],
         is_copy: bool,
-        is_implausible: bool,
     ) -> Option<[i16; 4]> {
         let quaternion = self.quaternion();
         let outcome = core::mem::replace(&mut self.outcome, Outcome::Skipped);
@@ -111,7 +113,7 @@ impl ImuChannel {
                 SensorState::Invalid
             } else if is_intermittent {
                 SensorState::Intermittent
-            } else if is_implausible {
+            } else if self.is_implausible {
                 SensorState::Inconsistent
             } else {
                 SensorState::Ok
@@ -124,6 +126,12 @@ impl ImuChannel {
             self.health.missed = self.health.missed.saturating_add(1);
         }
         valid
+    }
+
+    /// Sets whether the estimator leaves its readings out.
+    pub(super) fn set_implausible(&mut self, is_implausible: bool) {
+        self.is_implausible = is_implausible;
+        self.health.state = self.health.state.judged(is_implausible);
     }
 
     pub(super) fn health(&self) -> SensorHealth {

@@ -231,8 +231,6 @@ pub struct ImuRig {
     bus: Rc<RefCell<SimulatedBus>>,
     /// Transactions of the last tick: address, and how many bits were on the wire.
     pub log: Vec<(u8, u32)>,
-    /// IMUs that the estimator leaves out, a bit each.
-    pub implausible: u8,
 }
 
 impl ImuRig {
@@ -268,7 +266,7 @@ impl ImuRig {
         };
         let bus = Rc::new(RefCell::new(bus));
         let mux = Tca9548a::new(tca9548a::ADDRESS, Some(ResetPin(bus.clone())));
-        Self { imus: Imus::new(Controller(bus.clone()), mux, wiring), bus, log: Vec::new(), implausible: 0 }
+        Self { imus: Imus::new(Controller(bus.clone()), mux, wiring), bus, log: Vec::new() }
     }
 
     /// IMUs that have been read for a while.
@@ -290,7 +288,7 @@ impl ImuRig {
             let reading = pin!(self.imus.read(tick));
             let _ = reading.poll(&mut Context::from_waker(Waker::noop()));
         }
-        let readings = self.imus.validate(self.implausible);
+        let readings = self.imus.validate();
         let mut bus = self.bus.borrow_mut();
         bus.tick += 1;
         self.log = std::mem::take(&mut bus.log);

@@ -18,6 +18,8 @@ pub struct BendSensors<S> {
 pub struct BendAngles<S> {
     /// Angle of each sensor that was read, rad.
     pub sensors: [Option<S>; SENSORS_PER_SEGMENT],
+    /// The sensor was read, but its counts are so far outside its calibration that they give no angle.
+    pub is_outside: [bool; SENSORS_PER_SEGMENT],
     /// θ_bend,i, their mean, hysteresis compensated, rad.
     pub mean: Option<S>,
     /// A sensor reads outside the range of its calibration.
@@ -26,8 +28,12 @@ pub struct BendAngles<S> {
 
 impl<S> BendAngles<S> {
     /// No sensor was read.
-    pub const UNKNOWN: Self =
-        Self { sensors: [const { None }; SENSORS_PER_SEGMENT], mean: None, is_extrapolated: false };
+    pub const UNKNOWN: Self = Self {
+        sensors: [const { None }; SENSORS_PER_SEGMENT],
+        is_outside: [false; SENSORS_PER_SEGMENT],
+        mean: None,
+        is_extrapolated: false,
+    };
 }
 
 impl<S: FusedOps> BendSensors<S> {
@@ -46,11 +52,13 @@ impl<S: FusedOps> BendSensors<S> {
         is_followed: bool,
     ) {
         angles.is_extrapolated = false;
-        let sensors = config.bend.iter().zip(counts).zip(&mut self.memory).zip(&mut angles.sensors);
-        for (((sensor, counts), memory), angle) in sensors {
-            *angle = None;
+        let outputs = angles.sensors.iter_mut().zip(&mut angles.is_outside);
+        let sensors = config.bend.iter().zip(counts).zip(&mut self.memory).zip(outputs);
+        for (((sensor, counts), memory), (angle, is_outside)) in sensors {
+            (*angle, *is_outside) = (None, false);
             let (Some(sensor), Some(counts)) = (sensor, counts) else { continue };
             let mapped = sensor.map.angle(counts);
+            *is_outside = mapped.is_none();
             *angle = match (mapped, &sensor.memory) {
                 (Some(theta), Some(config)) => {
                     Some(theta + S::from_q(memory.correction(config, theta.to_q(), time_us, is_followed)))

@@ -16,6 +16,7 @@ impl<S: Scalar, F: FusedOps, const N: usize, T: BiasTrace<F>> DriftCorrection<S,
         self.last_us = Some(sensed.time_us);
         for (track, bend) in self.segments.iter_mut().zip(&sensed.bend) {
             track.update_bend(track.sensor_angles(bend), sensed.time_us);
+            track.is_outside = bend.is_outside;
         }
         if !self.is_started && !self.tare(config, filter, sensed) {
             // Until the IMUs are tared, the bend sensors alone.

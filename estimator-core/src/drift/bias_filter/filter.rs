@@ -111,7 +111,10 @@ impl<F: Scalar, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
         let Some(track) = self.segments.get(i).filter(|_| self.is_started) else { return Condition::default() };
         let now_us = self.last_us.unwrap_or_default();
         let is_recent = |at_us: Option<u64>| at_us.is_some_and(|at_us| now_us.saturating_sub(at_us) < RECENT_US);
-        let bend_implausible = track.monitor.implausible(now_us);
+        let mut bend_implausible = track.monitor.implausible(now_us);
+        for (implausible, is_outside) in bend_implausible.iter_mut().zip(track.is_outside) {
+            *implausible |= is_outside;
+        }
         Condition {
             tare_bad: self.is_tare_bad,
             imu_absent: !track.is_heading_read,

@@ -56,6 +56,8 @@ pub(super) struct SegmentTrack<F> {
     pub updated_at_us: u64,
     pub gated_since_us: Option<u64>,
     pub restarted_at_us: Option<u64>,
+    /// Bend sensors whose counts are outside their calibration.
+    pub is_outside: [bool; SENSORS_PER_SEGMENT],
     /// The IMU was read, whether or not its heading was used.
     pub has_reading: bool,
     /// Variance of the offset: from the tare, the prior's, and the part of the prior that lost sensors have added.
@@ -94,6 +96,7 @@ impl<F: Scalar> SegmentTrack<F> {
             updated_at_us: 0,
             gated_since_us: None,
             restarted_at_us: None,
+            is_outside: [false; SENSORS_PER_SEGMENT],
             has_reading: false,
             session_offset: zero,
             offset_prior: zero,

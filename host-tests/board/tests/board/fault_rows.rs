@@ -152,3 +152,13 @@ fn bytes_that_arrive_again_three_seconds_later_move_nothing() {
 fn a_disarm_that_arrives_behind_a_later_request_vents() {
     assert_holds("line_reorder");
 }
+
+#[test]
+fn a_bend_sensor_that_drifts_is_named_and_the_tip_stays() {
+    assert_holds("bend_drift");
+}
+
+#[test]
+fn a_bend_sensor_with_another_scale_is_named_within_a_second_and_the_tip_stays() {
+    assert_holds("bend_factor");
+}
