@@ -81,22 +81,22 @@ impl ImuReadings {
 pub struct Imus<I, R> {
     bus: Bus<I, R>,
     /// Each segment's; `None`: it has none.
-    imus: Vec<Option<ImuChannel>, MAX_SEGMENTS>,
+    channels: Vec<Option<ImuChannel>, MAX_SEGMENTS>,
     copies: CopyDetector,
 }
 
 impl<I: I2c + BusRecovery, R: OutputPin> Imus<I, R> {
     /// The IMUs that are wired, not read yet. Makes no transaction.
     pub fn new(i2c: I, mux: Tca9548a<R>, wiring: &Wiring) -> Self {
-        let imus = wiring.segments.iter().map(|segment| segment.imu.and_then(ImuChannel::new));
-        Self { bus: Bus::new(i2c, mux), imus: vector(imus), copies: CopyDetector::new() }
+        let channels = wiring.segments.iter().map(|segment| segment.imu.and_then(ImuChannel::new));
+        Self { bus: Bus::new(i2c, mux), channels: vector(channels), copies: CopyDetector::new() }
     }
 
     /// Reads each IMU that is due in tick number `tick`, once a tick. The future may be dropped at any await; readings
     /// until then count, and the next call recovers the bus first.
     pub async fn read(&mut self, tick: u32) {
         let mut may_recover = true;
-        for (k, imu) in (0..).zip(&mut self.imus) {
+        for (k, imu) in (0..).zip(&mut self.channels) {
             let Some(imu) = imu else { continue };
             // The tick is shifted by one for each IMU, so that they are checked in different ticks.
             let tick = tick.wrapping_add(k);
@@ -116,7 +116,7 @@ impl<I: I2c + BusRecovery, R: OutputPin> Imus<I, R> {
     /// Takes the estimator's verdict on the readings of this tick: bit i of `implausible` is set if it leaves IMU i out.
     /// Reports each change of an IMU's state.
     pub fn set_implausible(&mut self, implausible: u8, mut report: impl FnMut(Event)) {
-        for (k, imu) in (0..).zip(&mut self.imus) {
+        for (k, imu) in (0..).zip(&mut self.channels) {
             let Some(imu) = imu else { continue };
             let before = imu.health().state;
             imu.set_implausible(implausible >> k & 1 != 0);
@@ -129,7 +129,7 @@ impl<I: I2c + BusRecovery, R: OutputPin> Imus<I, R> {
     /// Validates the readings of the last [`read`](Self::read); once a tick, also if that was cut off.
     pub fn validate(&mut self) -> ImuReadings {
         let mut quaternions = [None; MAX_SEGMENTS];
-        for (quaternion, imu) in quaternions.iter_mut().zip(&self.imus) {
+        for (quaternion, imu) in quaternions.iter_mut().zip(&self.channels) {
             *quaternion = imu.as_ref().and_then(ImuChannel::quaternion);
         }
         let mut events = Vec::new();
@@ -138,7 +138,7 @@ impl<I: I2c + BusRecovery, R: OutputPin> Imus<I, R> {
             let _ = events.push(Event::BusRecovery);
         }
         let copies = self.copies.update(&quaternions);
-        let imus = self.imus.iter_mut().zip(copies).zip(0..);
+        let imus = self.channels.iter_mut().zip(copies).zip(0..);
         let readings = imus.map(|((imu, is_copy), k)| {
             let imu = imu.as_mut()?;
             let before = imu.health().state;
@@ -155,7 +155,7 @@ impl<I: I2c + BusRecovery, R: OutputPin> Imus<I, R> {
 
     /// State of each IMU, and its ticks without a valid reading.
     pub fn health(&self) -> Vec<SensorHealth, MAX_SEGMENTS> {
-        vector(self.imus.iter().map(|imu| imu.as_ref().map_or(NOT_WIRED, ImuChannel::health)))
+        vector(self.channels.iter().map(|imu| imu.as_ref().map_or(NOT_WIRED, ImuChannel::health)))
     }
 
     /// Recoveries of a stuck bus since boot; saturates.

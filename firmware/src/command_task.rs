@@ -26,6 +26,7 @@ pub struct Pose {
 }
 
 /// State that requests set for the other tasks.
+#[expect(clippy::struct_excessive_bools, reason = "independent flags")]
 pub struct Control {
     /// Periods of the messages.
     pub schedule: Schedule,

@@ -20,6 +20,7 @@ pub(super) struct RestChange<F> {
 
 /// Per-segment state.
 #[derive(Debug, Clone, Copy)]
+#[expect(clippy::struct_excessive_bools, reason = "independent conditions")]
 pub(super) struct SegmentTrack<F> {
     pub gate: HeadingGate<F>,
     pub monitor: BendMonitor<F>,

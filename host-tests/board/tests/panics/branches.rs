@@ -56,10 +56,13 @@ fn signed(bits: u32, width: u32) -> i32 {
     (bits as i32) << (32 - width) >> (32 - width)
 }
 
+/// Code, and the branches in it: place and target.
+type Case<'c> = (&'c [u8], Vec<(u32, u32)>);
+
 #[test]
 fn branches_are_decoded_as_an_assembler_encodes_them() {
     let targets = |code: &[u8]| branches(0x8_0000, code).into_iter().map(|branch| (branch.at, branch.target)).collect();
-    let cases: [(&[u8], Vec<(u32, u32)>); 7] = [
+    let cases: [Case; 7] = [
         // nop; b 0x80000
         (&[0x00, 0xBF, 0xFD, 0xE7], vec![(0x8_0002, 0x8_0000)]),
         // bne 0x80008
