@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 
 use estimator_core::{ArmConfig, Q};
-use telemetry::{Estimate, Event, Health, Message, Sample, SensorHealth, Uncertainty};
+use telemetry::{Estimate, Event, Health, Message, Sample, SegmentUncertainty, SensorHealth, Uncertainty};
 
 use super::finding::{Finding, Invariant};
 use super::sensors::Reported;
@@ -194,7 +194,7 @@ impl<'t> Checks<'t> {
         let Some((_, error_mm)) = self.errors_mm.iter().rev().find(|(tick, _)| *tick == uncertainty.tick) else {
             return;
         };
-        let Some([xx, xy, yy]) = uncertainty.segments.last().and_then(|segment| segment.end_m2()) else { return };
+        let Some([xx, xy, yy]) = uncertainty.segments.last().and_then(SegmentUncertainty::end_m2) else { return };
         // Long half-axis of the ellipse.
         let variance_m2 = f64::midpoint(xx, yy) + (0.25 * (xx - yy) * (xx - yy) + xy * xy).sqrt();
         let deviation_mm = 1e3 * variance_m2.max(0.0).sqrt();

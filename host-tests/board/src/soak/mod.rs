@@ -18,6 +18,8 @@ mod known;
 mod report;
 mod run;
 mod sensors;
+#[cfg(test)]
+mod tests;
 mod truth;
 mod venting;
 

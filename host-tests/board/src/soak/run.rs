@@ -57,7 +57,7 @@ pub fn soak(seed: u64, seconds: u64, mut progress: impl FnMut(f64)) -> Report {
         let mut run = Run::new(seed.wrapping_mul(1000).wrapping_add(session), &config, report);
         run.start();
         for number in 0..SESSION_EPISODES {
-            run.episode(number, draw.episode());
+            run.episode(number, &draw.episode());
             progress(run.seconds());
             if run.seconds() >= seconds as f64 {
                 return run.finish();
@@ -147,7 +147,7 @@ impl<'t> Run<'t> {
         self.report.limit_mm = self.checks.take_tip().worst_mm + ADDED_MM;
     }
 
-    fn episode(&mut self, number: u64, faults: Vec<Drawn>) {
+    fn episode(&mut self, number: u64, faults: &[Drawn]) {
         self.first_violation = self.report.violations.len();
         self.before = std::mem::replace(&mut self.faults, faults.iter().map(|drawn| drawn.fault).collect());
         self.may_restart = false;
@@ -170,7 +170,7 @@ impl<'t> Run<'t> {
         let end = self.board.machine.now();
         let is_recovered = self.bad_at + STEP * HOST_STEPS < end;
         let recovery_s = self.bad_at.saturating_sub(ended) as f64 / CYCLES_PER_SECOND as f64;
-        let name = match &faults[..] {
+        let name = match faults {
             _ if self.is_tare_off() => format!("any after a {OFFSET_TARE}"),
             [one] => kind(one.fault),
             _ => "two at once".to_owned(),
