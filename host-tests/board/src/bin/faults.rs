@@ -22,7 +22,9 @@ the board's estimates from the simulated arm.
 fn main() {
     let names: Vec<String> = env::args().skip(1).collect();
     if !names.is_empty() {
-        names.iter().for_each(|name| println!("{name}: {}", line(&measure(name))));
+        for name in &names {
+            println!("{name}: {}", line(&measure(name)));
+        }
         return;
     }
     let mut page = HEAD.to_owned();

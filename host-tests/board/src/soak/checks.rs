@@ -212,8 +212,11 @@ impl<'t> Checks<'t> {
             self.tip.compared += 1;
             self.tip.flagged += u64::from(is_flagged);
             if deviations > DEVIATIONS && !is_flagged {
-                let figure =
-                    format!("{error_mm:.1} mm off, {deviations:.1} × the stated {deviation_mm:.1} mm, not flagged");
+                let figure = format!(
+                    "{error_mm:.1} mm off, {deviations:.1} × the stated {deviation_mm:.1} mm, not flagged; last tare with \
+                     the tip {:.1} mm from straight",
+                    self.tare_offset_mm
+                );
                 self.findings.push(Finding { invariant: Invariant::Tip, time_s, figure, size: deviations });
             }
         }

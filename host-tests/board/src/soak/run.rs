@@ -33,8 +33,10 @@ const FAULT_MS: u64 = 7_000;
 const SESSION_EPISODES: u64 = 10;
 /// Number of the episode that begins with a tare.
 const TARE_EPISODE: u64 = 7;
-/// Distance of the tip from that of the straight arm in a tare that counts as off, mm.
-const TARE_OFFSET_MM: f64 = 5.0;
+/// Distance of the tip from that of the straight arm in a tare that counts as off, mm: the least stated deviation of the tip.
+const TARE_OFFSET_MM: f64 = 3.0;
+/// Episodes with such a zero after which the session ends: its tip says little of the faults.
+const OFFSET_EPISODES: u64 = 2;
 /// Rest before a tare, and time for its reply, ms.
 const REST_MS: u64 = 3_000;
 const TARE_MS: u64 = 100;
@@ -56,8 +58,13 @@ pub fn soak(seed: u64, seconds: u64, mut progress: impl FnMut(f64)) -> Report {
     for session in 0.. {
         let mut run = Run::new(seed.wrapping_mul(1000).wrapping_add(session), &config, report);
         run.start();
+        let mut offset_episodes = 0;
         for number in 0..SESSION_EPISODES {
+            if offset_episodes == OFFSET_EPISODES {
+                break;
+            }
             run.episode(number, &draw.episode());
+            offset_episodes += u64::from(run.is_tare_off());
             progress(run.seconds());
             if run.seconds() >= seconds as f64 {
                 return run.finish();
