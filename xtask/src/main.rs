@@ -10,6 +10,7 @@ mod faults;
 mod panics;
 mod pictures;
 mod results;
+mod soak;
 mod style;
 mod tool;
 
@@ -28,10 +29,11 @@ fn main() -> ExitCode {
         Some("results") => results::run(),
         Some("style") => style::run(),
         Some("faults") => faults::run(),
+        Some("soak") => soak::run(arguments.get(1..).unwrap_or_default()),
         Some("commands") => commands::run(),
         Some("pictures") => pictures::run(),
         _ => Err(
-            "usage: cargo xtask demo | verify | bench | faults | panics | dist | style | results | commands | pictures | accept"
+            "usage: cargo xtask demo | verify | bench | faults | soak | panics | dist | style | results | commands | pictures | accept"
                 .to_owned(),
         ),
     };

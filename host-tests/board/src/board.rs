@@ -37,6 +37,7 @@ pub struct Board {
     requested_at: Option<Cycles>,
     received: Vec<Received>,
     bytes: u64,
+    scans: u64,
     truths: Vec<PerSegment<EndPose>>,
 }
 
@@ -71,6 +72,7 @@ impl Board {
             requested_at: None,
             received: Vec::new(),
             bytes: 0,
+            scans: 0,
             truths: Vec::new(),
         }
     }
@@ -93,12 +95,17 @@ impl Board {
 
     /// Runs the board, and receives its messages. A frame that a reset cut short is counted, and left out.
     pub fn run_ms(&mut self, ms: u64) {
-        let end = self.machine.now() + ms * CYCLES_PER_SECOND / 1000;
+        self.run_until(self.machine.now() + ms * CYCLES_PER_SECOND / 1000);
+    }
+
+    /// As [`run_ms`](Self::run_ms), up to a time since power-on.
+    pub fn run_until(&mut self, end: Cycles) {
         while self.machine.now() < end {
             // Pieces shorter than a tick, so that no scan of the ADC is missed.
             self.machine.run_until(end.min(self.machine.now() + CYCLES_PER_SECOND / 200));
             let (scans, truth) = self.machine.world().last_scan();
-            if scans > self.truths.len() as u64 {
+            if scans > self.scans {
+                self.scans = scans;
                 self.truths.push(truth);
             }
         }
@@ -113,7 +120,12 @@ impl Board {
         }
     }
 
-    /// The true pose of each segment's end at each tick since power-on.
+    /// Takes the messages and the truths since the last call, so that a run of hours needs no more memory.
+    pub fn take(&mut self) -> (Vec<Received>, Vec<PerSegment<EndPose>>) {
+        (std::mem::take(&mut self.received), std::mem::take(&mut self.truths))
+    }
+
+    /// The true pose of each segment's end at each tick since power-on, or since [`take`](Self::take).
     #[must_use]
     pub fn truths(&self) -> &[PerSegment<EndPose>] {
         &self.truths

@@ -9,6 +9,7 @@ pub mod due;
 pub mod fault_rows;
 mod flash;
 mod replay;
+pub mod soak;
 mod trial;
 mod view;
 
@@ -16,6 +17,6 @@ pub use arms::WiredArm;
 pub use board::{Board, Received, UART};
 pub use build::{elf, firmware};
 pub use flash::{flash_with, machine, stored_table};
-pub use replay::{Replayed, replay, table};
+pub use replay::{Replayed, Replica, replay, table};
 pub use trial::Trial;
 pub use view::View;

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use calibration_tables::ArmFile;
-use estimator_core::{Estimator, Method, Q};
+use estimator_core::{ArmConfig, Estimator, Method, Q};
 use telemetry::{Estimate, Event, MAX_SEGMENTS, Sample, TICK_HZ, Uncertainty};
 
 /// The reference arm's table, which the boards of the tests have in their flash.
@@ -27,30 +27,52 @@ pub struct Replayed {
     pub contact: Option<Event>,
 }
 
-/// Replays the samples with the host's estimator, in the same fixed point, restarted at the same samples as the board's.
+/// The host's estimator, in the same fixed point, restarted at the same samples as the board's.
+pub struct Replica<'t> {
+    config: &'t ArmConfig<'t, Q>,
+    estimator: Estimator<'t, Q, MAX_SEGMENTS, 100>,
+    tare_epoch: u8,
+    touched: u32,
+}
+
+impl<'t> Replica<'t> {
+    /// The estimator of a board that starts with this table.
+    ///
+    /// # Panics
+    /// If the table is for a longer arm than the board's.
+    #[must_use]
+    pub fn new(config: &'t ArmConfig<'t, Q>) -> Self {
+        Self { config, estimator: Self::start(config), tare_epoch: 0, touched: 0 }
+    }
+
+    fn start(config: &'t ArmConfig<'t, Q>) -> Estimator<'t, Q, MAX_SEGMENTS, 100> {
+        Estimator::new(config).expect("no longer than the board's")
+    }
+
+    /// Processes a sample.
+    pub fn update(&mut self, sample: &Sample) -> Replayed {
+        if sample.tare_epoch != self.tare_epoch {
+            (self.estimator, self.tare_epoch) = (Self::start(self.config), sample.tare_epoch);
+        }
+        let estimate = self.estimator.update_full(&sample.into());
+        let (errors, contacts) = (self.estimator.uncertainties(), self.estimator.contacts());
+        let touched = self.estimator.contact_mask();
+        let before = std::mem::replace(&mut self.touched, touched);
+        Replayed {
+            estimate: Estimate::of(sample.tick, &self.estimator.shape(&estimate, Method::Fusion)),
+            uncertainty: Uncertainty::of(sample.tick, self.config.segments.len(), &errors, &contacts),
+            contact: (touched != before).then_some(Event::Contact(sample.tick, touched as u8)),
+        }
+    }
+}
+
+/// Replays samples, the first of which are of a board's start.
 ///
 /// # Panics
 /// If the table is not valid, or is for a longer arm than the board's.
 pub fn replay<'s>(table: &ArmFile, samples: impl Iterator<Item = &'s Sample>) -> Vec<Replayed> {
     let compiled = table.compile::<Q>(TICK_HZ).expect("a valid table");
     let config = compiled.config();
-    let segments = config.segments.len();
-    let start = || Estimator::<Q, MAX_SEGMENTS, 100>::new(&config).expect("no longer than the board's");
-    let (mut estimator, mut tare, mut touched_before) = (start(), 0, 0);
-    let mut replayed = Vec::new();
-    for sample in samples {
-        if sample.tare_epoch != tare {
-            (estimator, tare) = (start(), sample.tare_epoch);
-        }
-        let estimate = estimator.update_full(&sample.into());
-        let (errors, contacts) = (estimator.uncertainties(), estimator.contacts());
-        let touched = estimator.contact_mask();
-        replayed.push(Replayed {
-            estimate: Estimate::of(sample.tick, &estimator.shape(&estimate, Method::Fusion)),
-            uncertainty: Uncertainty::of(sample.tick, segments, &errors, &contacts),
-            contact: (touched != touched_before).then_some(Event::Contact(sample.tick, touched as u8)),
-        });
-        touched_before = touched;
-    }
-    replayed
+    let mut replica = Replica::new(&config);
+    samples.map(|sample| replica.update(sample)).collect()
 }

@@ -16,7 +16,7 @@ const BEFORE_S: u64 = 15;
 const AFTER_MS: u64 = 12_000;
 
 /// Error of the tip that a fault may add, mm: 2 % of the arm's length.
-const ADDED_MM: f64 = 12.0;
+pub(crate) const ADDED_MM: f64 = 12.0;
 
 /// A fault, its promise, and what was measured.
 #[derive(Debug, Clone, PartialEq)]

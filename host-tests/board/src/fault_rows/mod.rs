@@ -7,6 +7,7 @@ mod board;
 mod measured;
 mod sensors;
 
+pub(crate) use measured::ADDED_MM;
 pub use measured::{Measured, Row};
 
 /// All rows, by the names of their functions.

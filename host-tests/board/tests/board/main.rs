@@ -23,6 +23,7 @@ mod recording;
 mod replay;
 mod requests;
 mod sensors;
+mod soak;
 mod table;
 mod tare;
 #[cfg(unix)]
