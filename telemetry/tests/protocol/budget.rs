@@ -15,12 +15,11 @@ fn longest_frame(message: &Message) -> usize {
         Message::Hello(_) => 199,
         Message::Sample(_) => 97,
         Message::Estimate(_) => 88,
-        Message::Health(_) => 177,
         Message::Event(_) => 17,
         Message::Reply(_) => 20,
         Message::Uncertainty(_) => 120,
         Message::Table(_) => 36,
-        Message::TableData(_) => 177,
+        Message::Health(_) | Message::TableData(_) => 177,
         Message::Tare(_) => 29,
     }
 }
