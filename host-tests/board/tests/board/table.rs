@@ -33,6 +33,7 @@ fn pieces(table: &StoredTable) -> Vec<Command> {
 
 /// Sends a request and runs the board until it replies, as a host does without a delay of its own.
 fn request(board: &mut Board, command: Command) -> RequestOutcome {
+    board.begin_session();
     let before = board.received().len();
     let id = board.send(command);
     for _ in 0..500 {
@@ -50,6 +51,7 @@ fn request(board: &mut Board, command: Command) -> RequestOutcome {
 
 /// Sends a table; returns the time until the board has restarted with it.
 fn push(board: &mut Board, table: &StoredTable) -> Cycles {
+    board.begin_session();
     let start = board.machine.now();
     assert_eq!(request(board, table.begin()), RequestOutcome::Ack);
     // Two pieces ahead of their replies, as `proprio table push` sends them.
@@ -66,8 +68,9 @@ fn push(board: &mut Board, table: &StoredTable) -> Cycles {
         }
     }
     assert_eq!(request(board, Command::TableCommit), RequestOutcome::Ack);
-    let hellos = board.hellos().count();
-    while board.hellos().count() == hellos {
+    let boot = |board: &Board| board.hellos().next_back().map(|hello| hello.boot);
+    let before = boot(board);
+    while boot(board) == before {
         board.run_ms(1);
     }
     board.machine.now() - start
