@@ -23,9 +23,6 @@ pub enum RequestError {
     /// The board has refused it.
     #[error("the board refuses: {0}")]
     Refused(#[from] Refusal),
-    /// Set-points were accepted, but those that would rise stay as they are.
-    #[error("the board lets no pressure rise: all its IMUs are lost, or all bend sensors of a segment")]
-    Limited,
     /// It gave no answer for two seconds.
     #[error("the board does not answer")]
     NoAnswer,
@@ -161,11 +158,11 @@ impl Requests {
         let Some(place) = self.under_way.iter().position(|one| one.request.id == reply.id) else { return };
         let is_handshake = self.under_way.get(place).is_some_and(|one| one.answer.is_none());
         match reply.outcome {
-            RequestOutcome::Ack => {
+            // Limited set-points are accepted, and `Health` has the limit: sensors may be lost for a moment.
+            RequestOutcome::Ack | RequestOutcome::Limited => {
                 (self.is_connected, self.session) = (true, Some(reply.session));
                 self.finish(place, Ok(()));
             }
-            RequestOutcome::Limited => self.finish(place, Err(RequestError::Limited)),
             // The board has not processed it: it is sent again.
             RequestOutcome::Nack(Refusal::Busy) => {}
             // An earlier host has used higher ids. The board accepts a Ping with a lower one after its session timeout.
@@ -320,6 +317,17 @@ mod tests {
         assert_eq!((again.session, again.command), (9, TARE));
         requests.replied(Reply { id: again.id, session: 9, outcome: RequestOutcome::Ack });
         assert_eq!(tare.outcome.try_recv(), Ok(Ok(())));
+    }
+
+    #[test]
+    fn set_points_that_the_board_limits_are_done() {
+        let (mut requests, now) = (Requests::default(), Instant::now());
+        let ping = sent(&mut requests, now);
+        acknowledge(&mut requests, ping);
+        let asked = ask(&mut requests, pressures_of(6), now);
+        let id = sent(&mut requests, now).expect("set-points").id;
+        requests.replied(Reply { id, session: 7, outcome: RequestOutcome::Limited });
+        assert_eq!(asked.outcome.try_recv(), Ok(Ok(())));
     }
 
     #[test]

@@ -6,7 +6,6 @@ use std::time::{Duration, Instant};
 use telemetry::{Command, Health, SetPressures};
 
 use super::DriveError;
-use crate::requests::RequestError;
 use crate::status::Status;
 use crate::{Link, LinkError};
 
@@ -55,8 +54,6 @@ impl<'l> Driver<'l> {
     pub fn set(&mut self, pressures_pa: Vec<u32>) -> Result<SetPressures, DriveError> {
         let requested = SetPressures { pressures_pa: pressures_pa.iter().copied().collect(), valid_ms: VALID_MS };
         match self.link.request(Command::SetPressures(requested.clone())) {
-            // Sensors may be lost for a moment: `check` judges whether the board follows.
-            Err(LinkError::Request(RequestError::Limited)) => {}
             Err(LinkError::Request(_)) if self.has_restarted() => return Err(DriveError::Restarted),
             done => done?,
         }
