@@ -18,6 +18,7 @@
 //! armed and has received no set-points has no deadline; it is vented and stays armed. Arming it again while it is not
 //! disarmed changes nothing, so that arming cannot extend a deadline.
 
+use crate::command_server::Execution;
 use board_table::Wiring;
 use heapless::Vec;
 use telemetry::{Actuation, Event, MAX_REGULATORS, Refusal, SetPressures, vector};
@@ -70,15 +71,6 @@ pub struct Actuator {
     /// The accepted set-points and their deadline.
     lease: Option<SetpointLease>,
     degraded: bool,
-}
-
-/// Limit of accepted set-points.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Limit {
-    /// They are as requested.
-    None,
-    /// Those that would rise stay as they are.
-    NoRise,
 }
 
 /// Set-points from their acceptance to the vented arm.
@@ -137,8 +129,8 @@ impl Actuator {
 
     /// Sets whether the shape estimate is degraded: all IMUs, or all bend sensors of a segment, are lost.
     ///
-    /// While degraded, set-points are accepted but limited to the present pressures ([`Limit::NoRise`]). So the arm can be
-    /// lowered and vented under control, but no pressure rises.
+    /// While degraded, set-points are accepted but limited to the present pressures ([`Execution::Limited`]). So the arm can
+    /// be lowered and vented under control, but no pressure rises.
     pub fn set_degraded(&mut self, degraded: bool) {
         self.degraded = degraded;
     }
@@ -149,7 +141,7 @@ impl Actuator {
     /// [`Refusal::Disarmed`] if it is not armed, [`Refusal::Regulators`] if there are more or fewer set-points than
     /// regulators, [`Refusal::OverRange`] if a pressure is over its regulator's full scale, [`Refusal::Deadline`] if
     /// `valid_ms` is not 1 to [`VALID_MS_MAX`]. The previous set-points are then unchanged.
-    pub fn set(&mut self, request: &SetPressures, now_us: u64) -> Result<Limit, Refusal> {
+    pub fn set(&mut self, request: &SetPressures, now_us: u64) -> Result<Execution, Refusal> {
         self.advance(now_us);
         if self.state == Actuation::Disarmed {
             return Err(Refusal::Disarmed);
@@ -169,10 +161,10 @@ impl Actuator {
                 *pressure = (*now).min(*pressure);
             }
         }
-        let limit = if pressures_pa == request.pressures_pa { Limit::None } else { Limit::NoRise };
+        let is_limited = pressures_pa != request.pressures_pa;
         self.lease = Some(SetpointLease { pressures_pa, accepted_us: now_us, valid_ms: request.valid_ms });
         self.advance(now_us);
-        Ok(limit)
+        Ok(if is_limited { Execution::Limited } else { Execution::Done })
     }
 
     /// Advances state and pressures to this time; called every tick.

@@ -16,7 +16,7 @@
 //! - **A token bucket limits the rate**: [`BUCKET_SIZE`] requests at once, and [`REFILL_PER_TICK`] more each tick. One
 //!   more request in a tick is refused as [`Refusal::Busy`], which does not count as execution; the rest get no reply,
 //!   so that replies to a flood do not fill the line.
-//! - **A `Disarm` is always executed**, whatever its number and session, and in a flood.
+//! - **A `Disarm` is always executed**: with any number, in any session, in a flood.
 //!
 //! The cost of a request is the same few comparisons in every case.
 

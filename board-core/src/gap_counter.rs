@@ -1,4 +1,4 @@
-//! Leaky count of missed readings, which tells a sensor that is lost now and then from one that is good.
+//! Leaky counter of missed readings: detects sensors with frequent gaps.
 //!
 //! Each missed reading adds [`MISS`] to the level, each good one takes 1 away: more than one miss in twenty raises it.
 //! A sensor is intermittent from [`FULL`] on, which every second reading lost reaches in 110 ms, until the level is zero.

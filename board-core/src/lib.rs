@@ -34,7 +34,7 @@ mod supervisor;
 mod table_server;
 pub mod tca9548a;
 
-pub use actuation::{Actuator, HOLD_MS, Limit, Pressures, VALID_MS_MAX, VENTED_MS};
+pub use actuation::{Actuator, HOLD_MS, Pressures, VALID_MS_MAX, VENTED_MS};
 pub use bend_sensors::{BendSensorMonitor, LOSS_TICKS, RAIL_COUNTS, RETURN_TICKS, Scan};
 pub use boot_counter::{BootCounter, CRASHES, RETAINED_WORDS, UPTIME_WORD, WINDOW_TICKS};
 pub use command_server::{BUCKET_SIZE, CommandServer, Execution, REFILL_PER_TICK, SESSION_TIMEOUT_TICKS};

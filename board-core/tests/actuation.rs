@@ -1,6 +1,6 @@
 //! Pressures are armed explicitly, within limits, and vented when no set-points are received.
 
-use board_core::{Actuator, HOLD_MS, Limit, Pressures, VALID_MS_MAX, VENTED_MS};
+use board_core::{Actuator, Execution, HOLD_MS, Pressures, VALID_MS_MAX, VENTED_MS};
 use board_table::{REFERENCE_FULL_SCALE_PA as FULL_SCALE_PA, RegulatorWiring, Wiring};
 use proptest::prelude::*;
 use telemetry::{Actuation, Event, Refusal, SetPressures};
@@ -51,7 +51,7 @@ fn actuator_starts_vented_and_refuses_set_points_until_armed() {
     assert_eq!(at(&mut actuator, 0), (Actuation::Disarmed, [0; REGULATORS]));
     actuator.arm();
     assert_eq!(at(&mut actuator, 0), (Actuation::Armed, [0; REGULATORS]));
-    assert_eq!(actuator.set(&request(100), 0), Ok(Limit::None));
+    assert_eq!(actuator.set(&request(100), 0), Ok(Execution::Done));
     assert_eq!(at(&mut actuator, 0), (Actuation::Armed, PRESSURES_PA));
 }
 
@@ -59,7 +59,7 @@ fn actuator_starts_vented_and_refuses_set_points_until_armed() {
 fn an_armed_arm_without_set_points_stays_vented_and_armed() {
     let mut actuator = armed();
     assert_eq!(at(&mut actuator, 3_600_000 * MS), (Actuation::Armed, [0; REGULATORS]));
-    assert_eq!(actuator.set(&request(1), 3_600_000 * MS), Ok(Limit::None));
+    assert_eq!(actuator.set(&request(1), 3_600_000 * MS), Ok(Execution::Done));
 }
 
 #[test]
@@ -69,10 +69,10 @@ fn each_regulator_has_its_own_full_scale_and_none_is_over_it() {
     let mut actuator = Actuator::new(&regulators(full_scales_pa));
     actuator.arm();
     for (regulator, pressure, outcome) in [
-        (0, FULL_SCALE_PA, Ok(Limit::None)),
+        (0, FULL_SCALE_PA, Ok(Execution::Done)),
         (0, FULL_SCALE_PA + 1, Err(Refusal::OverRange)),
         (0, u32::MAX, Err(Refusal::OverRange)),
-        (2, 50_000, Ok(Limit::None)),
+        (2, 50_000, Ok(Execution::Done)),
         (2, 50_001, Err(Refusal::OverRange)),
     ] {
         let mut pressures_pa = [0; REGULATORS];
@@ -90,8 +90,8 @@ fn the_deadline_is_one_millisecond_to_one_second() {
     let mut actuator = armed();
     for (valid_ms, outcome) in [
         (0, Err(Refusal::Deadline)),
-        (1, Ok(Limit::None)),
-        (VALID_MS_MAX, Ok(Limit::None)),
+        (1, Ok(Execution::Done)),
+        (VALID_MS_MAX, Ok(Execution::Done)),
         (VALID_MS_MAX + 1, Err(Refusal::Deadline)),
         (u16::MAX, Err(Refusal::Deadline)),
     ] {
@@ -182,9 +182,9 @@ fn while_degraded_pressures_go_down_and_not_up() {
     let all = |pressure| SetPressures { pressures_pa: pressures([pressure; REGULATORS]), valid_ms: 100 };
     actuator.set(&all(100_000), 0).unwrap();
     actuator.set_degraded(true);
-    actuator.set(&all(150_000), 1).unwrap();
+    assert_eq!(actuator.set(&all(150_000), 1), Ok(Execution::Limited));
     assert_eq!(now(&actuator).1, [100_000; REGULATORS]);
-    actuator.set(&all(60_000), 2).unwrap();
+    assert_eq!(actuator.set(&all(60_000), 2), Ok(Execution::Done));
     actuator.set(&all(100_000), 3).unwrap();
     assert_eq!(now(&actuator).1, [60_000; REGULATORS]);
     actuator.set_degraded(false);
@@ -213,7 +213,7 @@ fn set_points_for_another_number_of_regulators_are_refused() {
     for (count, outcome) in [
         (0, Err(Refusal::Regulators)),
         (1, Err(Refusal::Regulators)),
-        (2, Ok(Limit::None)),
+        (2, Ok(Execution::Done)),
         (3, Err(Refusal::Regulators)),
     ] {
         let request = SetPressures { pressures_pa: (0..count).map(|_| 100_000).collect(), valid_ms: 100 };
@@ -228,7 +228,7 @@ fn an_arm_without_regulators_is_armed_and_has_no_pressures() {
     wiring.regulators.clear();
     let mut actuator = Actuator::new(&wiring);
     actuator.arm();
-    assert_eq!(actuator.set(&SetPressures { pressures_pa: Pressures::new(), valid_ms: 100 }, 0), Ok(Limit::None));
+    assert_eq!(actuator.set(&SetPressures { pressures_pa: Pressures::new(), valid_ms: 100 }, 0), Ok(Execution::Done));
     assert_eq!((actuator.state(), actuator.duties(4200).len()), (Actuation::Armed, 0));
 }
 

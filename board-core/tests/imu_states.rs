@@ -1,38 +1,9 @@
 //! States of IMUs that read: copies of another, intermittent and implausible ones.
 
-use board_core::imus::ImuReadings;
 use telemetry::{Event, SensorState};
 
 mod imu_rig;
-use imu_rig::{ImuRig, heading};
-
-/// Reading of IMU k (from 0) in a tick: no two are equal.
-fn measured(k: usize, tick: u32) -> [i16; 4] {
-    heading(10.0 * (k + 1) as f64 + 0.02 * f64::from(tick % 200))
-}
-
-/// One tick in which every IMU moves.
-fn moving_tick(rig: &mut ImuRig) -> ImuReadings {
-    let tick = rig.bus().tick;
-    for (k, chip) in rig.bus().chips.iter_mut().enumerate() {
-        chip.quaternion = measured(k, tick);
-    }
-    rig.tick()
-}
-
-fn state(rig: &ImuRig, k: usize) -> SensorState {
-    rig.imus.health()[k].state
-}
-
-/// Ticks until IMU k is in a state, at most `limit`.
-fn ticks_until(rig: &mut ImuRig, k: usize, wanted: SensorState, limit: u32) -> u32 {
-    (1..=limit)
-        .find(|_| {
-            moving_tick(rig);
-            state(rig, k) == wanted
-        })
-        .unwrap_or_else(|| panic!("IMU {k} is not {wanted:?} within {limit} ticks"))
-}
+use imu_rig::{ImuRig, heading, measured, moving_tick, state, ticks_until};
 
 #[test]
 fn two_imus_with_the_same_changing_bytes_are_both_invalid_within_50_ms_and_back_when_they_differ() {

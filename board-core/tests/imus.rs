@@ -5,41 +5,13 @@ use proptest::prelude::*;
 use telemetry::{Event, SensorState};
 
 mod imu_rig;
-use imu_rig::{Holder, ImuRig, POWER_ON_TICKS, heading};
+use imu_rig::{Holder, ImuRig, POWER_ON_TICKS, heading, measured, moving_tick, state, ticks_until};
 
 /// Limit of six IMUs' time on the wire: the rest of the 5 ms is for two more, the processor and clock stretching.
 const WIRE_LIMIT_US: f64 = 3_000.0;
 
-/// Reading of IMU k (from 0) in a tick: no two are equal.
-fn measured(k: usize, tick: u32) -> [i16; 4] {
-    heading(10.0 * (k + 1) as f64 + 0.02 * f64::from(tick % 200))
-}
-
-/// One tick in which every IMU moves.
-fn moving_tick(rig: &mut ImuRig) -> ImuReadings {
-    let tick = rig.bus().tick;
-    for (k, chip) in rig.bus().chips.iter_mut().enumerate() {
-        chip.quaternion = measured(k, tick);
-    }
-    rig.tick()
-}
-
 fn none_read() -> heapless::Vec<Option<[i16; 4]>, 8> {
     [None; 6].into_iter().collect()
-}
-
-fn state(rig: &ImuRig, k: usize) -> SensorState {
-    rig.imus.health()[k].state
-}
-
-/// Ticks until IMU k is in a state, at most `limit`.
-fn ticks_until(rig: &mut ImuRig, k: usize, wanted: SensorState, limit: u32) -> u32 {
-    (1..=limit)
-        .find(|_| {
-            moving_tick(rig);
-            state(rig, k) == wanted
-        })
-        .unwrap_or_else(|| panic!("IMU {k} is not {wanted:?} within {limit} ticks"))
 }
 
 #[test]

@@ -37,7 +37,6 @@ pub struct BoardEstimator {
     tared: bool,
     /// Contact that was reported last, one bit per segment.
     contact_mask: u32,
-    implausible: Implausible,
     /// Conditions of each segment that were reported last.
     conditions: [Conditions; MAX_SEGMENTS],
 }
@@ -51,7 +50,6 @@ impl BoardEstimator {
             tare_epoch: 0,
             tared: false,
             contact_mask: 0,
-            implausible: Implausible { bend: 0, imu: 0 },
             conditions: [Conditions(0); MAX_SEGMENTS],
         }
     }
@@ -85,19 +83,18 @@ impl BoardEstimator {
 
     /// Updates the estimator with a sample and returns the new estimate.
     pub fn update(&mut self, sample: &Sample) -> Estimate {
-        let estimate = Estimate::of(sample.tick, self.estimator.update(&sample.into()));
-        self.implausible = Implausible::default();
-        for (segment, condition) in self.estimator.conditions().iter().enumerate() {
-            let [a, b] = condition.bend_implausible.map(u16::from);
-            self.implausible.bend |= (a | b << 1) << (2 * segment);
-            self.implausible.imu |= u8::from(condition.imu_implausible) << segment;
-        }
-        estimate
+        Estimate::of(sample.tick, self.estimator.update(&sample.into()))
     }
 
     /// Sensors whose readings in the latest sample are left out.
-    pub const fn implausible(&self) -> Implausible {
-        self.implausible
+    pub fn implausible(&self) -> Implausible {
+        let mut implausible = Implausible::default();
+        for (segment, condition) in self.estimator.conditions().iter().enumerate() {
+            let [a, b] = condition.bend_implausible.map(u16::from);
+            implausible.bend |= (a | b << 1) << (2 * segment);
+            implausible.imu |= u8::from(condition.imu_implausible) << segment;
+        }
+        implausible
     }
 
     /// Conditions of each segment's estimate.

@@ -2,11 +2,12 @@
 
 use atsam3x8e_hal::tc::Mono;
 use atsam3x8e_hal::uart::Rx;
-use board_core::{Actuator, CommandServer, Execution, Limit, REST_RANGE, Schedule, Task};
+use board_core::{Actuator, CommandServer, Execution, REST_RANGE, Schedule, Task};
 use rtic::Mutex;
 use rtic_sync::channel::Sender;
 use telemetry::{
-    Actuation, Command, DecodeError, Decoder, Message, Refusal, Reply, Request, RequestOutcome, TareMode, TareReport,
+    Actuation, Command, Counts, DecodeError, Decoder, Message, Refusal, Reply, Request, RequestOutcome, TareMode,
+    TareReport,
 };
 
 use crate::downlink::TelemetrySender;
@@ -38,9 +39,8 @@ pub struct Control {
     pub tare_report: Option<TareReport>,
     /// A `Hello` was requested.
     pub hello_requested: bool,
-    /// Frames since boot that were received damaged, and whole ones that are unknown.
-    pub damaged_frames: u32,
-    pub unknown_frames: u32,
+    /// Frames received since boot.
+    pub received: Counts,
     /// The board has a valid table.
     pub has_table: bool,
     /// A boot loop: the pressures stay at zero.
@@ -111,11 +111,8 @@ impl CommandTask {
                 sender.lock(|sender| sender.send(&Message::Reply(reply)));
             }
         }
-        let counts = self.decoder.counts();
-        control.lock(|control| {
-            control.damaged_frames = counts.damaged;
-            control.unknown_frames = counts.wrong_version.saturating_add(counts.unknown);
-        });
+        let received = self.decoder.counts();
+        control.lock(|control| control.received = received);
         SUPERVISOR.report(Task::Commands, tick);
         reboot
     }
@@ -162,11 +159,7 @@ fn execute(
         Command::Arm if !control.has_table => return Err(Refusal::NoTable),
         Command::Arm => actuator.arm(),
         Command::Disarm => actuator.disarm(),
-        Command::SetPressures(pressures) => {
-            if actuator.set(pressures, Mono::now_us())? == Limit::NoRise {
-                return Ok(Execution::Limited);
-            }
-        }
+        Command::SetPressures(pressures) => return actuator.set(pressures, Mono::now_us()),
         Command::Reboot => {
             actuator.disarm();
             *reboot = true;

@@ -8,7 +8,9 @@ use board_core::{Actuator, BendSensorMonitor, DueMessages, Pressures, RestMonito
 use board_estimator::BoardEstimator;
 use estimator_core::{ArmConfig, Q};
 use rtic::Mutex;
-use telemetry::{Actuation, Estimate, Event, Health, Hello, Message, PressureLimit, Sample, SensorState, TableState};
+use telemetry::{
+    Actuation, Counts, Estimate, Event, Health, Hello, Message, PressureLimit, Sample, SensorState, TableState,
+};
 
 use crate::board::MuxReset;
 use crate::command_task::{Control, Pose};
@@ -129,11 +131,10 @@ impl EstimationTask {
         });
         let pose = Pose { turned: self.sensors.rest.most_turned(), bent: self.estimator.most_bent() };
         let may_introduce = self.last_hello.is_none_or(|last| tick.number.wrapping_sub(last) >= HELLO_PAUSE_TICKS);
-        let (mut due, requested, frames, tare_report) = control.lock(|control| {
+        let (mut due, requested, received, tare_report) = control.lock(|control| {
             control.pose = pose;
             let requested = may_introduce && core::mem::take(&mut control.hello_requested);
-            let frames = (control.damaged_frames, control.unknown_frames);
-            (control.schedule.due(tick.number), requested, frames, control.tare_report.take())
+            (control.schedule.due(tick.number), requested, control.received, control.tare_report.take())
         });
         let introduce = requested || self.last_hello.is_none();
         due.hello = introduce || (due.hello && may_introduce);
@@ -155,7 +156,7 @@ impl EstimationTask {
                 sender.send(&Message::Uncertainty(uncertainty));
             }
             if due.health {
-                let health = self.health(tick.number, sender.dropped(), frames, limit, actuation, pressures_pa);
+                let health = self.health(tick.number, sender.dropped(), received, limit, actuation, pressures_pa);
                 sender.send(&Message::Health(health));
             }
         });
@@ -250,7 +251,7 @@ impl EstimationTask {
         &mut self,
         tick: u32,
         dropped_frames: u32,
-        (damaged_frames, unknown_frames): (u32, u32),
+        received: Counts,
         limit: PressureLimit,
         actuation: Actuation,
         pressures_pa: Pressures,
@@ -266,8 +267,8 @@ impl EstimationTask {
             overruns: counters.overruns,
             stale_scans: counters.stale_scans,
             dropped_frames,
-            damaged_frames,
-            unknown_frames,
+            damaged_frames: received.damaged,
+            unknown_frames: received.wrong_version.saturating_add(received.unknown),
             bus_recoveries: self.sensors.imus.bus_recoveries(),
             saturations: estimator_core::saturations(),
             conditions: self.estimator.conditions(),

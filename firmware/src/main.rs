@@ -55,7 +55,7 @@ mod app {
     use rtic_sync::channel::Receiver;
     use rtic_sync::make_channel;
     use rtic_sync::signal::{Signal, SignalReader};
-    use telemetry::{Request, TableStatus};
+    use telemetry::{Counts, Request, TableStatus};
 
     use crate::board::{self, Buffers};
     use crate::command_task::{CommandTask, Control, Pose, TABLE_REQUESTS};
@@ -127,8 +127,7 @@ mod app {
             pose: Pose::default(),
             tare_report: None,
             hello_requested: false,
-            damaged_frames: 0,
-            unknown_frames: 0,
+            received: Counts::default(),
             has_table,
             safe_mode,
             completed: None,

@@ -100,6 +100,11 @@ pub fn all() -> Vec<(String, Pin)> {
     all
 }
 
+/// The pin with this number of D0 to D53.
+pub fn digital(number: u8) -> Option<Pin> {
+    DIGITAL.get(usize::from(number)).map(|(port, line)| pin(*port, *line))
+}
+
 /// The pin of a name, in capitals or not.
 pub fn named(name: &str) -> Option<Pin> {
     all().into_iter().find(|(known, _)| known.eq_ignore_ascii_case(name)).map(|(_, pin)| pin)

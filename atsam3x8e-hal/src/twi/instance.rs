@@ -31,7 +31,7 @@ pub trait Sealed {
     fn registers() -> &'static pac::twi0::RegisterBlock;
     fn shared() -> &'static Mutex<RefCell<Shared>>;
 
-    /// Runs `work` on the shared state in a critical section; `None` inside of another such `work`, of which there is none.
+    /// Runs `work` on the shared state in a critical section; `None` if it is nested, which no caller does.
     fn with_shared<T>(work: impl FnOnce(&mut Shared) -> T) -> Option<T> {
         critical_section::with(|token| {
             let mut shared = Self::shared().borrow(token).try_borrow_mut().ok()?;

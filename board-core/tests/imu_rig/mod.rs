@@ -13,6 +13,7 @@ use std::convert::Infallible;
 use std::pin::pin;
 use std::rc::Rc;
 use std::task::{Context, Poll, Waker};
+use telemetry::SensorState;
 
 /// Ticks from reset to CONFIGMODE: 650 ms.
 pub const POWER_ON_TICKS: u32 = 65;
@@ -305,4 +306,32 @@ impl ImuRig {
     pub fn wire_us(&self) -> f64 {
         self.log.iter().map(|(_, bits)| f64::from(*bits) * 2.5).sum()
     }
+}
+
+/// Reading of IMU k (from 0) in a tick: no two are equal.
+pub fn measured(k: usize, tick: u32) -> [i16; 4] {
+    heading(10.0 * (k + 1) as f64 + 0.02 * f64::from(tick % 200))
+}
+
+/// One tick in which every IMU moves.
+pub fn moving_tick(rig: &mut ImuRig) -> ImuReadings {
+    let tick = rig.bus().tick;
+    for (k, chip) in rig.bus().chips.iter_mut().enumerate() {
+        chip.quaternion = measured(k, tick);
+    }
+    rig.tick()
+}
+
+pub fn state(rig: &ImuRig, k: usize) -> SensorState {
+    rig.imus.health()[k].state
+}
+
+/// Ticks until IMU k is in a state, at most `limit`.
+pub fn ticks_until(rig: &mut ImuRig, k: usize, wanted: SensorState, limit: u32) -> u32 {
+    (1..=limit)
+        .find(|_| {
+            moving_tick(rig);
+            state(rig, k) == wanted
+        })
+        .unwrap_or_else(|| panic!("IMU {k} is not {wanted:?} within {limit} ticks"))
 }

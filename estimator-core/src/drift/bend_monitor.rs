@@ -27,8 +27,8 @@ const MOVING: Constant = degrees(12.0);
 /// A sensor steps if it moves by more than its errors allow, and by more than the IMUs, between two samples. The step
 /// stays suspected down to half the limit, and is confirmed as a new zero after this time.
 const STEP_CONFIRMATION_US: u64 = 350_000;
-/// Time for which a step is reported.
-const RECENT_US: u64 = 60_000_000;
+/// Time for which a new zero of a sensor is reported.
+pub const NEW_ZERO_US: u64 = 60_000_000;
 /// Longest time between two samples over which a step can be detected, time units: half a second.
 const STEP_GAP: Constant = Constant::new(0.5 / TIME_UNIT_S);
 
@@ -127,7 +127,7 @@ impl<S: Scalar> BendMonitor<S> {
     pub fn implausible(&self, time_us: u64) -> [bool; SENSORS_PER_SEGMENT] {
         let mut implausible = [false; SENSORS_PER_SEGMENT];
         for ((implausible, until_us), step) in implausible.iter_mut().zip(self.distrusted_until_us).zip(&self.steps) {
-            let has_stepped = step.stepped_at_us.is_some_and(|at_us| time_us.saturating_sub(at_us) < RECENT_US);
+            let has_stepped = step.stepped_at_us.is_some_and(|at_us| time_us.saturating_sub(at_us) < NEW_ZERO_US);
             *implausible = time_us < until_us || has_stepped;
         }
         implausible

@@ -143,7 +143,7 @@ impl Board {
         id
     }
 
-    /// Begins a session by a Ping, if there is none or no request was sent for a second.
+    /// Begins a session by a Ping, before the first request and after a second without one.
     ///
     /// # Panics
     /// If the Ping is not acknowledged within 50 ms.
@@ -207,6 +207,17 @@ impl Board {
             self.set_pressures(&program.duties(self.machine.seconds() - start));
             self.run_ms(50);
         }
+    }
+
+    /// Arms, and sets all regulators to a pressure for a second.
+    ///
+    /// # Panics
+    /// If the board refuses.
+    pub fn pressurise(&mut self, pressure_pa: u32) {
+        assert_eq!(self.request(Command::Arm), RequestOutcome::Ack);
+        let pressures_pa = [pressure_pa; 6].into_iter().collect();
+        let set = Command::SetPressures(SetPressures { pressures_pa, valid_ms: 1000 });
+        assert_eq!(self.request(set), RequestOutcome::Ack);
     }
 
     /// Sends set-points that stand for 200 ms, as shares of the full scale.

@@ -7,6 +7,9 @@ use virtual_due::{FLASH_BYTES, Machine};
 use crate::build::firmware;
 use crate::replay::table;
 
+/// First byte of the flash.
+const FLASH: usize = 0x8_0000;
+
 /// The reference arm's table as the board stores it.
 ///
 /// # Panics
@@ -27,6 +30,16 @@ pub fn flash_with(table: &StoredTable) -> Vec<u8> {
     let mut flash = vec![0xFF; FLASH_BYTES - store.len()];
     flash.extend(store);
     flash
+}
+
+/// Addresses of the bytes of the reference arm's table in the flash: the slot's header, the image and the packed file.
+///
+/// # Panics
+/// Never: the reference table fits.
+#[must_use]
+pub fn table_addresses() -> Vec<usize> {
+    let flash = flash_with(&stored_table());
+    (0..flash.len()).filter(|at| flash[*at] != 0xFF).map(|at| FLASH + at).collect()
 }
 
 /// A board with the firmware and the reference arm's table in its flash, in a world, with power just come up.

@@ -130,14 +130,7 @@ impl Run {
         line: &mut dyn Line,
         inject: &mut dyn FnMut(&mut Machine<WiredRig>),
     ) -> std::io::Result<Progress> {
-        if !self.begin_slice(line, inject)? {
-            return Ok(Progress::Over);
-        }
-        if self.machine.run_to_breakpoint(self.slice_end) {
-            return Ok(Progress::Breakpoint);
-        }
-        self.end_slice(line)?;
-        Ok(Progress::Running)
+        self.run_slice(line, inject, |machine, end| machine.run_to_breakpoint(end).then_some(Progress::Breakpoint))
     }
 
     /// Runs one instruction, or sleeps to the end of the slice.
@@ -146,11 +139,21 @@ impl Run {
         line: &mut dyn Line,
         inject: &mut dyn FnMut(&mut Machine<WiredRig>),
     ) -> std::io::Result<Progress> {
+        self.run_slice(line, inject, |machine, end| machine.step(end).then_some(Progress::Stepped))
+    }
+
+    /// Runs in the slice under way or the next one, up to its end unless `run` returns the reason of an earlier stop.
+    fn run_slice(
+        &mut self,
+        line: &mut dyn Line,
+        inject: &mut dyn FnMut(&mut Machine<WiredRig>),
+        run: impl FnOnce(&mut Machine<WiredRig>, Cycles) -> Option<Progress>,
+    ) -> std::io::Result<Progress> {
         if !self.begin_slice(line, inject)? {
             return Ok(Progress::Over);
         }
-        if self.machine.step(self.slice_end) {
-            return Ok(Progress::Stepped);
+        if let Some(stopped) = run(&mut self.machine, self.slice_end) {
+            return Ok(stopped);
         }
         self.end_slice(line)?;
         Ok(Progress::Running)

@@ -3,12 +3,12 @@
 use board_table::Wiring;
 use sam3x_models::model::Pin;
 
+use crate::arduino_pins;
+
 /// The ADC channel of each analog pin, A0 to A11.
 const ANALOG_CHANNELS: [u8; 12] = [7, 6, 5, 4, 3, 2, 1, 0, 10, 11, 12, 13];
-/// Digital pins of the regulators, each with its PWM channel and its line of PIOC.
-const PWM_PINS: [(u8, u8, u8); 8] =
-    [(6, 7, 24), (7, 6, 23), (8, 5, 22), (9, 4, 21), (34, 0, 2), (36, 1, 4), (38, 2, 6), (40, 3, 8)];
-pub const PIOC: u8 = 2;
+/// Digital pins of the regulators, each with its PWM channel.
+const PWM_PINS: [(u8, u8); 8] = [(6, 7), (7, 6), (8, 5), (9, 4), (34, 0), (36, 1), (38, 2), (40, 3)];
 
 /// Channels and lines of the wired pins.
 #[derive(Debug, Clone)]
@@ -17,8 +17,8 @@ pub struct Pins {
     bend_channels: Vec<Option<u8>>,
     /// The ADC channel whose conversion counts as that of a scan: the first bend sensor's, or A0's.
     pub scan_channel: u8,
-    /// PWM channel and line of PIOC of each regulator.
-    regulators: Vec<Option<(u8, u8)>>,
+    /// PWM channel and line of each regulator.
+    regulators: Vec<Option<(u8, Pin)>>,
 }
 
 impl Pins {
@@ -28,8 +28,10 @@ impl Pins {
         let pins = wiring.segments.iter().flat_map(|segment| segment.bend);
         let bend_channels: Vec<Option<u8>> = pins.map(|pin| pin.and_then(channel)).collect();
         let scan_channel = bend_channels.iter().flatten().next().copied().unwrap_or(ANALOG_CHANNELS[0]);
-        let output =
-            |wired: u8| PWM_PINS.iter().find(|(pin, ..)| *pin == wired).map(|(_, channel, line)| (*channel, *line));
+        let output = |wired: u8| {
+            let (_, channel) = PWM_PINS.iter().find(|(pin, _)| *pin == wired)?;
+            Some((*channel, arduino_pins::digital(wired)?))
+        };
         let regulators = wiring.regulators.iter().map(|regulator| output(regulator.pin)).collect();
         Self { bend_channels, scan_channel, regulators }
     }
@@ -46,6 +48,6 @@ impl Pins {
 
     /// The regulator on a line.
     pub fn driven(&self, pin: Pin) -> Option<usize> {
-        self.regulators.iter().position(|wired| wired.is_some_and(|(_, line)| pin == Pin { port: PIOC, line }))
+        self.regulators.iter().position(|wired| wired.is_some_and(|(_, wired)| wired == pin))
     }
 }

@@ -1,13 +1,13 @@
 #![expect(clippy::float_cmp, reason = "set-points are exact")]
 
 use super::WiredRig;
-use super::pin_map::PIOC;
 use super::pins::{MUX_RESET, SCL, SDA};
 use rig_twin::Scenario;
 use sam3x_models::model::{CYCLES_PER_SECOND, Cycles, I2c, Pin, World};
 
 const SECOND: Cycles = CYCLES_PER_SECOND;
-const D6: Pin = Pin { port: PIOC, line: 24 };
+/// PC24.
+const D6: Pin = Pin { port: 2, line: 24 };
 
 /// Begins a fault.
 fn inject(rig: &mut WiredRig, fault: &str) {

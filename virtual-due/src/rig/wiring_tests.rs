@@ -2,7 +2,6 @@
 #![expect(clippy::float_cmp, reason = "set-points are exact")]
 
 use super::WiredRig;
-use super::pin_map::PIOC;
 use board_table::{ImuAddress, RegulatorWiring, SegmentWiring, Wiring};
 use rig_twin::{Layout, Scenario, SegmentLayout, Setup};
 use sam3x_models::model::{CYCLES_PER_SECOND, Cycles, I2c, Pin, World};
@@ -123,7 +122,8 @@ fn each_pwm_channel_and_each_line_drives_the_regulator_of_its_pin() {
         expected[regulator] = 70_000.0;
         assert_eq!(rig.set_points_pa()[..], expected, "D{pin}");
         rig.pwm(channel, None, 0);
-        rig.drive(Pin { port: PIOC, line }, Some(true), 0);
+        // A line of PIOC.
+        rig.drive(Pin { port: 2, line }, Some(true), 0);
         expected[regulator] = 280_000.0;
         assert_eq!(rig.set_points_pa()[..], expected, "D{pin}");
     }

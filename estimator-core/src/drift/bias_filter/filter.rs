@@ -1,6 +1,7 @@
 //! State of the bias filter, and its output.
 
 use crate::config::{BendErrorConfig, SegmentConfig};
+use crate::drift::bend_monitor::NEW_ZERO_US;
 use crate::drift::bias_filter::tare_statistics::TareStatistics;
 use crate::drift::bias_filter::track::{SegmentTrack, since};
 use crate::drift::bias_state::BiasState;
@@ -15,8 +16,6 @@ use crate::types::Condition;
 
 /// Variance rate of an absent heading's own error: 0.5° after a second, growing with the square root of time.
 const ABSENT: Constant = variance_deg(0.5 * 8.0);
-/// Time for which a restart of an IMU is reported.
-const RECENT_US: u64 = 60_000_000;
 
 /// State of the bias filter for up to `N` segments, in the number type `F`.
 ///
@@ -110,7 +109,6 @@ impl<F: Scalar, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
     pub fn condition(&self, i: usize) -> Condition {
         let Some(track) = self.segments.get(i).filter(|_| self.is_started) else { return Condition::default() };
         let now_us = self.last_us.unwrap_or_default();
-        let is_recent = |at_us: Option<u64>| at_us.is_some_and(|at_us| now_us.saturating_sub(at_us) < RECENT_US);
         let mut bend_implausible = track.monitor.implausible(now_us);
         for (implausible, is_outside) in bend_implausible.iter_mut().zip(track.is_outside) {
             *implausible |= is_outside;
@@ -118,7 +116,7 @@ impl<F: Scalar, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
         Condition {
             tare_bad: self.is_tare_bad,
             imu_absent: !track.is_heading_read,
-            imu_restarted: is_recent(track.restarted_at_us),
+            imu_restarted: track.restarted_at_us.is_some_and(|at_us| now_us.saturating_sub(at_us) < NEW_ZERO_US),
             bend_distrusted: track.is_bend_missing || track.monitor.has_suspect() || bend_implausible.contains(&true),
             gated: track.gated_since_us.is_some(),
             imu_implausible: track.has_reading && !track.is_heading_read,

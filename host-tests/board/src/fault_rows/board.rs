@@ -1,10 +1,9 @@
 //! Faults of bus, multiplexer, converter, line, memory, power and processor.
 
 use telemetry::{Command, Message, ResetCause, TableStatus};
-use virtual_due::FLASH_BYTES;
 
 use super::measured::{Measured, Row, bend_noticed_ms, swinging, text_of, tip, with, within};
-use crate::flash::stored_table;
+use crate::flash::table_addresses;
 use crate::trial::Trial;
 
 pub(super) const ROWS: &[(&str, Row)] = &[
@@ -30,9 +29,6 @@ pub(super) const ROWS: &[(&str, Row)] = &[
 
 /// Promise about scans that are all lost.
 const SCANS_LOST: &str = "bend sensors not ok within 50 ms, scans counted as stale, no overrun";
-
-/// First byte of the flash.
-const FLASH: usize = 0x8_0000;
 
 fn overruns(trial: &Trial) -> u32 {
     trial.board.healths().next_back().map_or(u32::MAX, |health| health.overruns)
@@ -238,13 +234,10 @@ fn line_reorder() -> Measured {
 
 fn flash_flip() -> Measured {
     let mut trial = swinging();
-    let store = stored_table().store().expect("the reference table fits");
-    let first = FLASH + FLASH_BYTES - store.len();
-    let stored: Vec<usize> = (0..store.len()).filter(|at| store[*at] != 0xFF).collect();
-    // The slot's header, the image and the packed file.
+    let stored = table_addresses();
     let (mut refused, mut flips) = (0, 0);
     for place in 0..12 {
-        let fault = format!("flash:flip={}", first + stored[place * (stored.len() - 1) / 11]);
+        let fault = format!("flash:flip={}", stored[place * (stored.len() - 1) / 11]);
         trial.inject(&fault);
         trial.board.machine.press_reset();
         trial.board.run_ms(400);

@@ -1,7 +1,7 @@
 //! The faults that the board survives: each with its promise, injected by name, and measured on the board's stream.
 //!
 //! The arm swings freely under the board's pressures, in a session of seed 1, for 15 s before the fault. A promise
-//! about the estimate is measured as the tip's distance from the truth, beside that of the same session without the fault.
+//! about the estimate is measured as the tip's distance from the truth, compared with the same session without the fault.
 
 mod board;
 mod measured;

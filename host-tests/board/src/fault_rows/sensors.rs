@@ -1,6 +1,6 @@
 //! Faults of bend sensors, converter and IMUs.
 
-use telemetry::{Message, SensorState};
+use telemetry::{Event, Message, SensorState};
 
 use super::measured::{Measured, Row, bend_noticed_ms, imu_back_ms, imu_noticed_ms, text_of, tip, with, within};
 use crate::trial::Trial;
@@ -50,31 +50,46 @@ fn bend_short() -> Measured {
     bend_lost("bend sensor short", "bend2a:short")
 }
 
-fn bend_intermittent() -> Measured {
-    let injected = "bend2a:intermittent";
-    let trial = with(injected, 4_000);
-    let noticed = bend_noticed_ms(&trial, 2);
-    let (tip, is_near) = tip(&trial, 0.0, 4e3);
-    Measured {
-        row: "bend sensor lost in every second tick",
-        injected,
-        promise: "not ok within 1 s, the estimate stays near",
-        measured: format!("not ok after {}; {tip}", text_of(noticed)),
-        holds: within(noticed, 1e3) && is_near,
+/// A fault that is reported within a limit, while the estimate stays near.
+struct Reported {
+    row: &'static str,
+    injected: &'static str,
+    promise: &'static str,
+    /// Word for the report.
+    word: &'static str,
+    limit_ms: f64,
+    /// Time that is measured after the fault, ms.
+    measured_ms: u64,
+}
+
+impl Reported {
+    /// Injects it; `reported_ms` finds the time of the report.
+    fn measure(self, reported_ms: impl Fn(&Trial) -> Option<f64>) -> Measured {
+        let Self { row, injected, promise, word, limit_ms, measured_ms } = self;
+        let trial = with(injected, measured_ms);
+        let reported = reported_ms(&trial);
+        let (tip, is_near) = tip(&trial, 0.0, measured_ms as f64);
+        let measured = format!("{word} after {}; {tip}", text_of(reported));
+        Measured { row, injected, promise, measured, holds: within(reported, limit_ms) && is_near }
     }
 }
 
+fn bend_intermittent() -> Measured {
+    let row = Reported {
+        row: "bend sensor lost in every second tick",
+        injected: "bend2a:intermittent",
+        promise: "not ok within 1 s, the estimate stays near",
+        word: "not ok",
+        limit_ms: 1e3,
+        measured_ms: 4_000,
+    };
+    row.measure(|trial| bend_noticed_ms(trial, 2))
+}
+
 fn bend_wrong(row: &'static str, injected: &'static str) -> Measured {
-    let trial = with(injected, 12_000);
-    let noticed = bend_noticed_ms(&trial, 2);
-    let (tip, is_near) = tip(&trial, 0.0, 12e3);
-    Measured {
-        row,
-        injected,
-        promise: "named within 1 s, the estimate stays near",
-        measured: format!("named after {}; {tip}", text_of(noticed)),
-        holds: within(noticed, 1e3) && is_near,
-    }
+    let promise = "named within 1 s, the estimate stays near";
+    let row = Reported { row, injected, promise, word: "named", limit_ms: 1e3, measured_ms: 12_000 };
+    row.measure(|trial| bend_noticed_ms(trial, 2))
 }
 
 fn bend_offset() -> Measured {
@@ -87,24 +102,22 @@ fn bend_factor() -> Measured {
 
 /// What a sensor drifts in its first seconds is within its errors.
 fn bend_drift() -> Measured {
-    let injected = "bend2a:drift=30";
-    let trial = with(injected, 12_000);
-    let noticed = bend_noticed_ms(&trial, 2);
-    let (tip, is_near) = tip(&trial, 0.0, 12e3);
-    Measured {
+    let row = Reported {
         row: "bend sensor that drifts",
-        injected,
+        injected: "bend2a:drift=30",
         promise: "named within 10 s, the estimate stays near",
-        measured: format!("named after {}; {tip}", text_of(noticed)),
-        holds: within(noticed, 10e3) && is_near,
-    }
+        word: "named",
+        limit_ms: 10e3,
+        measured_ms: 12_000,
+    };
+    row.measure(|trial| bend_noticed_ms(trial, 2))
 }
 
 fn imu_unplugged() -> Measured {
     let injected = "imu3:unplugged";
     let trial = with(injected, 8_000);
     let noticed = imu_noticed_ms(&trial, 2);
-    let lost = trial.samples(0.0, 8e3).filter(|sample| (0..6).any(|imu| imu != 2 && sample.imu[imu].is_none())).count();
+    let lost = trial.without_others(8e3);
     let (tip, is_near) = tip(&trial, 0.0, 8e3);
     Measured {
         row: "IMU unplugged",
@@ -116,18 +129,15 @@ fn imu_unplugged() -> Measured {
 }
 
 fn imu_frozen() -> Measured {
-    let injected = "imu3:frozen";
-    let trial = with(injected, 8_000);
-    let is_stuck = |event| event == telemetry::Event::Imu(2, SensorState::Stuck);
-    let noticed = trial.noticed_ms(is_stuck);
-    let (tip, is_near) = tip(&trial, 0.0, 8e3);
-    Measured {
+    let row = Reported {
         row: "IMU frozen while the others move",
-        injected,
+        injected: "imu3:frozen",
         promise: "stuck within 0.52 s, the estimate stays near",
-        measured: format!("stuck after {}; {tip}", text_of(noticed)),
-        holds: within(noticed, 520.0) && is_near,
-    }
+        word: "stuck",
+        limit_ms: 520.0,
+        measured_ms: 8_000,
+    };
+    row.measure(|trial| trial.noticed_ms(|event| event == Event::Imu(2, SensorState::Stuck)))
 }
 
 fn imu_restarted(row: &'static str, injected: &'static str, trial: &Trial) -> Measured {
@@ -179,53 +189,39 @@ fn imu_norm() -> Measured {
     imu_invalid("IMU with quaternions of norm 0.7", "imu3:norm=0.7")
 }
 
+/// A fault of IMU 3 that lasts for `ms`, in a trial of `whole_ms`.
+fn imu_briefly(row: &'static str, injected: &'static str, fault: &str, [ms, whole_ms]: [u64; 2]) -> Measured {
+    let mut trial = with(fault, ms);
+    trial.board.clear(fault);
+    trial.run_ms(whole_ms - ms);
+    let (measured, holds) = tip(&trial, 0.0, whole_ms as f64);
+    Measured { row, injected, promise: "no step in the estimate", measured, holds }
+}
+
 fn imu_single_wrong() -> Measured {
-    let mut trial = with("imu3:random", 10);
-    trial.board.clear("imu3:random");
-    trial.run_ms(7_990);
-    let (tip, holds) = tip(&trial, 0.0, 8e3);
-    Measured {
-        row: "a single wrong output of an IMU",
-        injected: "imu3:random+0.01",
-        promise: "no step in the estimate",
-        measured: tip,
-        holds,
-    }
+    imu_briefly("a single wrong output of an IMU", "imu3:random+0.01", "imu3:random", [10, 8_000])
 }
 
 fn imu_jump() -> Measured {
-    let injected = "imu3:jump=30";
-    let trial = with(injected, 12_000);
-    let noticed = imu_noticed_ms(&trial, 2);
-    let (tip, is_near) = tip(&trial, 0.0, 12e3);
-    Measured {
+    let row = Reported {
         row: "heading jump of 30°",
-        injected,
+        injected: "imu3:jump=30",
         promise: "reported within 30 ms, no step in the estimate",
-        measured: format!("reported after {}; {tip}", text_of(noticed)),
-        holds: within(noticed, 30.0) && is_near,
-    }
+        word: "reported",
+        limit_ms: 30.0,
+        measured_ms: 12_000,
+    };
+    row.measure(|trial| imu_noticed_ms(trial, 2))
 }
 
 fn imu_short_jump() -> Measured {
-    let mut trial = with("imu3:jump=30", 50);
-    trial.board.clear("imu3:jump=30");
-    trial.run_ms(11_950);
-    let (tip, holds) = tip(&trial, 0.0, 12e3);
-    Measured {
-        row: "heading jump of 30° for 50 ms",
-        injected: "imu3:jump=30+0.05",
-        promise: "no step in the estimate",
-        measured: tip,
-        holds,
-    }
+    imu_briefly("heading jump of 30° for 50 ms", "imu3:jump=30+0.05", "imu3:jump=30", [50, 12_000])
 }
 
 fn imu_nack() -> Measured {
     let injected = "imu3:nack=0.1";
     let trial = with(injected, 8_000);
-    let others =
-        trial.samples(0.0, 8e3).filter(|sample| (0..6).any(|imu| imu != 2 && sample.imu[imu].is_none())).count();
+    let others = trial.without_others(8e3);
     let (tip, is_near) = tip(&trial, 0.0, 8e3);
     Measured {
         row: "IMU that refuses a tenth of its addresses",
@@ -262,6 +258,12 @@ fn reset_and_open() -> Measured {
 }
 
 impl Trial {
+    /// Number of samples up to a time after the fault, ms, without one of the IMUs other than IMU 3.
+    fn without_others(&self, to_ms: f64) -> usize {
+        let is_missing = |sample: &&telemetry::Sample| (0..6).any(|imu| imu != 2 && sample.imu[imu].is_none());
+        self.samples(0.0, to_ms).filter(is_missing).count()
+    }
+
     /// Samples from one time after the fault to another.
     fn samples(&self, from_ms: f64, to_ms: f64) -> impl Iterator<Item = &telemetry::Sample> {
         self.received(from_ms, to_ms).filter_map(|message| match message {

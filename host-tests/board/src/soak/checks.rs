@@ -1,4 +1,4 @@
-//! Checks of the board's stream: ticks, counters, estimates beside the host's, and the tip beside the truth.
+//! Checks of the board's stream: ticks, counters, estimates against the host's, and the tip against the truth.
 
 use std::collections::VecDeque;
 

@@ -3,9 +3,8 @@
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 use rig_twin::Fault;
-use virtual_due::FLASH_BYTES;
 
-use crate::flash::stored_table;
+use crate::flash::table_addresses;
 
 /// Share of the episodes with two faults.
 const PAIRS: f64 = 0.25;
@@ -13,8 +12,6 @@ const PAIRS: f64 = 0.25;
 const BETWEEN_MS: f64 = 2_000.0;
 /// Shortest and longest duration of a fault, ms.
 const DURATION_MS: [f64; 2] = [20.0, 6_000.0];
-/// First byte of the flash.
-const FLASH: usize = 0x8_0000;
 /// Interrupts of the firmware's tasks: the IMUs' bus, the tick and the timer of waiting tasks.
 const INTERRUPTS: [u8; 3] = [23, 27, 28];
 
@@ -38,15 +35,9 @@ pub struct Draw {
 
 impl Draw {
     /// The episodes of this seed.
-    ///
-    /// # Panics
-    /// Never: the reference table fits the flash.
     #[must_use]
     pub fn new(seed: u64) -> Self {
-        let store = stored_table().store().expect("the reference table fits");
-        let first = FLASH + FLASH_BYTES - store.len();
-        let stored = (0..store.len()).filter(|at| store[*at] != 0xFF).map(|at| first + at).collect();
-        Self { random: ChaCha8Rng::seed_from_u64(seed), stored }
+        Self { random: ChaCha8Rng::seed_from_u64(seed), stored: table_addresses() }
     }
 
     /// The faults of the next episode.

@@ -35,7 +35,7 @@ const SESSION_EPISODES: u64 = 10;
 const TARE_EPISODE: u64 = 7;
 /// Distance of the tip from that of the straight arm in a tare that counts as off, mm: the least stated deviation of the tip.
 const TARE_OFFSET_MM: f64 = 3.0;
-/// Episodes with such a zero after which the session ends: its tip says little of the faults.
+/// Episodes with such a zero after which the session ends: the tip's error is then mostly that of the zero.
 const OFFSET_EPISODES: u64 = 2;
 /// Rest before a tare, and time for its reply, ms.
 const REST_MS: u64 = 3_000;
@@ -92,7 +92,7 @@ struct Run<'t> {
     sessions_s: f64,
     steps: u64,
     aim: Aim,
-    /// The episode's faults that have not begun, and those that have not ended.
+    /// The episode's faults that are still to begin, and those that are still to end.
     waiting: Vec<(Cycles, Drawn)>,
     ending: Vec<(Cycles, Fault)>,
     present: Vec<Present>,

@@ -1,4 +1,4 @@
-//! What the board says of its sensors and segments: the last of its health and events.
+//! States of the sensors and conditions of the segments, from the board's last health and events.
 
 use telemetry::{Conditions, Event, Health, MAX_BEND_SENSORS, MAX_SEGMENTS, SensorState};
 

@@ -54,7 +54,7 @@ impl Venting {
         }
     }
 
-    /// True while the host says nothing, to see that nothing moves.
+    /// True while the host sends nothing, to check that nothing moves.
     pub const fn is_silent(&self, now: Cycles) -> bool {
         now < self.silent_until
     }

@@ -2,7 +2,7 @@
 
 use board_tests::Board;
 use rig_twin::Scenario;
-use telemetry::{Command, Event, RequestOutcome, ResetCause, SetPressures};
+use telemetry::{Event, ResetCause};
 use virtual_due::WiredRig;
 
 /// Address of the core's register that disables interrupts 0 to 31 (ARMv7-M, B3.4.5).
@@ -20,9 +20,7 @@ fn ready() -> Board {
 #[test]
 fn the_watchdog_bites_a_stuck_task_and_the_arm_is_vented() {
     let mut board = ready();
-    assert_eq!(board.request(Command::Arm), RequestOutcome::Ack);
-    let pressures = SetPressures { pressures_pa: [100_000; 6].into_iter().collect(), valid_ms: 1000 };
-    assert_eq!(board.request(Command::SetPressures(pressures)), RequestOutcome::Ack);
+    board.pressurise(100_000);
     assert!(board.machine.poke_core(NVIC_ICER0, 1 << TC0), "the tick is stuck");
     board.run_ms(250);
     assert!(board.is_vented());

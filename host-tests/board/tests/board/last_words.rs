@@ -32,8 +32,7 @@ const RECURSION: [u8; 4] = [0xFF, 0xB4, 0xFD, 0xE7];
 fn under_pressure() -> Board {
     let mut board = Board::new(WiredRig::new(Scenario::FreeSwing, 1));
     board.run_ms(1500);
-    assert_eq!(board.request(Command::Arm), RequestOutcome::Ack);
-    assert_eq!(board.request(pressures()), RequestOutcome::Ack);
+    board.pressurise(100_000);
     assert!(!board.is_vented());
     board
 }
@@ -158,8 +157,7 @@ fn three_crashes_in_a_minute_leave_the_arm_vented_and_the_telemetry_alive() {
         break_the_tick(&mut board, &UNDEFINED);
         assert_eq!(hello_after(&mut board).boot, crashes + 1);
         if crashes < 3 {
-            assert_eq!(board.request(Command::Arm), RequestOutcome::Ack);
-            assert_eq!(board.request(pressures()), RequestOutcome::Ack);
+            board.pressurise(100_000);
             assert!(!board.is_vented(), "after {crashes} crashes");
         }
     }

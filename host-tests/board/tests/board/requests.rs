@@ -126,9 +126,7 @@ fn bytes_of_an_earlier_session_that_arrive_again_move_nothing() {
 #[test]
 fn a_disarm_vents_whatever_its_number_and_session() {
     let mut board = ready();
-    assert_eq!(board.request(Command::Arm), RequestOutcome::Ack);
-    let pressures = SetPressures { pressures_pa: [100_000; 6].into_iter().collect(), valid_ms: 1000 };
-    assert_eq!(board.request(Command::SetPressures(pressures)), RequestOutcome::Ack);
+    board.pressurise(100_000);
     assert!(!board.is_vented());
     board.send_again(&Request { id: 1, session: board.session() - 1, command: Command::Disarm });
     board.run_ms(30);
