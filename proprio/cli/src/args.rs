@@ -9,6 +9,7 @@ use std::path::PathBuf;
 use clap::builder::Styles;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
+use proprio_session::Axis;
 use rig_twin::TimedFault;
 
 pub use arm::NewArmArgs;
@@ -78,9 +79,15 @@ pub enum Command {
 pub struct AlignArgs {
     /// Session without truth, as it was recorded
     pub session: PathBuf,
-    /// Camera's file: poses of the markers, one row per frame
+    /// Camera's file: poses of the markers, one row per frame; or the export of OptiTrack Motive, Vicon or Qualisys
     #[arg(long, value_name = "CAMERA.csv")]
     pub camera: PathBuf,
+    /// Rigid bodies of an export from the base to the tip, the base's own first where there is one; all of the file by default
+    #[arg(long, value_name = "NAME", value_delimiter = ',')]
+    pub bodies: Vec<String>,
+    /// Axis of an export's capture volume that points from the arm's plane to the viewer; the program's vertical one by default
+    #[arg(long, value_name = "AXIS", value_enum)]
+    pub up: Option<UpArg>,
     /// Arm description, or table
     #[arg(long, value_name = "ARM.toml")]
     pub arm: PathBuf,
@@ -89,6 +96,27 @@ pub struct AlignArgs {
     pub output: PathBuf,
     #[command(flatten)]
     pub force: ForceArgs,
+}
+
+/// An axis of a capture volume.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub enum UpArg {
+    /// The first
+    X,
+    /// The second: Motive's vertical axis
+    Y,
+    /// The third: the vertical axis of Vicon's and Qualisys' programs
+    Z,
+}
+
+impl From<UpArg> for Axis {
+    fn from(up: UpArg) -> Self {
+        match up {
+            UpArg::X => Self::X,
+            UpArg::Y => Self::Y,
+            UpArg::Z => Self::Z,
+        }
+    }
 }
 
 #[derive(Debug, Args)]

@@ -109,7 +109,7 @@ pub(crate) fn first_empty(parts: &[Option<f64>]) -> usize {
 
 /// Line of a row, from 1. The parser counts a line end only when it reads on, which the `\r\n` and the empty lines
 /// before a row mislead; so the file is looked at again, where it can be: a pipe is gone once it is read.
-fn line_at(path: &Path, row: &csv::Position) -> u64 {
+pub(crate) fn line_at(path: &Path, row: &csv::Position) -> u64 {
     if !path.is_file() {
         return row.line();
     }
@@ -129,7 +129,7 @@ fn lines_before(file: File, byte: u64) -> io::Result<u64> {
     Ok(lines)
 }
 
-fn csv_error(path: &Path, error: csv::Error) -> SessionError {
+pub(crate) fn csv_error(path: &Path, error: csv::Error) -> SessionError {
     let mut line = error.position().map(|position| line_at(path, position));
     let problem = match error.into_kind() {
         csv::ErrorKind::Io(error) => {

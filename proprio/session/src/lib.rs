@@ -7,7 +7,7 @@
 //! | `reader.rs`, `defects.rs` | [`SessionReader`]: the rows of a session of any kind; defects of its file |
 //! | `csv_file.rs`, `csv_rows.rs`, `column_names.rs`, `columns.rs`, `cell.rs`, `header.rs`, `line_limit.rs`, `source.rs` | CSV files |
 //! | `file_content.rs`, `foreign_file.rs`, `missing_column.rs`, `time_unit.rs` | likely reasons of errors: a file in place of another, another name, another unit |
-//! | `camera.rs`, `pressures.rs` | a camera's poses; pressures over time |
+//! | `camera.rs`, `motion_capture/`, `pressures.rs` | a camera's poses, in a file of ours or in a motion-capture program's export; pressures over time |
 //! | `row_assembler.rs` | [`RowAssembler`]: rows from the messages of a board, recorded or live |
 //! | `recording/` | MCAP: written, read, recovered |
 //! | `convert/` | conversion from one kind to another |
@@ -35,6 +35,7 @@ mod header;
 mod line_limit;
 mod missing_column;
 mod missing_history;
+mod motion_capture;
 mod output;
 mod pressures;
 mod progress;
@@ -64,6 +65,7 @@ pub use foreign_file::ForeignFile;
 pub use header::Header;
 pub use missing_column::{MissingColumn, MissingReason};
 pub use missing_history::MissingHistory;
+pub use motion_capture::{Axis, BodySelection, MotionCaptureProblem};
 pub use output::{Existing, OutputFile, WrittenFile, discard_unfinished, is_stdout};
 pub use pressures::{PressurePoint, read_pressures};
 pub use progress::{NoProgress, Progress};

@@ -9,6 +9,7 @@ use telemetry::{MAX_REGULATORS, MAX_SEGMENTS};
 use crate::foreign_file::ForeignFile;
 use crate::line_limit::LONGEST_LINE;
 use crate::missing_column::MissingColumn;
+use crate::motion_capture::MotionCaptureProblem;
 use crate::recording::ReadError;
 use crate::time_unit::time_unit_of;
 
@@ -142,6 +143,9 @@ pub enum SessionProblem {
         /// Time of this row.
         to_s: f64,
     },
+    /// A problem of a motion-capture program's export.
+    #[error(transparent)]
+    MotionCapture(MotionCaptureProblem),
     /// A recording that cannot be read.
     #[error(transparent)]
     Recording(ReadError),

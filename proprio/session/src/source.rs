@@ -76,6 +76,11 @@ impl SessionFile {
         })
     }
 
+    /// The first bytes, by which the format is detected.
+    pub fn begin(&self) -> &[u8] {
+        &self.begin
+    }
+
     /// True where the last byte is a line end; also for a pipe, whose last byte is not known before it is read.
     pub fn ends_with_line(&mut self) -> Result<bool, SessionError> {
         let mut last = [b'\n'];

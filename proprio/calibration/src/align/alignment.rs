@@ -25,6 +25,12 @@ impl Alignment {
     pub const fn truth(&self) -> &JudgedTruth {
         &self.frames.truth
     }
+
+    /// Names of the bodies of a motion-capture program's export, from the base to the tip; `None` of other cameras' files.
+    #[must_use]
+    pub fn bodies(&self) -> Option<&[String]> {
+        self.frames.bodies.as_deref()
+    }
 }
 
 /// Offset, rate and quality of an alignment.

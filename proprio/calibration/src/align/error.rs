@@ -20,6 +20,32 @@ pub enum AlignmentError {
         /// Angle of the motion, degrees.
         deg: f64,
     },
+    /// A body of a motion-capture program's export was not seen at rest.
+    #[error("{} was not seen in the first second", body_name(*body))]
+    NotSeenAtRest {
+        /// The segment at whose end it is, from 1; 0 for the base.
+        body: usize,
+    },
+    /// A body of a motion-capture program's export moved in the first second.
+    #[error("{} moved by {mm:.0} mm and {deg:.1}° in the first second, in which the arm rests", body_name(*body))]
+    MovedAtRest {
+        /// The segment at whose end it is, from 1; 0 for the base.
+        body: usize,
+        /// Distance of the motion, mm.
+        mm: f64,
+        /// Angle of the motion, degrees.
+        deg: f64,
+    },
+    /// The bodies of a motion-capture program's export are not where the reference pose has them.
+    #[error(
+        "in the first second the bodies are {misfit_mm:.0} mm RMS off the reference pose, expected at most {most_mm:.0}"
+    )]
+    NotInReferencePose {
+        /// Root mean square of the distances, mm.
+        misfit_mm: f64,
+        /// Allowed value, mm.
+        most_mm: f64,
+    },
     /// A recording is too short.
     #[error("the recording lasts {seconds:.1} s, expected at least {least_s} s")]
     TooShort {
@@ -88,4 +114,9 @@ pub enum AlignmentError {
         /// Allowed value, ms.
         most_ms: f64,
     },
+}
+
+/// The body at a segment's end, or the base's.
+fn body_name(body: usize) -> String {
+    if body == 0 { "the base's body".to_owned() } else { format!("the body of segment {body}") }
 }

@@ -5,11 +5,12 @@ use std::path::Path;
 use calibration_tables::{ArmFile, MAX_SEGMENTS};
 use proprio_check::clock_fit::Reading;
 use proprio_check::truth::{LeftOut, TruthRow};
-use proprio_session::{CameraReader, FileDefects, Pose, Progress, SessionError, SessionProblem, Truth};
+use proprio_session::{BodySelection, CameraReader, FileDefects, Pose, Progress, SessionError, SessionProblem, Truth};
 
 use super::angle::unwrap_near;
 use super::base;
 use super::error::AlignmentError;
+use super::reference_pose;
 use crate::error::Error;
 use crate::truth::{JudgedTruth, TruthJudge};
 
@@ -21,6 +22,8 @@ pub(super) struct Frames {
     /// Time of the first frame by the camera's clock.
     pub first_s: f64,
     pub defects: FileDefects,
+    /// Names of the bodies of a motion-capture program's export.
+    pub bodies: Option<Vec<String>>,
     /// Times since the first frame.
     times_s: Vec<f64>,
     /// The marker at each segment's end, frame by frame.
@@ -30,9 +33,14 @@ pub(super) struct Frames {
 }
 
 impl Frames {
-    pub fn read(camera: &Path, arm: &ArmFile, progress: &mut dyn Progress) -> Result<Self, Error> {
+    pub fn read(
+        camera: &Path,
+        bodies: &BodySelection,
+        arm: &ArmFile,
+        progress: &mut dyn Progress,
+    ) -> Result<Self, Error> {
         let segments = arm.segments.len();
-        let mut reader = CameraReader::open(camera, segments)?;
+        let mut reader = CameraReader::open(camera, segments, bodies)?;
         let work = format!("reading {}", camera.display());
         let (mut first_s, mut times_s, mut ends) = (0.0, Vec::new(), vec![Vec::new(); segments]);
         let mut base = Vec::new();
@@ -41,7 +49,7 @@ impl Frames {
                 first_s = frame.time_s;
             }
             times_s.push(frame.time_s - first_s);
-            base.extend(frame.base);
+            base.push(frame.base);
             for (end, seen) in ends.iter_mut().zip(frame.ends) {
                 end.push(seen);
             }
@@ -55,8 +63,11 @@ impl Frames {
         if ends.iter().flatten().all(Option::is_none) {
             return Err(refuse(AlignmentError::NoMarkers));
         }
-        if reader.has_base() {
-            let base = base::median(base).map_err(refuse)?;
+        let bodies = reader.bodies();
+        if bodies.is_some() {
+            reference_pose::place(arm, &times_s, &base, &mut ends).map_err(refuse)?;
+        } else if reader.has_base() {
+            let base = base::median(base.into_iter().flatten().collect()).map_err(refuse)?;
             // Zeros are no pose in any frame.
             let seen = ends.iter_mut().flatten().flatten().filter(|pose| pose.x_m != 0.0 || pose.y_m != 0.0);
             seen.for_each(|pose| *pose = base::from_base(&base, pose));
@@ -68,7 +79,7 @@ impl Frames {
             }
             unwrap(end);
         }
-        Ok(Self { first_s, defects: reader.defects(), times_s, ends, truth })
+        Ok(Self { first_s, defects: reader.defects(), bodies, times_s, ends, truth })
     }
 
     pub fn segments(&self) -> usize {

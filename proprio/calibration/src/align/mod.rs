@@ -7,6 +7,8 @@
 //! 3. In windows of 20 s the lag is refined by least squares. The line through the windows' lags gives the offset and the
 //!    difference of the rates, and its residuals their errors.
 //! 4. The camera's poses are interpolated at the session's time stamps.
+//!
+//! Rigid bodies of a motion-capture program are brought to {W} by the arm's reference pose in the first second.
 
 mod alignment;
 mod angle;
@@ -15,12 +17,13 @@ mod coarse;
 mod error;
 mod frames;
 mod motion;
+mod reference_pose;
 mod truth;
 
 use std::path::Path;
 
 use proprio_check::clock_fit::{self, ClockFit};
-use proprio_session::{LoadedTable, Progress};
+use proprio_session::{BodySelection, LoadedTable, Progress};
 
 pub use alignment::{Alignment, AlignmentReport};
 pub use error::AlignmentError;
@@ -37,19 +40,21 @@ const MOST_H: f64 = 24.0;
 /// Largest difference of the clocks' rates: a camera of 29.97 frames per second whose times are counted as of 30.
 const MOST_SKEW: f64 = 1.5e-3;
 
-/// Finds the clocks of `camera` and of `session`, which has no truth yet.
+/// Finds the clocks of `camera` and of `session`, which has no truth yet. `bodies` selects those of a motion-capture program's
+/// export.
 ///
 /// # Errors
 /// [`Error::File`] where one of the files cannot be used, [`Error::Alignment`] where they do not fit together.
 pub fn align(
     session: &Path,
     camera: &Path,
+    bodies: &BodySelection,
     arm: &LoadedTable,
     progress: &mut dyn Progress,
 ) -> Result<Alignment, Error> {
     let refuse = |path: &Path, source| Error::Alignment { path: path.to_owned(), source };
     let mut readings = Readings::read(session, &arm.file, progress)?;
-    let frames = Frames::read(camera, &arm.file, progress)?;
+    let frames = Frames::read(camera, bodies, &arm.file, progress)?;
     for (path, seconds) in [(session, readings.seconds()), (camera, frames.seconds())] {
         check_length(seconds).map_err(|source| refuse(path, source))?;
     }

@@ -86,6 +86,12 @@ impl Help for AlignmentError {
             Self::NoMarkers => "check the markers' numbers in the camera program",
             Self::NoBase => "put the marker where the camera sees it, or remove the base's columns",
             Self::BaseMoved { .. } => "fix base and camera, and record again",
+            Self::NotSeenAtRest { .. } | Self::MovedAtRest { .. } => {
+                "start the capture while the arm rests in its reference pose with all bodies in sight, or cut what is before"
+            }
+            Self::NotInReferencePose { .. } => {
+                "start the capture while the arm rests in its reference pose; give the bodies from the base to the tip with --bodies, the axis that the plane is seen from with --up, and each body its pivot at the segment's end"
+            }
             Self::TooShort { .. } => "record longer, and let the arm move",
             Self::Hidden { .. } => "record longer, with the markers in sight and well lit",
             Self::TooLong { .. } => "remove rows whose time is wrong, or cut the recording",

@@ -1,7 +1,9 @@
 //! Remedies of errors of sessions.
 
 use proprio_session::recording::ReadError;
-use proprio_session::{FileContent, ForeignFile, MissingColumn, MissingReason, SessionProblem, time_unit_of};
+use proprio_session::{
+    FileContent, ForeignFile, MissingColumn, MissingReason, MotionCaptureProblem, SessionProblem, time_unit_of,
+};
 
 use super::Help;
 
@@ -46,6 +48,7 @@ impl Help for SessionProblem {
             Self::Truth(_) => "correct the value, or leave all cells of this truth empty",
             Self::NotAFile => "save it as a file first",
             Self::Tare(_) => "write the number, or remove the column",
+            Self::MotionCapture(problem) => motion_capture(problem),
             Self::Recording(ReadError::Cut) => "recover its complete part with `proprio recover`",
             Self::Recording(ReadError::OtherForm(_) | ReadError::OtherProtocol(_)) => {
                 "read it with the proprio of that version"
@@ -68,6 +71,22 @@ impl Help for SessionProblem {
             Self::PartialTruth => "leave all its cells empty where the camera did not see the segment",
         };
         help.to_owned()
+    }
+}
+
+/// Remedy of a motion-capture program's export.
+const fn motion_capture(problem: &MotionCaptureProblem) -> &'static str {
+    match problem {
+        MotionCaptureProblem::Header => "export it again with its header and the names of the columns",
+        MotionCaptureProblem::NoBodies => {
+            "make a rigid body of the markers at each segment's end, and export positions and rotations: docs/reference/files.md"
+        }
+        MotionCaptureProblem::Unit(_) => "export m, cm or mm, and quaternions or degrees: docs/reference/files.md",
+        MotionCaptureProblem::Count { .. } => "name the arm's bodies from the base to the tip with --bodies A,B,…",
+        MotionCaptureProblem::Unknown { .. } | MotionCaptureProblem::Twice(_) => {
+            "give the names of the file, one for each segment's end, the base before them"
+        }
+        MotionCaptureProblem::NotAnExport => "leave --bodies and --up out",
     }
 }
 

@@ -26,6 +26,7 @@ mod flash;
 mod guide;
 mod missing_readings;
 mod monitor;
+mod motion_capture;
 mod new_arm;
 mod observer;
 mod output_files;
