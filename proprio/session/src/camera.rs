@@ -6,7 +6,7 @@ use calibration_tables::MAX_SEGMENTS;
 
 use crate::columns::CameraColumns;
 use crate::csv_file::CsvFile;
-use crate::motion_capture::{BodySelection, MotionCaptureProblem, MotionCaptureReader};
+use crate::motion_capture::{BodyFrame, BodySelection, MotionCaptureProblem, MotionCaptureReader};
 use crate::source::SessionFile;
 use crate::{FileDefects, Pose, SessionError, SessionProblem, cell};
 
@@ -25,7 +25,7 @@ pub struct CameraFrame {
 pub struct CameraReader(Source);
 
 enum Source {
-    Markers(MarkerFile),
+    Markers(Box<MarkerFile>),
     Bodies { reader: Box<MotionCaptureReader>, has_base: bool },
 }
 
@@ -53,7 +53,8 @@ impl CameraReader {
             return Err(file.error(SessionProblem::MotionCapture(MotionCaptureProblem::NotAnExport)));
         }
         let columns = CameraColumns::find(file.names(), segments).map_err(|problem| file.header_error(problem))?;
-        Ok(Self(Source::Markers(MarkerFile { file, columns, last_time_s: f64::NEG_INFINITY })))
+        let markers = MarkerFile { file, columns, last_time_s: f64::NEG_INFINITY };
+        Ok(Self(Source::Markers(Box::new(markers))))
     }
 
     /// True where there are poses of the base.
@@ -103,7 +104,7 @@ impl CameraReader {
         match &mut self.0 {
             Source::Markers(markers) => markers.next_frame(),
             Source::Bodies { reader, has_base } => {
-                let Some((time_s, poses)) = reader.next_frame()? else { return Ok(None) };
+                let Some(BodyFrame { time_s, poses }) = reader.next_frame()? else { return Ok(None) };
                 let mut poses = poses.into_iter();
                 let base = if *has_base { poses.next().flatten() } else { None };
                 let mut ends = [None; MAX_SEGMENTS];

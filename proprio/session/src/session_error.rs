@@ -67,11 +67,8 @@ pub enum SessionProblem {
         segments: usize,
     },
     /// A session that is to get truth has some.
-    #[error("column {0} is there already, expected a session without truth")]
+    #[error("{0} is there already, expected a session without truth")]
     HasTruth(String),
-    /// A session that is to get columns has none.
-    #[error("is a board's recording, expected a CSV, which gets columns of truth")]
-    NotCsv,
     /// A row has too few or too many cells.
     #[error("the row has {found} cells, the header {expected}")]
     RowLength {

@@ -19,6 +19,7 @@ use crate::error::Error;
 pub(super) struct Readings {
     pub times_us: Vec<u64>,
     pub defects: FileDefects,
+    pub kind: FileFormat,
     /// Starts of the board's runs, s, at which an IMU's heading has a new zero.
     starts_s: Vec<f64>,
     imu: Vec<Vec<Reading>>,
@@ -33,16 +34,17 @@ impl Readings {
         if !reader.is_regular_file() {
             return Err(refuse(None, SessionProblem::NotAFile).into());
         }
-        if reader.kind() != FileFormat::Csv {
-            return Err(refuse(None, SessionProblem::NotCsv).into());
-        }
         if let Some(column) = reader.truth_column() {
-            return Err(refuse(Some(1), SessionProblem::HasTruth(column.to_owned())).into());
+            return Err(refuse(Some(1), SessionProblem::HasTruth(format!("column {column}"))).into());
+        }
+        if reader.has_truth() {
+            return Err(refuse(None, SessionProblem::HasTruth("truth".to_owned())).into());
         }
         let n = arm.segments.len();
         let mut readings = Self {
             times_us: Vec::new(),
             defects: reader.defects(),
+            kind: reader.kind(),
             starts_s: Vec::new(),
             imu: vec![Vec::new(); n],
             bend: vec![Default::default(); n],

@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use std::path::Path;
 
 use csv::ByteRecord;
-use proprio_session::{OutputFile, Pose, SessionError, SessionProblem};
+use proprio_session::{FileFormat, NoProgress, OutputFile, Pose, SessionError, SessionProblem, convert};
 
 use super::alignment::Alignment;
 use crate::error::Error;
@@ -20,7 +20,8 @@ pub struct Written {
 }
 
 impl Alignment {
-    /// Writes the aligned session with its cells unchanged and columns of truth after them. Cells stay empty where the camera
+    /// Writes the aligned session with its cells unchanged, a recording's as `convert` writes them, and columns of truth after
+    /// them. Cells stay empty where the camera
     /// did not see the segment within 0.2 s.
     ///
     /// # Errors
@@ -30,7 +31,10 @@ impl Alignment {
             let problem = SessionProblem::Read(source);
             SessionError { path: session.to_owned(), line: None, column: None, problem }
         };
-        let text = fs::read(session).map_err(failed)?;
+        let text = match self.readings.kind {
+            FileFormat::Csv => fs::read(session).map_err(failed)?,
+            FileFormat::Recording | FileFormat::Raw => convert::csv_text(session, &mut NoProgress)?,
+        };
         let starts = row_starts(&text).map_err(failed)?;
         if starts.len() != self.readings.times_us.len() + 1 {
             return Err(failed(io::Error::other("it changed meanwhile")).into());

@@ -35,7 +35,6 @@ impl Help for SessionProblem {
             Self::RowLength { .. } => {
                 "the file was cut or edited, or has decimal commas: remove the row, copy the file again, or use points"
             }
-            Self::NotCsv => "make a CSV of it with `proprio convert`",
             Self::HasTruth(_) => "take the session as it was recorded, or use it as it is: it is aligned",
             Self::NoTime | Self::Time(_) | Self::Clock(_) => "give every row its time in seconds",
             Self::NoPressure => "give every regulator its pressure in every row; 0 is vented",

@@ -55,13 +55,18 @@ fn truth_without_headings_stays_so_in_a_recording() {
     assert!(error.starts_with("session: has no truth in its first samples"), "{error}");
 }
 
+/// The recording holds the same samples; its headings are those of quaternions.
 #[test]
-fn align_adds_columns_to_a_csv_and_refuses_a_recording() {
-    let Recording { session, camera } = Recording::short();
+fn align_makes_of_a_recording_what_it_makes_of_its_csv() {
+    let Recording { session, camera } = Recording::simulate("--scenario 1 --seconds 300 --seed 71 --imu quaternion");
     let folder = Folder::with("a.csv", session.to_string());
     folder.write("camera.csv", camera.to_string());
-    folder.done(&["convert", "a.csv", "a.mcap"]);
-    std::fs::rename(folder.path("a.mcap"), folder.path("session.csv")).expect("both are in one folder");
-    let error = folder.refused(&args(arm()));
-    assert!(error.starts_with("session.csv: is a board's recording, expected a CSV"), "{error}");
+    folder.done(&["convert", "a.csv", "session.csv.mcap"]);
+    folder.done(&["convert", "session.csv.mcap", "session.csv"]);
+    let of_csv = folder.done(&args(arm())).stdout;
+    let expected = folder.read("aligned.csv");
+    std::fs::rename(folder.path("session.csv.mcap"), folder.path("session.csv")).expect("both are in one folder");
+    let of_recording = folder.done(&[&args(arm())[..], &["--force"]].concat()).stdout;
+    assert_eq!(of_csv, of_recording);
+    assert!(folder.read("aligned.csv") == expected, "the aligned sessions differ");
 }

@@ -47,10 +47,15 @@ pub fn convert(
         let problem = SessionProblem::TooManySegments(header.segments);
         return Err(SessionError { path: input.to_owned(), line: None, column: None, problem }.into());
     }
-    let file = OutputFile::create(output, &[input], existing)?;
-    let reader = SessionReader::open(input, &RequiredColumns { bend: vec![None; header.segments], truth: false })?;
+    let mut file = OutputFile::create(output, &[input], existing)?;
+    let reader = any_columns(input, &header)?;
     let (file, mut left_out) = match (header.kind, kind) {
-        (_, FileFormat::Csv) => to_csv::write(reader, file, progress)?,
+        (_, FileFormat::Csv) => {
+            let path = output.to_owned();
+            let failed = |source| Error::Output { path: path.clone(), source };
+            let left_out = to_csv::write(reader, &mut file, failed, progress)?;
+            (file, left_out)
+        }
         (FileFormat::Recording, _) => extract(input, file, reader.has_truth())?,
         (FileFormat::Csv, FileFormat::Raw) => frames(reader, file, progress)?,
         (FileFormat::Csv, _) => to_recording::of_samples(reader, file, output, progress)?,
@@ -60,6 +65,26 @@ pub fn convert(
         left_out.push(format!("the columns {} are left out", header.unknown.join(", ")));
     }
     Ok(Converted { written: file.finish()?, left_out })
+}
+
+/// The readings of a recording or of a board's bytes as the text of a CSV.
+///
+/// # Errors
+/// [`Error::Session`] of the input.
+pub fn csv_text(input: &Path, progress: &mut dyn Progress) -> Result<Vec<u8>, Error> {
+    let reader = any_columns(input, &Header::of(input)?)?;
+    let mut text = Vec::new();
+    let failed = |error| {
+        let problem = SessionProblem::Read(error);
+        SessionError { path: input.to_owned(), line: None, column: None, problem }.into()
+    };
+    to_csv::write(reader, &mut text, failed, progress)?;
+    Ok(text)
+}
+
+/// A reader of whatever sensors the session has.
+fn any_columns(input: &Path, header: &Header) -> Result<SessionReader, SessionError> {
+    SessionReader::open(input, &RequiredColumns { bend: vec![None; header.segments], truth: false })
 }
 
 fn output_kind(output: &Path) -> Result<FileFormat, Error> {

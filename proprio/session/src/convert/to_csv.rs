@@ -6,7 +6,7 @@ use estimator_core::{ImuReading, SENSORS_PER_SEGMENT};
 
 use super::samples::WORK;
 use crate::recording::HoleTimes;
-use crate::{Error, FileFormat, MissingHistory, OutputFile, Progress, Row, SENSOR_NAMES, SessionReader, TARE, Truth};
+use crate::{Error, FileFormat, MissingHistory, Progress, Row, SENSOR_NAMES, SessionReader, TARE, Truth};
 
 /// The columns of the file.
 struct Layout {
@@ -15,16 +15,17 @@ struct Layout {
     has_true_headings: bool,
 }
 
-/// Writes all rows and returns what was left out.
+/// Writes all rows and returns what was left out; `failed` is the error of a row that cannot be written.
 pub fn write(
     mut reader: SessionReader,
-    mut file: OutputFile,
+    sink: &mut impl Write,
+    failed: impl Fn(io::Error) -> Error,
     progress: &mut dyn Progress,
-) -> Result<(OutputFile, Vec<String>), Error> {
+) -> Result<Vec<String>, Error> {
     let bend_sensors = reader.bend_sensors().take(reader.segments()).collect();
     let (has_truth, has_true_headings) = (reader.has_truth(), reader.has_true_headings());
     let layout = Layout { bend_sensors, has_truth, has_true_headings };
-    layout.write_header(&mut file).map_err(|error| file.error(error))?;
+    layout.write_header(sink).map_err(&failed)?;
     let (mut starts, mut estimates, mut before) = (0_u64, 0_u64, 0_u64);
     let mut missing_history = MissingHistory::default();
     while let Some(row) = reader.next_row()? {
@@ -32,7 +33,7 @@ pub fn write(
         starts += u64::from(row.starts);
         before += u64::from(!row.is_recorded());
         estimates += u64::from(row.board.as_ref().is_some_and(|board| board.estimate.is_some()));
-        layout.write_row(&mut file, &row, starts.saturating_sub(1)).map_err(|error| file.error(error))?;
+        layout.write_row(sink, &row, starts.saturating_sub(1)).map_err(&failed)?;
         progress.advance(WORK, reader.progress());
     }
     let arrival = if reader.kind() == FileFormat::Recording { ", the times of arrival" } else { "" };
@@ -48,7 +49,7 @@ pub fn write(
     }
     left_out.extend(missing_history.is_any().then(|| missing_history.to_string()));
     left_out.extend(reader.defects().holes.iter().map(HoleTimes::to_string));
-    Ok((file, left_out))
+    Ok(left_out)
 }
 
 impl Layout {

@@ -5,10 +5,10 @@ use std::path::PathBuf;
 
 use csv::StringRecord;
 
-use super::BodySelection;
 use super::axis::Axis;
 use super::error::MotionCaptureProblem;
 use super::layout::{Body, Layout, TimeColumn, cell as text_of};
+use super::selection::BodySelection;
 use super::{motive, qualisys, vicon};
 use crate::csv_file::{csv_error, line_at};
 use crate::line_limit::LineLimit;
@@ -46,6 +46,15 @@ impl Program {
             Self::Motive | Self::Vicon => b',',
         }
     }
+}
+
+/// One frame of an export.
+pub struct BodyFrame {
+    /// Time by the program's clock, s.
+    pub time_s: f64,
+    /// The bodies' poses in the arm's plane, in the order of the selection; `None` where a body was not seen. Headings are those
+    /// of the bodies' own axes.
+    pub poses: Vec<Option<Pose>>,
 }
 
 /// Reader of an export's frames.
@@ -111,9 +120,8 @@ impl MotionCaptureReader {
         (self.rows.position().byte(), self.size_bytes)
     }
 
-    /// The next frame: its time and the bodies' poses in the arm's plane, `None` where a body was not seen. Headings are those of
-    /// the bodies' own axes.
-    pub(crate) fn next_frame(&mut self) -> Result<Option<(f64, Vec<Option<Pose>>)>, SessionError> {
+    /// The next frame.
+    pub(crate) fn next_frame(&mut self) -> Result<Option<BodyFrame>, SessionError> {
         loop {
             if !self.rows.read_record(&mut self.record).map_err(|error| csv_error(&self.path, error))? {
                 return Ok(None);
@@ -139,7 +147,7 @@ impl MotionCaptureReader {
         }
         self.last_time_s = time_s;
         let poses = self.layout.bodies.iter().map(|body| self.pose(body)).collect::<Result<_, _>>()?;
-        Ok(Some((time_s, poses)))
+        Ok(Some(BodyFrame { time_s, poses }))
     }
 
     /// A body's pose; `None` where it has empty cells, or zeros for its place, by which lost bodies are exported too.
@@ -148,7 +156,7 @@ impl MotionCaptureReader {
         let (Some(x), Some(y), Some(z)) = (x?, y?, z?) else { return Ok(None) };
         let number = |column| self.cell(column, cell::number);
         let Some(twist) = body.rotation.twist(self.up, number)? else { return Ok(None) };
-        if [x, y, z] == [0.0; 3] {
+        if [x, y, z].iter().all(|part| *part == 0.0) {
             return Ok(None);
         }
         let [x_m, y_m] = self.up.in_plane([x, y, z]);
