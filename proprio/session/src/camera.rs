@@ -50,7 +50,7 @@ impl CameraReader {
         }
         let file = CsvFile::new(source)?;
         if *bodies != BodySelection::default() {
-            return Err(file.error(SessionProblem::MotionCapture(MotionCaptureProblem::NotAnExport)));
+            return Err(file.error(SessionProblem::MotionCapture(Box::new(MotionCaptureProblem::NotAnExport))));
         }
         let columns = CameraColumns::find(file.names(), segments).map_err(|problem| file.header_error(problem))?;
         let markers = MarkerFile { file, columns, last_time_s: f64::NEG_INFINITY };

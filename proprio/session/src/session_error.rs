@@ -142,7 +142,7 @@ pub enum SessionProblem {
     },
     /// A problem of a motion-capture program's export.
     #[error(transparent)]
-    MotionCapture(MotionCaptureProblem),
+    MotionCapture(Box<MotionCaptureProblem>),
     /// A recording that cannot be read.
     #[error(transparent)]
     Recording(ReadError),

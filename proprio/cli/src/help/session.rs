@@ -47,7 +47,7 @@ impl Help for SessionProblem {
             Self::Truth(_) => "correct the value, or leave all cells of this truth empty",
             Self::NotAFile => "save it as a file first",
             Self::Tare(_) => "write the number, or remove the column",
-            Self::MotionCapture(problem) => motion_capture(problem),
+            Self::MotionCapture(problem) => return motion_capture(problem).to_owned(),
             Self::Recording(ReadError::Cut) => "recover its complete part with `proprio recover`",
             Self::Recording(ReadError::OtherForm(_) | ReadError::OtherProtocol(_)) => {
                 "read it with the proprio of that version"

@@ -67,7 +67,7 @@ fn motive(frames: &[(f64, Vec<BodyPose>)]) -> String {
 
 /// Vicon: mm, degrees, z up, frames by their numbers.
 fn vicon(frames: &[(f64, Vec<BodyPose>)], rate_hz: f64) -> String {
-    let repeated = |of: &str| vec![of; SEGMENTS + 1].join(",");
+    let repeated = |of: &str| [of; SEGMENTS + 1].join(",");
     let names = (0..=SEGMENTS).map(|body| format!("Arm:{},,,,,", name(body))).collect::<Vec<_>>().join(",");
     let mut text = format!(
         "Segments\n{rate_hz}\n,,{names}\nFrame,Sub Frame,{}\n,,{}\n",
@@ -104,7 +104,7 @@ fn difference(a: &Csv, b: &Csv) -> [f64; 2] {
 
 fn aligned(recording: &Recording, export: &str, more: &[&str]) -> (Folder, String) {
     let folder = Folder::with("session.csv", recording.session.to_string());
-    folder.write("camera.csv", export.to_owned());
+    folder.write("camera.csv", export);
     let run = folder.done(&[&args(arm())[..], more].concat());
     (folder, run.stdout)
 }

@@ -86,7 +86,7 @@ impl MotionCaptureReader {
             path: path.clone(),
             line: Some(1),
             column: None,
-            problem: SessionProblem::MotionCapture(problem),
+            problem: SessionProblem::MotionCapture(Box::new(problem)),
         };
         let program = Program::of(source.begin()).ok_or_else(|| fail(MotionCaptureProblem::NotAnExport))?;
         let (size_bytes, ends_with_line) = (source.size_bytes, source.ends_with_line()?);

@@ -76,7 +76,7 @@ fn read(path: &Path, selection: &BodySelection) -> Result<Vec<CameraFrame>, Sess
 
 fn refused(text: &str, selection: &BodySelection) -> MotionCaptureProblem {
     match frames(text, selection).expect_err("the export is refused").problem {
-        SessionProblem::MotionCapture(problem) => problem,
+        SessionProblem::MotionCapture(problem) => *problem,
         other => panic!("{other}"),
     }
 }
