@@ -7,6 +7,7 @@ use estimator_core::{FusedOps, Method, SegmentShape};
 use proprio_session::{Error, OutputFile, WrittenFile};
 
 use crate::Outcome;
+use crate::decimal::write_decimal;
 
 /// Writer of estimates.
 pub struct EstimateWriter {
@@ -62,13 +63,17 @@ pub fn write_row<S: FusedOps>(sink: &mut impl Write, outcome: &Outcome<S>) -> io
     write!(sink, "{}", outcome.estimate.time_us as f64 / 1e6)?;
     let smoothed = outcome.smoothed.as_ref().map(|smoothed| &smoothed.shape);
     for SegmentShape { theta, end } in outcome.shapes.iter().chain(smoothed).flatten() {
-        match theta {
-            Some(theta) => write!(sink, ",{:.6}", theta.rad().to_degrees())?,
-            None => write!(sink, ",")?,
+        sink.write_all(b",")?;
+        if let Some(theta) = theta {
+            write_decimal::<6>(sink, theta.rad().to_degrees())?;
         }
-        match end {
-            Some(end) => write!(sink, ",{:.5},{:.5}", end.x.to_f64() * 1e3, end.y.to_f64() * 1e3)?,
-            None => write!(sink, ",,")?,
+        let [x_mm, y_mm] =
+            [end.map(|end| end.x), end.map(|end| end.y)].map(|part| part.map(|part| part.to_f64() * 1e3));
+        for part in [x_mm, y_mm] {
+            sink.write_all(b",")?;
+            if let Some(part) = part {
+                write_decimal::<5>(sink, part)?;
+            }
         }
     }
     writeln!(sink)

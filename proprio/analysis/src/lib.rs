@@ -25,10 +25,12 @@
 //! | `metrics.rs`, `consistency.rs`, `error_histogram.rs` | errors against truth, and against the estimates' covariances |
 //! | `agreement.rs` | a board's estimates compared with a replay |
 //! | `session_metrics.rs`, `estimates.rs` | results for people and programs: metrics, and estimates as CSV |
+//! | `decimal.rs` | decimal numbers as text |
 //! | `report/` | a page of plots |
 
 pub mod agreement;
 pub mod consistency;
+mod decimal;
 mod error;
 pub mod error_histogram;
 pub mod estimates;
