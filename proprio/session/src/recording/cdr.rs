@@ -8,10 +8,15 @@ const HEADER: [u8; 4] = [0, 1, 0, 0];
 pub struct CdrWriter(Vec<u8>);
 
 impl CdrWriter {
+    /// A message without a field.
+    #[must_use]
+    #[expect(clippy::new_without_default, reason = "it is not empty: it has CDR's header")]
     pub fn new() -> Self {
         Self(HEADER.to_vec())
     }
 
+    /// The message.
+    #[must_use]
     pub fn into_bytes(self) -> Vec<u8> {
         self.0
     }
@@ -26,26 +31,32 @@ impl CdrWriter {
         self.0.extend_from_slice(&bytes);
     }
 
+    /// A number of the type `uint8`.
     pub fn u8(&mut self, value: u8) {
         self.put([value]);
     }
 
+    /// A number of the type `uint16`.
     pub fn u16(&mut self, value: u16) {
         self.put(value.to_le_bytes());
     }
 
+    /// A number of the type `int16`.
     pub fn i16(&mut self, value: i16) {
         self.put(value.to_le_bytes());
     }
 
+    /// A number of the type `uint32`.
     pub fn u32(&mut self, value: u32) {
         self.put(value.to_le_bytes());
     }
 
+    /// A number of the type `uint64`.
     pub fn u64(&mut self, value: u64) {
         self.put(value.to_le_bytes());
     }
 
+    /// A number of the type `float64`.
     pub fn f64(&mut self, value: f64) {
         self.put(value.to_le_bytes());
     }

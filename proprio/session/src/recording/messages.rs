@@ -12,14 +12,16 @@ use super::cdr::{CdrReader, CdrWriter};
 use crate::{HostNs, SENSOR_NAMES, Truth, degradations};
 
 /// The frame of the arm's base, {W}: x to the right, y along the tangent, z up.
-const FRAME: &str = "arm_base";
+pub const FRAME: &str = "arm_base";
 
 /// Segments in every sample of versions before 0.3.
 const EARLIER_SEGMENTS: usize = 6;
 /// Bend sensors in every sample of versions before 0.3.
 const EARLIER_SENSORS: usize = EARLIER_SEGMENTS * BEND_PER_SEGMENT;
 
-fn header(stamp: HostNs) -> CdrWriter {
+/// A message that begins with a `std_msgs/Header` in [`FRAME`].
+#[must_use]
+pub fn header(stamp: HostNs) -> CdrWriter {
     let mut cdr = CdrWriter::new();
     cdr.u32((stamp.0 / 1_000_000_000) as u32);
     cdr.u32((stamp.0 % 1_000_000_000) as u32);

@@ -5,7 +5,8 @@
 //!
 //! | file | purpose |
 //! |---|---|
-//! | `writer.rs`, `topics.rs` | writes a recording; the topics of its channels |
+//! | `writer.rs`, `channel.rs`, `topics.rs` | writes a recording; its channels and their topics |
+//! | `board_messages.rs` | the board's messages on their channels, for a file or a live stream |
 //! | `reader.rs`, `read_error.rs` | reads bytes, truth and marks |
 //! | `rows.rs` | the rows of a recording |
 //! | `recover.rs` | recovery of a file that was cut or damaged |
@@ -14,7 +15,9 @@
 //! | `decompress.rs`, `summary.rs` | compressed chunks; the index at a file's end |
 //! | `messages.rs`, `schema.rs`, `cdr.rs` | ROS 2 messages |
 
+mod board_messages;
 mod cdr;
+mod channel;
 #[cfg(test)]
 mod damage_tests;
 mod decompress;
@@ -25,17 +28,19 @@ mod own_channels;
 mod read_error;
 mod reader;
 mod recover;
-
 mod rows;
 mod scanner;
-mod schema;
+pub mod schema;
 mod summary;
 pub mod topics;
 mod window;
 mod writer;
 
+pub use board_messages::{BoardMessages, MessageInfo, MessageSink};
+pub use cdr::CdrWriter;
+pub use channel::{BOARD_CHANNELS, Channel, ROS2_MESSAGE};
 pub use hole::{Hole, HoleTimes};
-pub use messages::chip_number;
+pub use messages::{FRAME, chip_number, header};
 pub use read_error::ReadError;
 pub(crate) use reader::is_damaged_begin;
 pub use reader::{Item, RawReader, Reader, is_recording};

@@ -99,7 +99,7 @@ impl<R: Read> Reader<R> {
             }
             match mcap::parse_record(opcode, body) {
                 Ok(Record::Metadata(metadata)) if are_own(&metadata) => {
-                    self.own = (1..).zip(OWN_CHANNELS.map(|(topic, _)| topic)).collect();
+                    self.own = (1..).zip(OWN_CHANNELS.map(|channel| channel.topic)).collect();
                 }
                 Ok(Record::Channel(channel)) => {
                     self.topics.insert(channel.id, channel.topic);
