@@ -8,6 +8,8 @@ from pathlib import Path
 
 from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
+from rosbags.highlevel import AnyReader
+from rosbags.typesys import Stores, get_typestore
 
 folder, table = Path(sys.argv[1]), Path(sys.argv[2])
 SENSORS = [f"bend{i}{name}_adc" for i in range(1, 7) for name in "ab"]
@@ -85,14 +87,14 @@ with open(folder / "session.mcap", "rb") as file:
     statistics = reader.get_summary().statistics
     attachments = {attachment.name: attachment.data for attachment in reader.iter_attachments()}
     metadata = {entry.name: entry.metadata for entry in reader.iter_metadata()}
-    raw = [message for _, _, message in reader.iter_messages(topics=["/proprio/raw"])]
+    raw = [(message, content) for _, _, message, content in reader.iter_decoded_messages(topics=["/proprio/raw"])]
     topics = ["/proprio/samples", "/joint_states", "/proprio/shape", "/proprio/uncertainty", "/diagnostics"]
     decoded = {topic: [] for topic in topics}
     for _, channel, message, content in reader.iter_decoded_messages(topics=topics):
         decoded[channel.topic].append((message, content))
 
-assert b"".join(message.data for message in raw) == (folder / "session.bin").read_bytes()
-assert all(before.log_time <= after.log_time for before, after in zip(raw, raw[1:]))
+assert b"".join(bytes(content.data) for _, content in raw) == (folder / "session.bin").read_bytes()
+assert all(before.log_time <= after.log_time for (before, _), (after, _) in zip(raw, raw[1:]))
 assert statistics.message_count == len(raw) + sum(map(len, decoded.values()))
 assert statistics.chunk_count >= 5, "a chunk a second"
 
@@ -114,6 +116,11 @@ for _, diagnostics in decoded["/diagnostics"]:
 for message, content in [entry for entries in decoded.values() for entry in entries]:
     stamp = content.header.stamp
     assert stamp.sec * 10**9 + stamp.nanosec == message.publish_time <= message.log_time
+
+# As a bag of ROS 2, in which every message is one.
+with AnyReader([folder / "session.mcap"], default_typestore=get_typestore(Stores.ROS2_HUMBLE)) as bag:
+    deserialised = [bag.deserialize(data, connection.msgtype) for connection, _, data in bag.messages()]
+assert len(deserialised) == statistics.message_count
 
 assert attachments["table.toml"] == table.read_bytes()
 assert json.loads(attachments["hello-boot-1.json"])["arm"] == "planar-6"

@@ -75,6 +75,12 @@ impl CdrWriter {
         self.0.push(0);
     }
 
+    /// A sequence of bytes.
+    pub fn bytes(&mut self, bytes: &[u8]) {
+        self.length(bytes.len());
+        self.0.extend_from_slice(bytes);
+    }
+
     /// Length of a sequence, whose items follow.
     pub fn length(&mut self, length: usize) {
         self.u32(length as u32);
@@ -120,12 +126,17 @@ impl<'b> CdrReader<'b> {
         self.take().map(u32::from_le_bytes)
     }
 
+    /// A sequence of bytes.
+    pub fn bytes(&mut self) -> Option<&'b [u8]> {
+        let length = self.length()?;
+        let bytes = self.body.get(self.at..)?.get(..length)?;
+        self.at += length;
+        Some(bytes)
+    }
+
     /// A string, without the zero that ends it.
     pub fn string(&mut self) -> Option<&'b str> {
-        let length = self.u32()? as usize;
-        let text = self.body.get(self.at..)?.get(..length)?;
-        self.at += length;
-        std::str::from_utf8(text.strip_suffix(&[0])?).ok()
+        std::str::from_utf8(self.bytes()?.strip_suffix(&[0])?).ok()
     }
 
     /// Length of a sequence, whose items follow.

@@ -3,42 +3,32 @@
 use super::schema::{self, Schema};
 use super::topics;
 
-/// Encoding of received bytes.
-const BYTES: &str = "application/octet-stream";
 /// Encoding of messages of ROS 2.
-const CDR: &str = "cdr";
+pub const CDR: &str = "cdr";
 /// Encoding of their schemas.
 pub const ROS2_MESSAGE: &str = "ros2msg";
+/// Profile of a recording whose messages are all of ROS 2.
+pub const ROS2_PROFILE: &str = "ros2";
 
-/// A channel of a recording or of a live stream.
+/// A channel of a recording or of a live stream, of messages of ROS 2 in [`CDR`].
 #[derive(Debug)]
 pub struct Channel {
     /// Its topic, which no other channel has.
     pub topic: &'static str,
-    /// Schema of its messages, which are those of ROS 2 in CDR; `None`: received bytes.
-    pub schema: Option<&'static Schema>,
+    /// Schema of its messages.
+    pub schema: &'static Schema,
 }
 
 impl Channel {
-    /// A channel of messages of ROS 2.
+    /// A channel.
     #[must_use]
     pub const fn new(topic: &'static str, schema: &'static Schema) -> Self {
-        Self { topic, schema: Some(schema) }
-    }
-
-    const fn of_bytes(topic: &'static str) -> Self {
-        Self { topic, schema: None }
-    }
-
-    /// Encoding of its messages, by its name in MCAP.
-    #[must_use]
-    pub const fn encoding(&self) -> &'static str {
-        if self.schema.is_some() { CDR } else { BYTES }
+        Self { topic, schema }
     }
 }
 
-pub static RAW: Channel = Channel::of_bytes(topics::RAW);
-pub static HISTORY: Channel = Channel::of_bytes(topics::HISTORY);
+pub static RAW: Channel = Channel::new(topics::RAW, &schema::UINT8_MULTI_ARRAY);
+pub static HISTORY: Channel = Channel::new(topics::HISTORY, &schema::UINT8_MULTI_ARRAY);
 pub static SAMPLES: Channel = Channel::new(topics::SAMPLES, &schema::SAMPLE);
 pub static JOINT_STATES: Channel = Channel::new(topics::JOINT_STATES, &schema::JOINT_STATE);
 pub static SHAPE: Channel = Channel::new(topics::SHAPE, &schema::POSE_ARRAY);

@@ -158,6 +158,25 @@ pub fn diagnostics(stamp: HostNs, health: &Health, hello: Option<&Hello>) -> Vec
     cdr.into_bytes()
 }
 
+/// `std_msgs/msg/UInt8MultiArray` of received bytes.
+pub fn bytes(bytes: &[u8]) -> Vec<u8> {
+    let mut cdr = CdrWriter::new();
+    // No dimension, no offset.
+    cdr.length(0);
+    cdr.u32(0);
+    cdr.bytes(bytes);
+    cdr.into_bytes()
+}
+
+/// The bytes in a `std_msgs/msg/UInt8MultiArray`; `None` where it is none: recordings of version 0.1 hold the bytes themselves. Bytes
+/// of a board do not have its form: that begins with twelve bytes, ten of them 0, which end a frame each.
+pub fn read_bytes(message: &[u8]) -> Option<&[u8]> {
+    let mut cdr = CdrReader::new(message)?;
+    let (dimensions, offset) = (cdr.length()?, cdr.u32()?);
+    let bytes = cdr.bytes().filter(|_| dimensions == 0 && offset == 0)?;
+    cdr.is_at_end().then_some(bytes)
+}
+
 /// `std_msgs/msg/String`.
 pub fn mark(text: &str) -> Vec<u8> {
     let mut cdr = CdrWriter::new();
@@ -274,7 +293,7 @@ pub fn read_truth(message: &[u8]) -> Option<Vec<Option<Truth>>> {
 mod tests {
     use telemetry::Sample;
 
-    use super::{CdrWriter, HostNs, Truth, header, read_sample, read_truth, sample, truth};
+    use super::{CdrWriter, HostNs, Truth, bytes, header, read_bytes, read_sample, read_truth, sample, truth};
 
     /// Readings of so many segments; the first sensor and the last IMU are missing.
     fn sent(segments: u16) -> Sample {
@@ -310,6 +329,14 @@ mod tests {
         let whole = sample(HostNs(5), &sent(3));
         assert!((0..whole.len()).all(|length| read_sample(&whole[..length]).is_none()));
         assert_eq!(read_sample(&[&whole[..], &[0]].concat()), None);
+    }
+
+    #[test]
+    fn received_bytes_are_read_back_and_those_of_version_0_1_are_told_apart() {
+        for received in [&[][..], &[0], &[3, 1, 2, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0]] {
+            assert_eq!(read_bytes(&bytes(received)), Some(received));
+            assert_eq!(read_bytes(received), None);
+        }
     }
 
     #[test]

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use mcap::records::{self, Metadata, SchemaHeader};
 
-use super::channel::{Channel, DIAGNOSTICS, JOINT_STATES, RAW, ROS2_MESSAGE, SAMPLES, SHAPE, UNCERTAINTY};
+use super::channel::{CDR, Channel, DIAGNOSTICS, JOINT_STATES, RAW, ROS2_MESSAGE, SAMPLES, SHAPE, UNCERTAINTY};
 use super::summary::Summary;
 
 /// The channels in the order of their numbers, from 1.
@@ -22,17 +22,13 @@ pub fn are_own(metadata: &Metadata) -> bool {
 impl Summary {
     /// Adds the channels of a recording of proprio that are not in the index.
     pub fn add_own_channels(&mut self) {
-        let mut schemas = 0;
         for (id, channel) in (1..).zip(OWN_CHANNELS) {
-            let schema_id = channel.schema.map_or(0, |schema| {
-                schemas += 1;
-                let header =
-                    SchemaHeader { id: schemas, name: schema.name.to_owned(), encoding: ROS2_MESSAGE.to_owned() };
-                self.schemas.entry(schemas).or_insert_with(|| (header, schema.text().into_bytes()));
-                schemas
-            });
-            let (topic, message_encoding) = (channel.topic.to_owned(), channel.encoding().to_owned());
-            let channel = records::Channel { id, schema_id, topic, message_encoding, metadata: BTreeMap::new() };
+            // Each has a schema of its own, so that their numbers are the same.
+            let schema = channel.schema;
+            let header = SchemaHeader { id, name: schema.name.to_owned(), encoding: ROS2_MESSAGE.to_owned() };
+            self.schemas.entry(id).or_insert_with(|| (header, schema.text().into_bytes()));
+            let (topic, message_encoding) = (channel.topic.to_owned(), CDR.to_owned());
+            let channel = records::Channel { id, schema_id: id, topic, message_encoding, metadata: BTreeMap::new() };
             self.channels.entry(id).or_insert(channel);
         }
     }

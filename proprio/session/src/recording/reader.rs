@@ -153,14 +153,19 @@ impl<R: Read> Iterator for Reader<R> {
 /// The item in a message; `None` on other channels.
 fn item(topic: &str, at: HostNs, sequence: u32, data: &[u8]) -> Result<Option<Item>, ReadError> {
     let item = match topic {
-        RAW => Some(Item::Bytes(at, data.to_vec())),
-        HISTORY => Some(Item::History(at, data.to_vec())),
+        RAW => Some(Item::Bytes(at, received(data))),
+        HISTORY => Some(Item::History(at, received(data))),
         SAMPLES => messages::read_sample(data).map(|sample| Item::Sample(at, sample)),
         TRUTH => messages::read_truth(data).map(|ends| Item::Truth(sequence, ends)),
         MARKS => messages::read_mark(data).map(|text| Item::Mark(at, text)),
         _ => return Ok(None),
     };
     item.map(Some).ok_or_else(|| ReadError::Damaged(format!("a message on {topic} cannot be decoded")))
+}
+
+/// The received bytes in a message.
+fn received(data: &[u8]) -> Vec<u8> {
+    messages::read_bytes(data).unwrap_or(data).to_vec()
 }
 
 /// Reader of a raw file: received bytes without times.

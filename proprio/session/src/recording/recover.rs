@@ -7,12 +7,16 @@ use mcap::records::Record;
 use mcap::write::NoSeek;
 use mcap::{Attachment, McapError, WriteOptions};
 
+use super::form;
 use super::hole::Hole;
 use super::own_channels::are_own;
 use super::read_error::ReadError;
 use super::scanner::{Part, Scanner};
 use super::summary::Summary;
 use super::writer::io_error;
+
+/// Length that no header reaches, bytes: it has two short names.
+const LONGEST_HEADER: u64 = 1 << 10;
 
 /// Result of a recovery.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -83,7 +87,8 @@ pub enum RecoverError {
 pub fn recover(mut source: impl Read + Seek, sink: impl Write) -> Result<Recovery, RecoverError> {
     let summary = Summary::of(&mut source).map_err(RecoverError::Read)?;
     let library = format!("proprio {} recover", env!("CARGO_PKG_VERSION"));
-    let options_out = WriteOptions::new().compression(None).library(library).disable_seeking(true);
+    let profile = profile(&mut source).map_err(RecoverError::Read)?;
+    let options_out = WriteOptions::new().compression(None).profile(profile).library(library).disable_seeking(true);
     let mcap = options_out.create(NoSeek::new(sink)).map_err(sink_error)?;
     let statistics = summary.statistics.as_ref();
     let recorded = statistics.map(|statistics| statistics.message_count);
@@ -115,6 +120,16 @@ pub fn recover(mut source: impl Read + Seek, sink: impl Write) -> Result<Recover
     done.index_was_damaged = scanner.index_is_damaged();
     done.start_ns = start_ns.or(done.times_ns.map(|(first, _)| first)).unwrap_or_default();
     Ok(done)
+}
+
+/// The profile of a file by its header, which is its first record; none where that is damaged. Goes back to the file's begin.
+fn profile(file: &mut (impl Read + Seek)) -> io::Result<String> {
+    let mut begin = Vec::new();
+    file.by_ref().take(LONGEST_HEADER).read_to_end(&mut begin)?;
+    file.rewind()?;
+    let header = begin.get(mcap::MAGIC.len()..).and_then(form::split_record);
+    let header = header.and_then(|(opcode, body, _)| mcap::parse_record(opcode, body).ok());
+    Ok(if let Some(Record::Header(header)) = header { header.profile } else { String::new() })
 }
 
 fn source_error(error: ReadError) -> RecoverError {

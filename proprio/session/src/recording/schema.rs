@@ -79,6 +79,15 @@ pub(super) static SET_POINTS: Schema = Schema {
 pub(super) static STRING: Schema =
     Schema { name: "std_msgs/msg/String", definition: include_str!("definitions/String.msg"), needs: &[] };
 
+pub(super) static UINT8_MULTI_ARRAY: Schema = Schema {
+    name: "std_msgs/msg/UInt8MultiArray",
+    definition: include_str!("definitions/UInt8MultiArray.msg"),
+    needs: &[
+        ("std_msgs/MultiArrayLayout", include_str!("definitions/MultiArrayLayout.msg")),
+        ("std_msgs/MultiArrayDimension", include_str!("definitions/MultiArrayDimension.msg")),
+    ],
+};
+
 impl Schema {
     /// The definition and all that it contains, in MCAP's encoding `ros2msg`.
     #[must_use]

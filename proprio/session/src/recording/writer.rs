@@ -10,7 +10,7 @@ use mcap::{Attachment, McapError, WriteOptions};
 use telemetry::{Hello, Message, SCHEMA, SetPressures};
 
 use super::board_messages::{BoardMessages, MessageInfo, MessageSink};
-use super::channel::{Channel, HISTORY, MARKS, RAW, ROS2_MESSAGE, SET_POINTS, TRUTH};
+use super::channel::{CDR, Channel, HISTORY, MARKS, RAW, ROS2_MESSAGE, ROS2_PROFILE, SET_POINTS, TRUTH};
 use super::messages;
 use super::own_channels::{METADATA, OWN_CHANNELS};
 use crate::{HostNs, Truth};
@@ -91,7 +91,8 @@ impl<W: Write> Recorder<W> {
 
     fn raw_bytes(&mut self, channel: &'static Channel, at: HostNs, bytes: &[u8]) -> io::Result<()> {
         self.raw_messages = self.raw_messages.wrapping_add(1);
-        self.file.write(channel, MessageInfo { sequence: self.raw_messages, at, stamp: at }, bytes)
+        let info = MessageInfo { sequence: self.raw_messages, at, stamp: at };
+        self.file.write(channel, info, &messages::bytes(bytes))
     }
 
     /// Writes a message that was decoded from them.
@@ -180,6 +181,7 @@ impl<W: Write> McapFile<W> {
         // Chunks are put together in memory, so that the file only grows. Compression would need a C compiler.
         let options = WriteOptions::new()
             .compression(None)
+            .profile(ROS2_PROFILE)
             .library(format!("proprio {}", env!("CARGO_PKG_VERSION")))
             .chunk_size(None)
             .disable_seeking(true);
@@ -204,11 +206,9 @@ impl<W: Write> McapFile<W> {
         if let Some((_, id)) = self.channels.iter().find(|(topic, _)| *topic == channel.topic) {
             return Ok(*id);
         }
-        let schema = match channel.schema {
-            Some(schema) => self.mcap.add_schema(schema.name, ROS2_MESSAGE, schema.text().as_bytes()),
-            None => Ok(0),
-        };
-        let id = schema.and_then(|id| self.mcap.add_channel(id, channel.topic, channel.encoding(), &BTreeMap::new()));
+        let schema = channel.schema;
+        let schema = self.mcap.add_schema(schema.name, ROS2_MESSAGE, schema.text().as_bytes());
+        let id = schema.and_then(|id| self.mcap.add_channel(id, channel.topic, CDR, &BTreeMap::new()));
         let id = id.map_err(io_error)?;
         self.channels.push((channel.topic, id));
         Ok(id)
