@@ -14,8 +14,7 @@ const LARGEST: f64 = 9_007_199_254_740_992.0;
 /// Errors of `sink`.
 pub fn write_decimal<const DIGITS: usize>(sink: &mut impl Write, number: f64) -> io::Result<()> {
     let scaled = number.abs() * 10_u64.pow(DIGITS as u32) as f64;
-    // False for NaN, too.
-    if !(scaled < LARGEST) {
+    if scaled.is_nan() || scaled >= LARGEST {
         return write!(sink, "{number:.DIGITS$}");
     }
     let mut rest = scaled.round_ties_even() as u64;

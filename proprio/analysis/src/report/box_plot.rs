@@ -28,6 +28,7 @@ pub fn figure<'s>(sessions: impl Iterator<Item = (&'s str, &'s ErrorMetrics)>, a
              truth, all together: {}.",
             samples.join(", ")
         ),
+        is_drawn: true,
         panels,
     }
 }
@@ -50,7 +51,7 @@ fn panel(session: Option<String>, errors: &ErrorMetrics) -> Panel {
         Some(Series { name: name.to_owned(), colour, marks })
     });
     let count = tips(errors).count();
-    let x = Axis { title: "method", range: [-0.6, count as f64 - 0.4], names: &NAMES[..count] };
+    let x = Axis { title: "method", range: [-0.6, count as f64 - 0.4], names: &NAMES[..count], is_log: false };
     Panel {
         name: String::new(),
         title: session.clone().unwrap_or_else(|| "all sessions together".to_owned()),

@@ -6,8 +6,11 @@
 use std::cmp::Reverse;
 
 use plotters::chart::{ChartBuilder, ChartContext};
+use plotters::coord::ranged1d::ValueFormatter;
 use plotters::coord::types::RangedCoordf64;
-use plotters::prelude::{Cartesian2d, Circle, EmptyElement, IntoDrawingArea, PathElement, Polygon, SVGBackend};
+use plotters::prelude::{
+    Cartesian2d, Circle, EmptyElement, IntoDrawingArea, IntoLogRange, PathElement, Polygon, Ranged, SVGBackend,
+};
 use plotters::style::Color;
 use plotters::style::text_anchor::{HPos, VPos};
 
@@ -19,7 +22,7 @@ use super::plot::{Colour, Marks, Panel, Series, Size};
 const LABELS_PX: [i32; 2] = [62, 44];
 /// Half the width of a box on an axis of names.
 const HALF_BOX: f64 = 0.27;
-type Chart<'c, 's> = ChartContext<'c, SVGBackend<'s>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
+type Chart<'c, 's, Y> = ChartContext<'c, SVGBackend<'s>, Cartesian2d<RangedCoordf64, Y>>;
 /// Draws a panel.
 ///
 /// # Panics
@@ -43,19 +46,27 @@ fn draw(panel: &Panel, svg: &mut String) -> Drawn {
 
 fn draw_plot(area: &Area, panel: &Panel) -> Drawn {
     let [left, bottom] = LABELS_PX.map(|px| px * PX);
-    let margin = MARGIN_PX * PX;
     let (x, y) = ranges(area, panel);
-    let mut chart = ChartBuilder::on(area)
-        .margin(margin)
-        .x_label_area_size(bottom)
-        .y_label_area_size(left)
-        .build_cartesian_2d(x[0]..x[1], y[0]..y[1])?;
+    let mut builder = ChartBuilder::on(area);
+    builder.margin(MARGIN_PX * PX).x_label_area_size(bottom).y_label_area_size(left);
+    if panel.y.is_log {
+        draw_chart(builder.build_cartesian_2d(x[0]..x[1], (y[0]..y[1]).log_scale())?, panel)
+    } else {
+        draw_chart(builder.build_cartesian_2d(x[0]..x[1], y[0]..y[1])?, panel)
+    }
+}
+
+fn draw_chart<Y>(mut chart: Chart<'_, '_, Y>, panel: &Panel) -> Drawn
+where
+    Y: Ranged<ValueType = f64> + ValueFormatter<f64>,
+{
     let (names, text) = (panel.x.names, text(HPos::Center, VPos::Center));
     let number = |value: &f64| number(*value);
     let name = |value: &f64| names.get(value.round() as usize).map_or_else(String::new, |name| (*name).to_owned());
     let mut mesh = chart.configure_mesh();
     mesh.axis_style(Colour::Ink.stroke(10))
         .bold_line_style(Colour::Grid.stroke(8))
+        .light_line_style(Colour::Grid.stroke(8))
         .max_light_lines(0)
         .label_style(text.clone())
         .axis_desc_style(text)
@@ -72,7 +83,8 @@ fn draw_plot(area: &Area, panel: &Panel) -> Drawn {
     }
     let mut layers: Vec<&Series> = panel.series.iter().collect();
     layers.sort_by_key(|series| layer(series));
-    layers.into_iter().try_for_each(|series| draw_series(&mut chart, series))
+    let floor = if panel.y.is_log { panel.y.range[0] } else { f64::NEG_INFINITY };
+    layers.into_iter().try_for_each(|series| draw_series(&mut chart, series, floor))
 }
 
 /// Layer of the marks: areas below, then lines, broad ones first.
@@ -102,19 +114,21 @@ fn ranges(area: &Area, panel: &Panel) -> ([f64; 2], [f64; 2]) {
     (grown(x, width), grown(y, height))
 }
 
-fn draw_series(chart: &mut Chart<'_, '_>, series: &Series) -> Drawn {
+/// Draws the marks; of lines and areas nothing below `floor`, which a logarithmic axis cannot show.
+fn draw_series<Y: Ranged<ValueType = f64>>(chart: &mut Chart<'_, '_, Y>, series: &Series, floor: f64) -> Drawn {
     let colour = series.colour;
     match &series.marks {
         Marks::Line { points, .. } => {
             let style = colour.line();
             for run in runs(points) {
+                let run: Vec<_> = run.into_iter().map(|(x, y)| (x, y.max(floor))).collect();
                 chart.draw_series([PathElement::new(run, style)])?;
             }
         }
         Marks::Band { points, .. } => {
             for run in runs(points) {
-                let low = run.iter().map(|(x, [low, _])| (*x, *low));
-                let high = run.iter().rev().map(|(x, [_, high])| (*x, *high));
+                let low = run.iter().map(|(x, [low, _])| (*x, low.max(floor)));
+                let high = run.iter().rev().map(|(x, [_, high])| (*x, high.max(floor)));
                 chart.draw_series([Polygon::new(low.chain(high).collect::<Vec<_>>(), colour.drawn().mix(0.22))])?;
             }
         }

@@ -1,4 +1,4 @@
-//! Drift of the raw IMUs and its correction, segment by segment.
+//! Bend angles of the raw IMUs and of the corrected ones, segment by segment, as numbers.
 
 use std::collections::VecDeque;
 
@@ -148,13 +148,14 @@ pub fn figure<'s>(sessions: impl Iterator<Item = (&'s str, u64, &'s Drift)>) -> 
     }
     Figure {
         name: "drift",
-        title: "Drift of the IMUs and its correction",
+        title: "Bend angles of the IMUs and of their correction",
         caption: format!(
             "Moving averages of the bend angles over the anchor's window, {window_s} s, {samples} samples in bins of equally many: raw IMUs \
              (imu_o), IMUs whose drift bend sensors correct (imu_c), bend sensors and truth, where they are known. Of each \
              session the segment that drifts most is large, with its last {END_S} s as they are. Drift is the largest \
              distance of imu_o's average from the truth's, or from the bend sensors' where there is no truth."
         ),
+        is_drawn: false,
         panels,
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! | file | purpose |
 //! |---|---|
-//! | `box_plot.rs`, `drift.rs`, `v_orient.rs`, `tip_error.rs`, `shapes.rs` | the figures |
+//! | `box_plot.rs`, `drift_error.rs`, `drift.rs`, `v_orient.rs`, `tip_error.rs`, `shapes.rs` | the figures |
 //! | `downsample.rs`, `average.rs` | long sessions in bounded memory |
 //! | `plot.rs` | contents of a figure |
 //! | `draw.rs`, `legend.rs`, `canvas.rs`, `page.rs`, `style.css` | drawing as SVG, on a page |
@@ -14,6 +14,7 @@ mod canvas;
 mod downsample;
 mod draw;
 mod drift;
+mod drift_error;
 mod export;
 mod legend;
 mod page;
@@ -29,6 +30,7 @@ use proprio_session::{LoadedTable, Progress, Row};
 use serde::Serialize;
 
 use self::drift::Drift;
+use self::drift_error::DriftErrors;
 use self::plot::Figure;
 use self::shapes::Shapes;
 use self::tip_error::TipErrors;
@@ -55,6 +57,7 @@ struct Session {
     summary: SessionSummary,
     errors: ErrorMetrics,
     drift: Drift,
+    drift_errors: DriftErrors,
     tip_errors: TipErrors,
     shapes: Shapes,
     findings: Vec<Finding>,
@@ -109,7 +112,8 @@ impl<'t> ReportBuilder<'t> {
     pub fn add(&mut self, path: &Path, progress: &mut dyn Progress) -> Result<SessionSummary, Error> {
         let table = &self.table.file;
         let mut errors = ErrorMetrics::new(table.length_mm());
-        let (mut drift, mut tip_errors, mut shapes) = (Drift::new(table), TipErrors::new(), Shapes::new(table));
+        let (mut drift, mut drift_errors) = (Drift::new(table), DriftErrors::new(table));
+        let (mut tip_errors, mut shapes) = (TipErrors::new(), Shapes::new(table));
         let readings = &mut self.readings;
         let mut check = SessionCheck::new(self.table)?;
         let visit = |row: &Row, outcome: &Outcome<Q>| {
@@ -117,6 +121,7 @@ impl<'t> ReportBuilder<'t> {
             errors.add(row, outcome);
             if row.is_comparable() {
                 drift.add(row, outcome);
+                drift_errors.add(row, outcome);
             }
             tip_errors.add(row, outcome);
             shapes.add(row, outcome);
@@ -135,6 +140,7 @@ impl<'t> ReportBuilder<'t> {
             summary: summary.clone(),
             errors,
             drift,
+            drift_errors,
             tip_errors,
             shapes,
             findings: check.findings(),
@@ -176,6 +182,7 @@ impl<'t> ReportBuilder<'t> {
             findings: self.findings(),
             figures: vec![
                 box_plot::figure(sessions.iter().map(|s| (s.name.as_str(), &s.errors)), all),
+                drift_error::figure(sessions.iter().map(|s| (s.name.as_str(), s.summary.samples, &s.drift_errors))),
                 drift::figure(sessions.iter().map(|s| (s.name.as_str(), s.summary.samples, &s.drift))),
                 readings.figure(),
                 tip_error::figure(sessions.iter().map(|s| (s.name.as_str(), s.summary.samples, &s.tip_errors))),

@@ -34,7 +34,7 @@ impl Report {
                         (self.findings())
                         (self.table())
                         (self.covariances())
-                        @for (number, figure) in (1..).zip(&self.figures) { (section(number, figure)) }
+                        @for (number, figure) in (1..).zip(self.figures.iter().filter(|figure| figure.is_drawn)) { (section(number, figure)) }
                     }
                     footer { "proprio " (self.proprio) }
                 }

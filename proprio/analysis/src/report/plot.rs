@@ -12,6 +12,9 @@ pub struct Figure {
     pub title: &'static str,
     /// Description of the figure, with the number of samples.
     pub caption: String,
+    /// True where the page shows it; else JSON and CSV alone have it.
+    #[serde(skip)]
+    pub is_drawn: bool,
     pub panels: Vec<Panel>,
 }
 
@@ -55,6 +58,8 @@ pub struct Axis {
     pub range: [f64; 2],
     /// Names instead of numbers, at 0, 1, ….
     pub names: &'static [&'static str],
+    /// Logarithmic; marks below the range are drawn at its begin.
+    pub is_log: bool,
 }
 
 /// Marks of one colour.
@@ -119,7 +124,12 @@ pub const SMOOTHED: &str = "smoothed";
 impl Axis {
     /// Numbers over `range`.
     pub fn new(title: &'static str, range: [f64; 2]) -> Self {
-        Self { title, range, names: &[] }
+        Self { title, range, names: &[], is_log: false }
+    }
+
+    /// Positive numbers over `range`, on a logarithmic scale.
+    pub fn log(title: &'static str, range: [f64; 2]) -> Self {
+        Self { is_log: true, ..Self::new(title, range) }
     }
 }
 

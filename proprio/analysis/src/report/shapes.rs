@@ -223,6 +223,7 @@ pub fn figure<'s>(sessions: impl Iterator<Item = (&'s str, &'s Shapes, &'s Error
         caption: format!(
             "The arm in the world frame, base at the origin; a millimetre is as long on both axes. {moments}"
         ),
+        is_drawn: true,
         panels,
     }
 }

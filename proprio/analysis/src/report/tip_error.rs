@@ -10,6 +10,8 @@ use crate::metrics::{smoothed_tip_error_m, tip_errors_m};
 
 /// Fewest bins of a session: with more, five areas cannot be distinguished.
 const BINS: usize = 100;
+/// Least error on the axis, mm: a sixth of the error of a camera's marker.
+const LEAST_MM: f64 = 0.1;
 const CHANNELS: usize = ESTIMATES.len();
 
 /// Tip errors of one session, mm.
@@ -38,9 +40,17 @@ impl TipErrors {
         let all: Vec<Series> = bands.chain(means).collect();
         let [x, [_, largest]] = extent(&all);
         let x = Axis::new("time, s", x);
-        let y = Axis::new("tip error, mm", [0.0, 1.05 * largest]);
+        let y = Axis::log("tip error, mm", self.range_mm(&known, largest));
         let (session, title, name, facts) = (Some(session.to_owned()), session.to_owned(), String::new(), Vec::new());
         (!all.is_empty()).then_some(Panel { session, name, title, facts, size: Size::Half, x, y, series: all })
+    }
+
+    /// Range of the axis: half the least mean of a bin, at least 0.1 mm and a tenth of the largest error, to that.
+    fn range_mm(&self, channels: &[usize], largest_mm: f64) -> [f64; 2] {
+        let means = channels.iter().flat_map(|channel| self.0.bins().iter().filter_map(|bin| bin.mean(*channel)));
+        let least_mm = means.fold(f64::INFINITY, f64::min);
+        let largest_mm = largest_mm.max(10.0 * LEAST_MM);
+        [(0.5 * least_mm).clamp(LEAST_MM, 0.1 * largest_mm), 1.05 * largest_mm]
     }
 
     fn band(&self, channel: usize) -> Marks {
@@ -69,8 +79,9 @@ pub fn figure<'s>(sessions: impl Iterator<Item = (&'s str, u64, &'s TipErrors)>)
         title: "Tip error against time",
         caption: format!(
             "Distance of the tip from its true place, {samples} samples in bins of equally many: line, mean of a bin; \
-             area, from its least to its largest error, so that every peak is seen."
+             area, from its least to its largest error, so that every peak is seen. The scale is logarithmic."
         ),
+        is_drawn: true,
         panels,
     }
 }

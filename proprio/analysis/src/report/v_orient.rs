@@ -58,6 +58,7 @@ impl Readings {
             name: "v_orient",
             title: "V–Orient maps",
             caption: format!("Line: the table's map from a sensor's voltage to its segment's bend angle. {data}"),
+            is_drawn: true,
             panels: self.0.iter().map(SensorReadings::panel).collect(),
         }
     }

@@ -99,13 +99,7 @@ fn every_figure_has_its_panels_with_axes_units_and_a_legend() {
     let page = page_of(&two_sessions(), &["one.csv", "two.csv"], table());
     let figures: [Expected; 5] = [
         ("boxes", 3, "method", &["tip error, mm"], &["bend", "imu_o", "imu_c", "fusion", "RMSE"]),
-        (
-            "drift",
-            2 * 7,
-            "time, s",
-            &["bend angle, moving average, deg", "bend angle, deg"],
-            &["truth", "bend", "imu_o", "imu_c"],
-        ),
+        ("drift_error", 2 * 6, "time, s", &["bend angle from the true one, deg"], &["bend", "imu_o", "imu_c"]),
         ("v_orient", 12, "voltage, V", &["bend angle, deg"], &["true angle", "map"]),
         ("tip_error", 2, "time, s", &["tip error, mm"], &["bend", "imu_o", "imu_c", "fusion"]),
         ("shapes", 2 * 4, "x, mm", &["y, mm"], &["truth", "bend", "fusion", "fusion 75 %"]),
@@ -173,9 +167,11 @@ fn a_session_without_truth_has_drift_and_shapes_and_is_named() {
     let page = page(&blind());
     assert_well_formed(&page);
     assert!(page.contains("session.csv has no truth"));
-    let panels = ["boxes", "drift", "v_orient", "tip_error", "shapes"].map(|figure| drawings(&page, figure).len());
-    assert_eq!(panels, [0, 7, 12, 0, 4]);
-    assert!(drawings(&page, "drift").iter().all(|drawing| !texts(drawing).contains(&"truth")));
+    let panels =
+        ["boxes", "drift_error", "v_orient", "tip_error", "shapes"].map(|figure| drawings(&page, figure).len());
+    assert_eq!(panels, [0, 6, 12, 0, 4]);
+    let title = "bend angle from the bend sensors, deg";
+    assert!(drawings(&page, "drift_error").iter().all(|drawing| texts(drawing).contains(&title)));
 }
 
 #[test]
@@ -205,8 +201,9 @@ fn a_table_without_bend_sensors_shows_imu_o_alone() {
     let page = page_of(&folder, &["session.csv"], "bare.toml");
     assert_well_formed(&page);
     assert!(page.contains("The table has no bend sensors"));
-    let panels = ["boxes", "drift", "v_orient", "tip_error", "shapes"].map(|figure| drawings(&page, figure).len());
-    assert_eq!(panels, [2, 7, 0, 1, 4]);
+    let panels =
+        ["boxes", "drift_error", "v_orient", "tip_error", "shapes"].map(|figure| drawings(&page, figure).len());
+    assert_eq!(panels, [2, 6, 0, 1, 4]);
     let errors = texts(drawings(&page, "tip_error")[0]);
     assert!(errors.contains(&"imu_o") && !errors.contains(&"fusion"), "{errors:?}");
 }
@@ -230,7 +227,7 @@ fn arms_of_one_and_of_sixteen_segments_are_shown() {
     for segments in [1, 16] {
         let page = page_of(&still(segments), &["session.csv"], "table.toml");
         assert_well_formed(&page);
-        assert_eq!(drawings(&page, "drift").len(), segments + 1);
+        assert_eq!(drawings(&page, "drift_error").len(), segments);
         assert_eq!(drawings(&page, "v_orient").len(), segments);
         assert_eq!(drawings(&page, "shapes").len(), 4);
     }
