@@ -231,6 +231,9 @@ pub struct ReportArgs {
     /// Write the numbers of the figures as CSV, one row per number
     #[arg(long, value_name = "FILE.csv")]
     pub csv: Option<PathBuf>,
+    /// Write each plot as an SVG file for a paper into this folder, which is made
+    #[arg(long, value_name = "FOLDER")]
+    pub figures: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]

@@ -9,11 +9,13 @@ use crate::metrics::ErrorMetrics;
 /// Names below the boxes.
 const NAMES: [&str; ESTIMATES.len()] = ["bend", "imu_o", "imu_c", "fusion", SMOOTHED];
 
-/// The figure of the sessions' names and errors, and of all sessions together.
+/// The figure of the sessions' names and errors, and of all sessions together where there are several.
 pub fn figure<'s>(sessions: impl Iterator<Item = (&'s str, &'s ErrorMetrics)>, all: &ErrorMetrics) -> Figure {
-    let of_sessions = sessions.map(|(name, errors)| panel(Some(name.to_owned()), errors));
-    let together = panel(None, all);
-    let mut panels: Vec<Panel> = of_sessions.chain([together]).filter(|panel| !panel.series.is_empty()).collect();
+    let mut panels: Vec<Panel> = sessions.map(|(name, errors)| panel(Some(name.to_owned()), errors)).collect();
+    if panels.len() > 1 {
+        panels.push(panel(None, all));
+    }
+    panels.retain(|panel| !panel.series.is_empty());
     let [_, [_, largest]] = extent(panels.iter().flat_map(|panel| &panel.series));
     for panel in &mut panels {
         panel.y.range = [0.0, 1.05 * largest];

@@ -30,13 +30,15 @@ impl Size {
             Self::Half => [560, 360],
             Self::Third => [380, 300],
             Self::Quarter => [300, 420],
+            Self::Column => [391, 300],
+            Self::Page => [820, 330],
         }
     }
 
     /// Fewest rows of the legend, so that plots of one size have the same layout.
     pub const fn legend_rows(self) -> i32 {
         match self {
-            Self::Half | Self::Third => 1,
+            Self::Half | Self::Third | Self::Column | Self::Page => 1,
             Self::Quarter => 3,
         }
     }

@@ -73,8 +73,8 @@ where
         .set_all_tick_mark_size(4 * PX)
         .x_desc(panel.x.title)
         .y_desc(panel.y.title)
-        .x_labels(if panel.size == Size::Half { 8 } else { 5 })
-        .y_labels(if panel.size == Size::Third { 6 } else { 8 })
+        .x_labels(if matches!(panel.size, Size::Half | Size::Page) { 8 } else { 5 })
+        .y_labels(if matches!(panel.size, Size::Third | Size::Column) { 6 } else { 8 })
         .y_label_formatter(&number);
     if names.is_empty() {
         mesh.x_label_formatter(&number).draw()?;

@@ -6,6 +6,7 @@
 //! | `downsample.rs`, `average.rs` | long sessions in bounded memory |
 //! | `plot.rs` | contents of a figure |
 //! | `draw.rs`, `legend.rs`, `canvas.rs`, `page.rs`, `style.css` | drawing as SVG, on a page |
+//! | `paper.rs` | the drawings as single files |
 //! | `export.rs` | export as JSON and CSV |
 
 mod average;
@@ -18,6 +19,7 @@ mod drift_error;
 mod export;
 mod legend;
 mod page;
+mod paper;
 mod plot;
 mod shapes;
 mod tip_error;
@@ -28,6 +30,8 @@ use std::path::Path;
 use estimator_core::{Method, Q};
 use proprio_session::{LoadedTable, Progress, Row};
 use serde::Serialize;
+
+pub use self::paper::PaperFigure;
 
 use self::drift::Drift;
 use self::drift_error::DriftErrors;

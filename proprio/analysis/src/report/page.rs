@@ -110,7 +110,7 @@ impl Report {
                         tbody {
                             @for session in &self.numbers.sessions { (row(&session.path, &session.metrics)) }
                         }
-                        tfoot { (row("all together", &self.numbers.all)) }
+                        @if self.numbers.sessions.len() > 1 { tfoot { (row("all together", &self.numbers.all)) } }
                     }
                 }
                 p.caption {
@@ -150,7 +150,7 @@ impl Report {
                                 tr { @for _ in &heads { th.first scope="col" { "in 95 % ellipse" } th scope="col" { "NEES" } } }
                             }
                             tbody { @for session in &self.numbers.sessions { (row(&session.path, &session.metrics)) } }
-                            tfoot { (row("all together", &self.numbers.all)) }
+                            @if self.numbers.sessions.len() > 1 { tfoot { (row("all together", &self.numbers.all)) } }
                         }
                     }
                     p.caption {

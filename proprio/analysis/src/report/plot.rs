@@ -19,7 +19,7 @@ pub struct Figure {
 }
 
 /// One plot.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Clone, Serialize)]
 pub struct Panel {
     /// The session; `None` for all sessions together.
     pub session: Option<String>,
@@ -48,6 +48,10 @@ pub enum Size {
     Third,
     /// Four in a row, tall, with equal scales of both axes.
     Quarter,
+    /// A column of a paper.
+    Column,
+    /// Both columns of a paper.
+    Page,
 }
 
 /// An axis.
@@ -63,7 +67,7 @@ pub struct Axis {
 }
 
 /// Marks of one colour.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Clone, Serialize)]
 pub struct Series {
     /// Its name in the legend.
     pub name: String,
@@ -74,7 +78,7 @@ pub struct Series {
 }
 
 /// Form in which numbers are drawn. The names of quantities are those of the CSV, with their unit.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Clone, Serialize)]
 #[serde(tag = "kind", rename_all = "lowercase")]
 pub enum Marks {
     /// A line, broken where there is no value.

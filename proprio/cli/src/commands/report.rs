@@ -1,12 +1,13 @@
 //! `proprio report`.
 
+use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use estimator_core::saturations;
 use proprio_analysis::replay::NotComparable;
 use proprio_analysis::report::ReportBuilder;
-use proprio_session::{LoadedTable, OutputFile};
+use proprio_session::{Existing, LoadedTable, OutputFile};
 
 use super::warnings::warn_of_defects;
 use crate::args::ReportArgs;
@@ -27,6 +28,9 @@ pub fn run(args: &ReportArgs) -> Result<(), Error> {
     let page = create(&args.output)?;
     let json = args.json.as_ref().map(create).transpose()?;
     let csv = args.csv.as_ref().map(create).transpose()?;
+    if let Some(folder) = &args.figures {
+        check_folder(folder, args.force.existing())?;
+    }
 
     let mut progress = Bar::new();
     let mut builder = ReportBuilder::new(&table);
@@ -52,9 +56,24 @@ pub fn run(args: &ReportArgs) -> Result<(), Error> {
     if let Some(csv) = csv {
         files.push(written(csv, &report.csv())?);
     }
+    if let Some(folder) = &args.figures {
+        fs::create_dir_all(folder).map_err(|source| proprio_session::Error::Output { path: folder.clone(), source })?;
+        for figure in report.paper_figures() {
+            files.push(written(create(&folder.join(figure.name))?, &figure.svg)?);
+        }
+    }
     // The files get their names last, so that a command that fails leaves none.
     for file in files {
         terminal::eprint_line(&file.finish()?);
+    }
+    Ok(())
+}
+
+/// Refuses a folder that has files already, unless they may be replaced.
+fn check_folder(folder: &Path, existing: Existing) -> Result<(), Error> {
+    let is_filled = fs::read_dir(folder).is_ok_and(|mut entries| entries.next().is_some());
+    if is_filled && existing == Existing::Keep {
+        return Err(proprio_session::Error::Exists(folder.to_owned()).into());
     }
     Ok(())
 }

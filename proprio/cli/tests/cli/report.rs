@@ -134,6 +134,30 @@ fn the_head_names_table_checksum_sessions_samples_and_version() {
 }
 
 #[test]
+fn figures_for_a_paper_are_single_files_as_wide_as_columns() {
+    let folder = two_sessions();
+    let args = ["report", "one.csv", "two.csv", "--table", table(), "-o", "report.html", "--figures", "figures"];
+    folder.done(&args);
+    let files = std::fs::read_dir(folder.path("figures")).expect("the folder is made");
+    let mut names: Vec<String> =
+        files.map(|file| file.expect("an entry").file_name().into_string().expect("a name")).collect();
+    names.sort();
+    assert_eq!(names.len(), 3 + 2 * 6 + 12 + 2 + 2 * 4, "{names:?}");
+    for (name, width) in [
+        ("boxes-all.svg", "84.9mm"),
+        ("drift_error-two-segment-3.svg", "84.9mm"),
+        ("tip_error-one.svg", "178.0mm"),
+        ("shapes-one-median.svg", "65.1mm"),
+    ] {
+        let svg = folder.read(&format!("figures/{name}"));
+        assert!(svg.starts_with(&format!("<svg width=\"{width}\" ")) && svg.ends_with("</svg>\n"), "{name}: {svg}");
+        assert!(!svg.contains("\"sans-serif\"") && svg.contains("xmlns="), "{name}");
+    }
+    let error = folder.refused(&args.map(|arg| if arg == "report.html" { "other.html" } else { arg }));
+    assert!(error.starts_with("figures"), "{error}");
+}
+
+#[test]
 fn every_colour_has_one_for_dark_pages() {
     let page = page(&session());
     let style = between(&page, "<style>", "</style>")[0];
@@ -203,7 +227,7 @@ fn a_table_without_bend_sensors_shows_imu_o_alone() {
     assert!(page.contains("The table has no bend sensors"));
     let panels =
         ["boxes", "drift_error", "v_orient", "tip_error", "shapes"].map(|figure| drawings(&page, figure).len());
-    assert_eq!(panels, [2, 6, 0, 1, 4]);
+    assert_eq!(panels, [1, 6, 0, 1, 4]);
     let errors = texts(drawings(&page, "tip_error")[0]);
     assert!(errors.contains(&"imu_o") && !errors.contains(&"fusion"), "{errors:?}");
 }
