@@ -101,6 +101,14 @@ struct TableName {
     length_mm: f64,
 }
 
+impl Report {
+    /// The plots of the page, each as a drawing of its own for a paper.
+    #[must_use]
+    pub fn paper_figures(&self) -> Vec<PaperFigure> {
+        paper::figures(&self.figures)
+    }
+}
+
 impl<'t> ReportBuilder<'t> {
     /// No session yet.
     #[must_use]

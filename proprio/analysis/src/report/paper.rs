@@ -1,7 +1,7 @@
 //! Figures as single SVG files for a paper: as wide as a column or a page of two, with text of 8 pt.
 
-use super::plot::{Panel, Size};
-use super::{Report, draw};
+use super::draw;
+use super::plot::{Figure, Panel, Size};
 
 /// Length of a pixel in print, mm: text of 13 px is 8 pt high.
 const MM_PER_PX: f64 = 8.0 / 13.0 * 25.4 / 72.0;
@@ -17,23 +17,20 @@ pub struct PaperFigure {
     pub svg: String,
 }
 
-impl Report {
-    /// The panels of the page's figures, each as a drawing of its own. Names differ.
-    #[must_use]
-    pub fn paper_figures(&self) -> Vec<PaperFigure> {
-        let mut files: Vec<PaperFigure> = Vec::new();
-        for figure in self.figures.iter().filter(|figure| figure.is_drawn) {
-            for panel in &figure.panels {
-                let session = panel.session.as_deref().map_or("all", stem);
-                let parts = [figure.name, session, &panel.name].into_iter().filter(|part| !part.is_empty());
-                let name = parts.map(plain).collect::<Vec<_>>().join("-");
-                let same = files.iter().filter(|file| file.name == format!("{name}.svg")).count();
-                let name = if same == 0 { name } else { format!("{name}-{}", files.len() + 1) };
-                files.push(PaperFigure { name: format!("{name}.svg"), svg: svg(panel) });
-            }
+/// The panels of the page's figures, each as a drawing of its own. Names differ.
+pub fn figures(figures: &[Figure]) -> Vec<PaperFigure> {
+    let mut files: Vec<PaperFigure> = Vec::new();
+    for figure in figures.iter().filter(|figure| figure.is_drawn) {
+        for panel in &figure.panels {
+            let session = panel.session.as_deref().map_or("all", stem);
+            let parts = [figure.name, session, &panel.name].into_iter().filter(|part| !part.is_empty());
+            let name = parts.map(plain).collect::<Vec<_>>().join("-");
+            let is_taken = files.iter().any(|file| file.name == format!("{name}.svg"));
+            let name = if is_taken { format!("{name}-{}", files.len() + 1) } else { name };
+            files.push(PaperFigure { name: format!("{name}.svg"), svg: svg(panel) });
         }
-        files
     }
+    files
 }
 
 /// The drawing of a panel in a size for print: curves over time across the page, other plots in a column.

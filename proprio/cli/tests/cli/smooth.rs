@@ -167,9 +167,11 @@ fn a_report_has_the_smoothed_errors_and_their_share_inside_the_ellipse() {
     let page = folder.read("report.html");
     assert!(page.contains("Table 2. Errors of the tip over what its covariances expect"));
     let numbers = folder.read("report.csv");
-    for start in
-        ["table,session.csv,,smoothed,,,tip_inside_percent,", "tip_error,session.csv,,smoothed,", "boxes,,,smoothed,"]
-    {
+    for start in [
+        "table,session.csv,,smoothed,,,tip_inside_percent,",
+        "tip_error,session.csv,,smoothed,",
+        "boxes,session.csv,,smoothed,",
+    ] {
         assert!(numbers.lines().any(|line| line.starts_with(start)), "{start}");
     }
 }
