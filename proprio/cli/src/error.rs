@@ -29,6 +29,9 @@ pub enum Error {
     /// The live page.
     #[error(transparent)]
     Monitor(#[from] proprio_monitor::Error),
+    /// The live stream for other viewers.
+    #[error(transparent)]
+    Foxglove(#[from] proprio_foxglove::Error),
     /// A board cannot be reached.
     #[error(transparent)]
     Link(#[from] LinkError),

@@ -31,4 +31,14 @@ impl Ellipse {
             [mean + apart, mean - apart].map(|variance| (CHI2_2_95 * variance.max(0.0)).sqrt() * 1e3);
         Self { major_mm, minor_mm }
     }
+    /// Angle of the longer axis of that ellipse from x to y, rad.
+    ///
+    /// ```
+    /// let diagonal = proprio_session::Ellipse::turn_rad([5e-6, 4e-6, 5e-6]);
+    /// assert!((diagonal.to_degrees() - 45.0).abs() < 1e-9);
+    /// ```
+    #[must_use]
+    pub fn turn_rad([xx, xy, yy]: [f64; 3]) -> f64 {
+        f64::atan2(2.0 * xy, xx - yy) / 2.0
+    }
 }

@@ -4,13 +4,14 @@ use std::path::Path;
 
 use calibration_tables::{ArmFile, PLANAR_6_TABLE};
 use estimator_core::Q;
+use proprio_foxglove::FoxgloveServer;
 use proprio_link::status::{Status, TIMEOUT_S};
 use proprio_link::table::{StoredTable, TableImageError};
 use proprio_link::{FileRecorder, Flash, Link, LinkError, PortSource, Source, Subscription, VirtualDue};
 use proprio_session::{HostClock, LoadedTable};
 use telemetry::TICK_HZ;
 
-use crate::args::LinkArgs;
+use crate::args::{FoxgloveArgs, LinkArgs};
 use crate::error::Error;
 use crate::terminal;
 
@@ -70,4 +71,12 @@ pub fn stored(table: &LoadedTable) -> Result<StoredTable, Error> {
 pub fn recorder(path: &Path, link: &Link, table: Option<&LoadedTable>) -> Result<FileRecorder, Error> {
     let toml = table.map(LoadedTable::toml).transpose()?;
     Ok(FileRecorder::create(path, link, HostClock::new(), toml.as_deref())?)
+}
+
+/// Starts the live stream for other viewers, where it is asked for, and prints its address.
+pub fn stream(args: &FoxgloveArgs, link: &Link, table: Option<&LoadedTable>) -> Result<Option<FoxgloveServer>, Error> {
+    let Some(port) = args.foxglove else { return Ok(None) };
+    let server = FoxgloveServer::start(link.subscribe(), port, table.map(|table| &table.file))?;
+    terminal::eprint_line(&format_args!("Foxglove, Lichtblick, PlotJuggler: ws://{}", server.address()));
+    Ok(Some(server))
 }

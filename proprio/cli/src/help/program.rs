@@ -13,6 +13,9 @@ impl Help for Error {
             Self::Analysis(error) => return error.help(),
             Self::Calibration(error) => return error.help(),
             Self::Monitor(error) => return error.help(),
+            Self::Foxglove(proprio_foxglove::Error::Listen { .. }) => {
+                "give another with --foxglove=PORT; does another program stream to Foxglove already?"
+            }
             Self::Link(error) => return error.help(),
             Self::Drive(error) => return error.help(),
             Self::Flash(error) => return error.help(),

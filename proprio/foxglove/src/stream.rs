@@ -1,0 +1,64 @@
+//! State that the feed and the clients share: the queue of messages, and the number of subscriptions to each channel.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU32, Ordering};
+
+use proprio_session::{HostClock, HostNs};
+use tokio::sync::broadcast;
+
+use crate::channels;
+
+/// Capacity of a client's queue, messages: two seconds of all channels. A slower client loses the oldest.
+const CAPACITY: usize = 1024;
+
+/// A message for all clients that have subscribed to its channel.
+#[derive(Debug, Clone)]
+pub struct StreamMessage {
+    /// Number of the channel.
+    pub channel: usize,
+    /// Time of its arrival.
+    pub at: HostNs,
+    /// The message in CDR.
+    pub data: Arc<[u8]>,
+}
+
+/// State of the stream.
+#[derive(Debug)]
+pub struct Stream {
+    messages: broadcast::Sender<StreamMessage>,
+    subscriptions: [AtomicU32; channels::COUNT],
+    /// Identity of this run of the program.
+    pub session_id: String,
+}
+
+impl Stream {
+    pub fn new() -> Self {
+        let (messages, _) = broadcast::channel(CAPACITY);
+        let session_id = HostClock::new().now().0.to_string();
+        Self { messages, subscriptions: Default::default(), session_id }
+    }
+
+    /// True where a client receives the messages of a channel.
+    pub fn is_received(&self, channel: usize) -> bool {
+        self.subscriptions[channel].load(Ordering::Relaxed) > 0
+    }
+
+    /// Puts a message into the queue of each client.
+    pub fn send(&self, message: StreamMessage) {
+        // The last client may have left.
+        let _ = self.messages.send(message);
+    }
+
+    /// The queue of a new client.
+    pub fn messages(&self) -> broadcast::Receiver<StreamMessage> {
+        self.messages.subscribe()
+    }
+
+    pub fn subscribed(&self, channel: usize) {
+        self.subscriptions[channel].fetch_add(1, Ordering::Relaxed);
+    }
+
+    pub fn unsubscribed(&self, channel: usize) {
+        self.subscriptions[channel].fetch_sub(1, Ordering::Relaxed);
+    }
+}
