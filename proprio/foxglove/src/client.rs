@@ -3,6 +3,7 @@
 use std::time::{Duration, Instant};
 
 use axum::extract::ws::{Message, WebSocket};
+use futures_util::SinkExt;
 use tokio::sync::broadcast::error::RecvError;
 
 use crate::channels;
@@ -14,27 +15,20 @@ const WARNING_PERIOD: Duration = Duration::from_secs(5);
 
 /// Serves a client until it leaves.
 pub async fn serve(stream: &Stream, mut socket: WebSocket) -> Result<(), axum::Error> {
-    let mut messages = stream.messages();
+    let mut batches = stream.batches();
     let mut subscriptions = Subscriptions { stream, of_channels: [None; channels::COUNT] };
+    let mut warned = None::<Instant>;
     socket.send(text(&ServerMessage::server_info(&stream.session_id))).await?;
     socket.send(text(&ServerMessage::advertise())).await?;
-    let (mut lost, mut warned) = (0, None::<Instant>);
     loop {
         tokio::select! {
-            message = messages.recv() => match message {
-                Ok(StreamMessage { channel, at, data }) => {
-                    if let Some(id) = subscriptions.of_channels[channel] {
-                        socket.send(Message::Binary(message_data(id, at.0, &data))).await?;
-                    }
-                }
-                Err(RecvError::Lagged(count)) => {
-                    lost += count;
-                    if warned.is_none_or(|warned| warned.elapsed() >= WARNING_PERIOD) {
-                        warned = Some(Instant::now());
-                        let warning = format!("this client is too slow: it has lost {lost} messages of the board so far");
-                        socket.send(text(&ServerMessage::warning("lost", warning))).await?;
-                    }
-                }
+            batch = batches.recv() => match batch {
+                Ok(batch) => send_batch(&mut socket, &subscriptions, &batch).await?,
+                Err(RecvError::Lagged(_)) => if warned.is_none_or(|warned| warned.elapsed() >= WARNING_PERIOD) {
+                    warned = Some(Instant::now());
+                    let warning = "this client is too slow, and has lost the oldest messages of the board";
+                    socket.send(text(&ServerMessage::warning("lost", warning))).await?;
+                },
                 Err(RecvError::Closed) => return Ok(()),
             },
             request = socket.recv() => {
@@ -47,6 +41,20 @@ pub async fn serve(stream: &Stream, mut socket: WebSocket) -> Result<(), axum::E
             }
         }
     }
+}
+
+/// Sends the messages that the client has subscribed to, in one write.
+async fn send_batch(
+    socket: &mut WebSocket,
+    subscriptions: &Subscriptions<'_>,
+    batch: &[StreamMessage],
+) -> Result<(), axum::Error> {
+    for StreamMessage { channel, at, data } in batch {
+        if let Some(id) = subscriptions.of_channels[*channel] {
+            socket.feed(Message::Binary(message_data(id, at.0, data))).await?;
+        }
+    }
+    socket.flush().await
 }
 
 /// The subscriptions of a client.

@@ -1,8 +1,10 @@
 //! The link's events as messages, for all clients.
 
 use std::convert::Infallible;
+use std::mem;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread;
 use std::time::Duration;
 
 use calibration_tables::ArmFile;
@@ -14,8 +16,10 @@ use crate::channels::{self, ARM, TRANSFORMS};
 use crate::scene::Scene;
 use crate::stream::{Stream, StreamMessage};
 
-/// Longest time between two checks for the end.
-const CHECK_PERIOD: Duration = Duration::from_millis(50);
+/// Time for which events are gathered, a tick of the board: each wake-up costs more than the work on a message.
+const PERIOD: Duration = Duration::from_millis(10);
+/// The same while there is no client.
+const IDLE_PERIOD: Duration = Duration::from_millis(50);
 
 /// Pictures of the arm per second; all else comes with every tick.
 const PICTURES_HZ: f64 = 25.0;
@@ -29,15 +33,17 @@ pub struct Feed {
 
 impl Feed {
     pub fn new(stream: Arc<Stream>, table: Option<&ArmFile>) -> Self {
-        Self { board: BoardMessages::new(), scene: Scene::new(table), sink: StreamSink(stream) }
+        Self { board: BoardMessages::new(), scene: Scene::new(table), sink: StreamSink { stream, batch: Vec::new() } }
     }
 
     /// Works until `stop` is set.
     pub fn run(mut self, events: &Subscription, stop: &AtomicBool) {
         while !stop.load(Ordering::Relaxed) {
-            if let Some(event) = events.next(CHECK_PERIOD) {
+            thread::sleep(if self.sink.stream.has_clients() { PERIOD } else { IDLE_PERIOD });
+            while let Some(event) = events.next(Duration::ZERO) {
                 self.take(&event);
             }
+            self.sink.stream.send(mem::take(&mut self.sink.batch));
         }
     }
 
@@ -59,7 +65,11 @@ impl Feed {
 }
 
 /// The stream as a destination of messages.
-struct StreamSink(Arc<Stream>);
+struct StreamSink {
+    stream: Arc<Stream>,
+    /// Messages since the last batch was sent.
+    batch: Vec<StreamMessage>,
+}
 
 impl MessageSink for StreamSink {
     type Error = Infallible;
@@ -70,8 +80,8 @@ impl MessageSink for StreamSink {
         info: MessageInfo,
         encode: impl FnOnce() -> Vec<u8>,
     ) -> Result<(), Infallible> {
-        if let Some(channel) = channels::number(channel).filter(|channel| self.0.is_received(*channel)) {
-            self.0.send(StreamMessage { channel, at: info.at, data: encode().into() });
+        if let Some(channel) = channels::number(channel).filter(|channel| self.stream.is_received(*channel)) {
+            self.batch.push(StreamMessage { channel, at: info.at, data: encode() });
         }
         Ok(())
     }

@@ -8,24 +8,27 @@ use tokio::sync::broadcast;
 
 use crate::channels;
 
-/// Capacity of a client's queue, messages: two seconds of all channels. A slower client loses the oldest.
-const CAPACITY: usize = 1024;
+/// Capacity of a client's queue, batches: two seconds at least. A slower client loses the oldest.
+const CAPACITY: usize = 256;
+
+/// Messages that are sent together.
+pub type Batch = Arc<[StreamMessage]>;
 
 /// A message for all clients that have subscribed to its channel.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub struct StreamMessage {
     /// Number of the channel.
     pub channel: usize,
     /// Time of its arrival.
     pub at: HostNs,
     /// The message in CDR.
-    pub data: Arc<[u8]>,
+    pub data: Vec<u8>,
 }
 
 /// State of the stream.
 #[derive(Debug)]
 pub struct Stream {
-    messages: broadcast::Sender<StreamMessage>,
+    batches: broadcast::Sender<Batch>,
     subscriptions: [AtomicU32; channels::COUNT],
     /// Identity of this run of the program.
     pub session_id: String,
@@ -33,9 +36,13 @@ pub struct Stream {
 
 impl Stream {
     pub fn new() -> Self {
-        let (messages, _) = broadcast::channel(CAPACITY);
+        let (batches, _) = broadcast::channel(CAPACITY);
         let session_id = HostClock::new().now().0.to_string();
-        Self { messages, subscriptions: Default::default(), session_id }
+        Self { batches, subscriptions: Default::default(), session_id }
+    }
+
+    pub fn has_clients(&self) -> bool {
+        self.batches.receiver_count() > 0
     }
 
     /// True where a client receives the messages of a channel.
@@ -43,15 +50,17 @@ impl Stream {
         self.subscriptions[channel].load(Ordering::Relaxed) > 0
     }
 
-    /// Puts a message into the queue of each client.
-    pub fn send(&self, message: StreamMessage) {
-        // The last client may have left.
-        let _ = self.messages.send(message);
+    /// Puts messages into the queue of each client.
+    pub fn send(&self, messages: Vec<StreamMessage>) {
+        if !messages.is_empty() {
+            // The last client may have left.
+            let _ = self.batches.send(messages.into());
+        }
     }
 
     /// The queue of a new client.
-    pub fn messages(&self) -> broadcast::Receiver<StreamMessage> {
-        self.messages.subscribe()
+    pub fn batches(&self) -> broadcast::Receiver<Batch> {
+        self.batches.subscribe()
     }
 
     pub fn subscribed(&self, channel: usize) {
