@@ -15,5 +15,6 @@ mod page;
 mod reconnect;
 mod requests;
 mod sessions;
+mod stream;
 mod tare;
 mod uncertainty;
