@@ -8,6 +8,7 @@ definitions of ROS 2 Humble that `rosbags` has; the recording is read with `mcap
 
 import json
 import math
+import os
 import re
 import statistics
 import struct
@@ -16,6 +17,7 @@ import sys
 import time
 from collections import Counter
 from pathlib import Path
+from xml.etree import ElementTree
 
 from mcap.reader import make_reader
 from mcap_ros2._dynamic import generate_dynamic
@@ -25,6 +27,7 @@ from websockets.sync.client import connect
 
 SECONDS = 5
 SUBPROTOCOLS = ["foxglove.sdk.v1", "foxglove.websocket.v1"]
+LAYOUTS = Path(__file__).parent.parent / "docs" / "layouts"
 LIVE_ALONE = {"/tf", "/proprio/arm"}
 
 
@@ -126,6 +129,43 @@ def check_scene(decoded):
     assert ellipses > 0
 
 
+def value(message, fields):
+    """The number at a path such as `poses[5].position.x`."""
+    for name, index in re.findall(r"(\w+)(?:\[(\d+)\])?", fields):
+        message = getattr(message, name)
+        message = message[int(index)] if index else message
+    return float(message)
+
+
+def check_layouts(decoded):
+    """Each series of the layouts for Foxglove and PlotJuggler is in the stream."""
+    last = dict(decoded)
+    panels = json.loads((LAYOUTS / "foxglove.json").read_text())["configById"]
+    assert all(topic in last for topic in panels["3D!arm"]["topics"])
+    assert panels["DiagnosticSummary!board"]["topicToRender"] in last
+    for path in [path["value"] for panel in panels.values() for path in panel.get("paths", [])]:
+        topic, fields = path.split(".", 1)
+        value(last[topic], fields)
+    for curve in ElementTree.parse(LAYOUTS / "plotjuggler.xml").iter("curve"):
+        name = curve.get("name")
+        topic = next(topic for topic in last if name.startswith(topic + "/"))
+        fields = name.removeprefix(topic + "/")
+        if topic == "/joint_states":
+            joint, part = fields.split("/")
+            assert part == "position" and joint in last[topic].name, name
+        else:
+            value(last[topic], fields.replace("/", "."))
+
+
+def cpu_s(process):
+    """Time of the processor that a process has taken, s; 0 where the system does not have it there."""
+    stat = Path(f"/proc/{process.pid}/stat")
+    if not stat.exists():
+        return 0
+    user, system = stat.read_text().rsplit(")", 1)[1].split()[11:13]
+    return (int(user) + int(system)) / os.sysconf("SC_CLK_TCK")
+
+
 def recorded(path):
     """The messages of the recording: topic, log time and bytes."""
     with path.open("rb") as file:
@@ -140,9 +180,14 @@ def main(proprio, folder, table):
     try:
         line = next(line for line in record.stderr if "ws://" in line)
         url = re.search(r"ws://[0-9.:]+", line).group()
-        time.sleep(5)
+        # The board boots, and tares.
+        time.sleep(3)
         check_access(url)
+        alone = cpu_s(record)
+        time.sleep(SECONDS)
+        streaming = cpu_s(record)
         channels, messages = receive(url)
+        end = cpu_s(record)
     finally:
         # As Ctrl-C.
         record.send_signal(2)
@@ -158,6 +203,7 @@ def main(proprio, folder, table):
     ticks = [message.tick for topic, message in decoded if topic == "/proprio/samples"]
     assert ticks == list(range(ticks[0], ticks[0] + len(ticks))), "samples are missing"
     check_scene(decoded)
+    check_layouts(decoded)
 
     file = recorded(path)
     for topic, log_time, _, data in messages:
@@ -166,6 +212,8 @@ def main(proprio, folder, table):
     delays = sorted(delay / 1e6 for _, _, delay, _ in messages)
     size = sum(len(data) for _, _, _, data in messages) / SECONDS
     print(f"{len(messages)} messages in {SECONDS} s, {size / 1e3:.0f} kB/s, the recording's own to the byte")
+    loads = [100 * seconds / SECONDS for seconds in (streaming - alone, end - streaming)]
+    print(f"record takes {loads[0]:.1f} % of a core without a client, {loads[1]:.1f} % with this one")
     print(f"arrival of the bytes to the client: median {statistics.median(delays):.2f} ms, "
           f"99 % {delays[int(0.99 * len(delays))]:.2f} ms, longest {delays[-1]:.2f} ms")
 
