@@ -72,7 +72,9 @@ impl Subscriptions<'_> {
                 subscriptions.into_iter().filter_map(|subscription| self.add(subscription)).last()
             }
             Ok(ClientMessage::Unsubscribe { subscription_ids }) => {
-                subscription_ids.into_iter().for_each(|id| self.remove(id));
+                for id in subscription_ids {
+                    self.remove(id);
+                }
                 None
             }
             Ok(ClientMessage::Other) => None,

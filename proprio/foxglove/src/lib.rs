@@ -41,9 +41,6 @@ pub use error::Error;
 use feed::Feed;
 use stream::Stream;
 
-/// Port of Foxglove's WebSocket, which its programs offer.
-pub const DEFAULT_PORT: u16 = 8765;
-
 /// A server that runs until it is dropped.
 #[derive(Debug)]
 pub struct FoxgloveServer {

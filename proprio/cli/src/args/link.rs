@@ -129,7 +129,7 @@ pub struct TareArgs {
 /// A live stream for other viewers.
 #[derive(Debug, Args)]
 pub struct FoxgloveArgs {
-    /// Stream to Foxglove, Lichtblick and PlotJuggler, on this port of 127.0.0.1; 0: any free one
+    /// Stream to Foxglove, Lichtblick and PlotJuggler on 127.0.0.1, port 8765 or this one; 0: any free one
     #[arg(long, value_name = "PORT", num_args = 0..=1, require_equals = true, default_missing_value = "8765")]
     pub foxglove: Option<u16>,
 }
