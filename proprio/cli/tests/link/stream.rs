@@ -76,7 +76,7 @@ impl Client {
         assert_eq!(client.json()["op"], "serverInfo");
         let advertised = client.json();
         assert_eq!(advertised["op"], "advertise");
-        client.channels = advertised["channels"].as_array().expect("a list").clone();
+        client.channels.extend_from_slice(advertised["channels"].as_array().expect("a list"));
         client
     }
 
