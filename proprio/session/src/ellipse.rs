@@ -1,12 +1,12 @@
 //! The 95 % ellipse of an estimated point.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// 95 % quantile of the χ² distribution with two degrees of freedom.
 pub const CHI2_2_95: f64 = 5.991;
 
 /// The ellipse about an estimated point that contains the true one with a probability of 95 %.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Ellipse {
     /// Its longer semi-axis, mm.
     pub major_mm: f64,

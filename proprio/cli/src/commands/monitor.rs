@@ -78,6 +78,7 @@ fn start(
         folder: args.folder.clone(),
         token: token.clone(),
         session: args.session.clone(),
+        runtime_folder: link::runtime_folder(),
         help: Help::help,
         finding_text: with_remedy,
     };

@@ -14,6 +14,7 @@ mod older;
 mod page;
 mod reconnect;
 mod requests;
+mod running;
 mod sessions;
 mod stream;
 mod tare;
