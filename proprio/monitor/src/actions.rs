@@ -178,10 +178,10 @@ pub(super) async fn control(State(state): State<AppState>, headers: HeaderMap, b
 }
 
 /// A request to tare the board.
-#[derive(Debug, Serialize, Deserialize)]
+#[derive(Debug, Deserialize)]
 pub(super) struct TareRequest {
     /// Tares an arm that moves, too.
-    pub force: bool,
+    force: bool,
 }
 
 /// Outcome of a request to tare.

@@ -13,7 +13,7 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use telemetry::TareMode;
 
-use crate::actions::{TareOutcome, TareRequest};
+use crate::actions::TareOutcome;
 
 /// Begin of the name of each monitor's file.
 const PREFIX: &str = "proprio-monitor-";
@@ -114,9 +114,8 @@ impl RunningMonitor {
     /// # Errors
     /// [`RunningMonitorError`].
     pub fn tare(&self, mode: TareMode) -> Result<String, RunningMonitorError> {
-        let request = TareRequest { force: mode == TareMode::Force };
-        let body = serde_json::to_string(&request).expect("a flag has a form in JSON");
-        let TareOutcome { is_moving, text } = self.request("POST", "/board/tare", &body)?;
+        let request = serde_json::json!({"force": mode == TareMode::Force});
+        let TareOutcome { is_moving, text } = self.request("POST", "/board/tare", &request.to_string())?;
         if is_moving { Err(RunningMonitorError::Moving(text)) } else { Ok(text) }
     }
 
