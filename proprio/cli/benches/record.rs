@@ -110,6 +110,7 @@ fn open_on_the_page() {
         folder,
         token: None,
         session,
+        runtime_folder: None,
         help: ToString::to_string,
         finding_text: ToString::to_string,
     };

@@ -15,8 +15,8 @@ use rig_twin::TimedFault;
 pub use arm::NewArmArgs;
 pub use force::ForceArgs;
 pub use link::{
-    ConvertArgs, DriveArgs, FlashArgs, LinkArgs, MonitorArgs, PortsArgs, RecordArgs, RecoverArgs, StatusArgs,
-    TableArgs, TableCommand, TareArgs,
+    ConvertArgs, DriveArgs, FlashArgs, FoxgloveArgs, LinkArgs, MonitorArgs, PortsArgs, RecordArgs, RecoverArgs,
+    StatusArgs, TableArgs, TableCommand, TareArgs,
 };
 
 /// Colours of help and errors; off where stderr is not a terminal or NO_COLOR is set.

@@ -29,6 +29,12 @@ pub enum Error {
     /// The live page.
     #[error(transparent)]
     Monitor(#[from] proprio_monitor::Error),
+    /// A running monitor, through which the board is reached.
+    #[error(transparent)]
+    RunningMonitor(#[from] proprio_monitor::RunningMonitorError),
+    /// The live stream for other viewers.
+    #[error(transparent)]
+    Foxglove(#[from] proprio_foxglove::Error),
     /// A board cannot be reached.
     #[error(transparent)]
     Link(#[from] LinkError),

@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use proprio_session::{Ellipse, is_version_0_1};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use telemetry::{Event, Health, Hello, Message, SegmentUncertainty, TICK_HZ, Uncertainty};
 
 use crate::{EventKind, Link, LinkError, Mismatch, Subscription};
@@ -18,12 +18,12 @@ const SETTLING: Duration = Duration::from_secs(3);
 const TARE_TICKS: u32 = 150;
 
 /// Status of a board.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, Deserialize)]
 pub struct Status {
     /// Name of the line.
     pub port: String,
     /// Version of this program.
-    pub proprio: &'static str,
+    pub proprio: String,
     /// Its identity, and the cause of its last reset.
     pub hello: Hello,
     /// Its counters and its sensors' states.
@@ -43,7 +43,7 @@ pub struct Status {
 }
 
 /// Uncertainty of the arm's shape on a board, and contact.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct KnownShape {
     /// Standard deviation of each bend angle, degrees, from the base; `None`: not known.
     pub theta_sd_deg: Vec<Option<f64>>,
@@ -65,7 +65,7 @@ impl From<&Uncertainty> for KnownShape {
 }
 
 /// Rates of the received messages.
-#[derive(Debug, Clone, Copy, Serialize)]
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 pub struct MessageRates {
     /// Samples, Hz.
     pub samples_hz: f64,
@@ -76,7 +76,7 @@ pub struct MessageRates {
 }
 
 /// Numbers of frames since the line was opened.
-#[derive(Debug, Clone, Copy, Serialize)]
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 pub struct FrameCounts {
     /// Frames that arrived undamaged.
     pub frames: u32,
@@ -121,7 +121,7 @@ impl Status {
                 let is_comparable = !is_version_0_1(&hello.firmware);
                 return Ok(Self {
                     port: state.port.unwrap_or_default(),
-                    proprio: env!("CARGO_PKG_VERSION"),
+                    proprio: env!("CARGO_PKG_VERSION").to_owned(),
                     hello,
                     health: health.clone(),
                     shape: seen.shape,

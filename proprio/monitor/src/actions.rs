@@ -10,8 +10,9 @@ use axum::http::header::{CONTENT_TYPE, HeaderName};
 use axum::http::{HeaderMap, StatusCode};
 use axum::response::{IntoResponse, Response};
 use proprio_link::TareError;
+use proprio_link::status::Status;
 use proprio_session::NoProgress;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 use telemetry::{Command, MAX_REGULATORS, SetPressures, TareMode};
 
 use super::access::Refused;
@@ -34,7 +35,7 @@ async fn run_blocking<T: Send + 'static>(work: impl FnOnce() -> T + Send + 'stat
 
 /// The rows of the last minutes.
 pub(super) async fn history(State(state): State<AppState>) -> Answer<impl IntoResponse> {
-    #[derive(serde::Serialize)]
+    #[derive(Serialize)]
     struct Nothing {}
     let bytes = run_blocking(move || state.monitor.history().to_bytes(&Nothing {})).await?;
     Ok((BYTES, bytes))
@@ -176,7 +177,7 @@ pub(super) async fn control(State(state): State<AppState>, headers: HeaderMap, b
     }
 }
 
-/// A request of the page to tare the board.
+/// A request to tare the board.
 #[derive(Debug, Deserialize)]
 pub(super) struct TareRequest {
     /// Tares an arm that moves, too.
@@ -184,29 +185,54 @@ pub(super) struct TareRequest {
 }
 
 /// Outcome of a request to tare.
-#[derive(Debug, serde::Serialize)]
-struct TareOutcome {
+#[derive(Debug, Serialize, Deserialize)]
+pub(super) struct TareOutcome {
     /// The arm moves, and was not tared.
-    is_moving: bool,
-    text: String,
+    pub is_moving: bool,
+    pub text: String,
 }
 
-/// Tares the board.
-pub(super) async fn tare(State(state): State<AppState>, headers: HeaderMap, body: Bytes) -> Answer<Response> {
+/// Tares the board for a page.
+pub(super) async fn tare(State(state): State<AppState>, headers: HeaderMap, body: Bytes) -> Answer<Json<TareOutcome>> {
     check_token(&state, &headers).map_err(Refused::into_response)?;
+    tare_board(state, &body, ": let it rest, or tare it anyway").await
+}
+
+/// Tares the board for a program of this user.
+pub(super) async fn tare_for_program(
+    State(state): State<AppState>,
+    headers: HeaderMap,
+    body: Bytes,
+) -> Answer<Json<TareOutcome>> {
+    let token = state.monitor.program_token.as_ref().ok_or(Refused::Token);
+    token.and_then(|token| token.check(&headers)).map_err(Refused::into_response)?;
+    tare_board(state, &body, "").await
+}
+
+/// The status of the board, measured within seconds, as `proprio status` has it.
+pub(super) async fn board_status(State(state): State<AppState>) -> Answer<Json<Status>> {
+    let shared = Arc::clone(&state.monitor);
+    let measured = run_blocking(move || {
+        let has_table = shared.sessions.stored_table().is_ok_and(|table| table.is_some());
+        shared.link.as_ref().map(|link| Status::of(link, &link.subscribe(), has_table))
+    });
+    let status = measured.await?.ok_or_else(|| (StatusCode::NOT_FOUND, "there is no board").into_response())?;
+    Ok(Json(status.map_err(|error| state.failure(&error.into()))?))
+}
+
+/// Tares the board; `remedy` follows the error of an arm that moves.
+async fn tare_board(state: AppState, body: &[u8], remedy: &str) -> Answer<Json<TareOutcome>> {
     let TareRequest { force } =
-        serde_json::from_slice(&body).map_err(|error| (StatusCode::BAD_REQUEST, error.to_string()).into_response())?;
+        serde_json::from_slice(body).map_err(|error| (StatusCode::BAD_REQUEST, error.to_string()).into_response())?;
     let mode = if force { TareMode::Force } else { TareMode::IfStill };
     let shared = Arc::clone(&state.monitor);
     let tared = run_blocking(move || shared.link.as_ref().map(|link| proprio_link::tare(link, mode))).await?;
     let outcome = match tared.ok_or_else(|| Refused::ReadOnly.into_response())? {
         Ok(tared) => TareOutcome { is_moving: false, text: tared.to_string() },
-        Err(error @ TareError::Moving(_)) => {
-            TareOutcome { is_moving: true, text: format!("{error}: let it rest, or tare it anyway") }
-        }
+        Err(error @ TareError::Moving(_)) => TareOutcome { is_moving: true, text: format!("{error}{remedy}") },
         Err(TareError::Link(error)) => return Err(state.failure(&error.into())),
     };
-    Ok(Json(outcome).into_response())
+    Ok(Json(outcome))
 }
 
 /// Stores the monitor's table on the board, which restarts with it.

@@ -11,6 +11,7 @@
 //! | `latency.rs` | latency from a sample to the screen |
 //! | `recording.rs`, `sessions.rs` | recording and opening of sessions |
 //! | `server.rs`, `socket.rs`, `actions.rs`, `body.rs`, `access.rs` | HTTP: the page, the feed, handlers of requests, their limits, access control |
+//! | `running.rs` | a running monitor, for the user's other programs |
 //! | `monitor_state.rs`, `app_state.rs` | state of the threads; state of the handlers |
 //! | `plain.rs` | one line per second instead, for a terminal |
 //! | `page/` | the page, embedded in the program |
@@ -30,12 +31,13 @@ mod monitor_state;
 mod page_row;
 mod plain;
 mod recording;
+mod running;
 mod server;
 mod sessions;
 mod socket;
 
 use std::net::{Ipv4Addr, SocketAddr, TcpListener};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::JoinHandle;
@@ -50,12 +52,14 @@ use telemetry::{Command, TICK_HZ};
 pub use access::Token;
 pub use error::Error;
 pub use plain::Plain;
+pub use running::{RunningMonitor, RunningMonitorError};
 
 use app_state::AppState;
 use feed::ArmDescription;
 use hub::Hub;
 
 use monitor_state::MonitorState;
+use running::Announcement;
 use sessions::Sessions;
 
 /// Options of a monitor.
@@ -71,6 +75,8 @@ pub struct Options<'p> {
     pub token: Option<Token>,
     /// The session to open at once, where there is no board.
     pub session: Option<PathBuf>,
+    /// Folder that only this user can read, in which the monitor of a board is announced to the user's programs.
+    pub runtime_folder: Option<PathBuf>,
     /// Returns the remedy of an error, which the page shows with it.
     pub help: fn(&Error) -> String,
     /// Returns the text of a finding of the session check, with its remedy.
@@ -85,6 +91,7 @@ pub struct Monitor {
     stop: Arc<AtomicBool>,
     stop_server: Option<tokio::sync::oneshot::Sender<()>>,
     threads: Vec<JoinHandle<()>>,
+    _announcement: Option<Announcement>,
 }
 
 impl Monitor {
@@ -100,10 +107,19 @@ impl Monitor {
         let address = listener.local_addr().map_err(failed)?;
         let compiled = options.table.as_ref().map(|table| table.compile::<Q>(TICK_HZ)).transpose()?;
         let (link, events) = live.unzip();
-        let shared = Arc::new(shared(link, options));
+        let announcement = announce(link.as_ref(), options.runtime_folder.as_deref(), address);
+        let (announcement, program_token) = announcement.unzip();
+        let shared = Arc::new(shared(link, options, program_token));
         let stop = Arc::new(AtomicBool::new(false));
         let (stop_server, stopped) = tokio::sync::oneshot::channel();
-        let mut monitor = Self { address, shared, stop, stop_server: Some(stop_server), threads: Vec::new() };
+        let mut monitor = Self {
+            address,
+            shared,
+            stop,
+            stop_server: Some(stop_server),
+            threads: Vec::new(),
+            _announcement: announcement,
+        };
         if let Some(events) = events {
             let (shared, stop) = (Arc::clone(&monitor.shared), Arc::clone(&monitor.stop));
             monitor.spawn("hub", move || hub(&shared, events, compiled.as_ref(), &stop)).map_err(failed)?;
@@ -164,8 +180,17 @@ impl Drop for Monitor {
     }
 }
 
+/// Announces the monitor of a board to this user's programs, with a token for them. Without it they cannot use it, which is no
+/// failure of the monitor.
+fn announce(link: Option<&Link>, folder: Option<&Path>, address: SocketAddr) -> Option<(Announcement, Token)> {
+    let line = link?.state().port?;
+    let token = Token::new().ok()?;
+    let announcement = Announcement::new(folder?, line, address, token.to_string()).ok()?;
+    Some((announcement, token))
+}
+
 /// The state that the threads share.
-fn shared(link: Option<Link>, options: Options) -> MonitorState {
+fn shared(link: Option<Link>, options: Options, program_token: Option<Token>) -> MonitorState {
     let table = options.table.as_ref();
     // Until a board has sent its number of segments, the arm is that of the table.
     let segments = table.map_or(0, |table| table.file.segments.len());
@@ -173,7 +198,7 @@ fn shared(link: Option<Link>, options: Options) -> MonitorState {
     (arm.is_live, arm.allows_control) = (link.is_some(), options.token.is_some());
     let sessions = Sessions::new(options.folder, table, options.session, options.finding_text);
     arm.session = sessions.given();
-    MonitorState::new(link, arm, options.token, sessions, options.help)
+    MonitorState::new(link, arm, options.token, program_token, sessions, options.help)
 }
 
 fn hub(shared: &Arc<MonitorState>, events: Subscription, compiled: Option<&CompiledTable<Q>>, stop: &AtomicBool) {

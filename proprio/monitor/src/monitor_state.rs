@@ -25,6 +25,8 @@ pub(super) struct MonitorState {
     pub clock: HostClock,
     arm: Mutex<ArmDescription>,
     pub token: Option<Token>,
+    /// Token of this user's programs; `None` where the monitor is not announced to them.
+    pub program_token: Option<Token>,
     pub sessions: Sessions,
     pub help: fn(&Error) -> String,
     pub feed: broadcast::Sender<Utf8Bytes>,
@@ -39,6 +41,7 @@ impl MonitorState {
         link: Option<Link>,
         arm: ArmDescription,
         token: Option<Token>,
+        program_token: Option<Token>,
         sessions: Sessions,
         help: fn(&Error) -> String,
     ) -> Self {
@@ -46,7 +49,20 @@ impl MonitorState {
         let (status, latency, recording) = Default::default();
         let (feed, _) = broadcast::channel(CAPACITY);
         let arm = Mutex::new(arm);
-        Self { link, clock: HostClock::new(), arm, token, sessions, help, feed, history, status, latency, recording }
+        Self {
+            link,
+            clock: HostClock::new(),
+            arm,
+            token,
+            program_token,
+            sessions,
+            help,
+            feed,
+            history,
+            status,
+            latency,
+            recording,
+        }
     }
 
     pub fn arm(&self) -> MutexGuard<'_, ArmDescription> {

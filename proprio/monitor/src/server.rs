@@ -65,6 +65,8 @@ pub(super) fn router(state: AppState) -> Router {
         .route("/control", post(actions::control))
         .route("/tare", post(actions::tare))
         .route("/table", post(actions::push_table))
+        .route("/board", get(actions::board_status))
+        .route("/board/tare", post(actions::tare_for_program))
         .layer(middleware::from_fn_with_state(state.clone(), guard))
         .with_state(state)
 }

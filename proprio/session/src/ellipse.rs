@@ -1,12 +1,12 @@
 //! The 95 % ellipse of an estimated point.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// 95 % quantile of the χ² distribution with two degrees of freedom.
 pub const CHI2_2_95: f64 = 5.991;
 
 /// The ellipse about an estimated point that contains the true one with a probability of 95 %.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Ellipse {
     /// Its longer semi-axis, mm.
     pub major_mm: f64,
@@ -30,5 +30,15 @@ impl Ellipse {
         let [major_mm, minor_mm] =
             [mean + apart, mean - apart].map(|variance| (CHI2_2_95 * variance.max(0.0)).sqrt() * 1e3);
         Self { major_mm, minor_mm }
+    }
+    /// Angle of the longer axis of that ellipse from x to y, rad.
+    ///
+    /// ```
+    /// let diagonal = proprio_session::Ellipse::turn_rad([5e-6, 4e-6, 5e-6]);
+    /// assert!((diagonal.to_degrees() - 45.0).abs() < 1e-9);
+    /// ```
+    #[must_use]
+    pub fn turn_rad([xx, xy, yy]: [f64; 3]) -> f64 {
+        f64::atan2(2.0 * xy, xx - yy) / 2.0
     }
 }

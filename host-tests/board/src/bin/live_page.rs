@@ -31,6 +31,7 @@ mod figures {
             folder: folder.path().to_owned(),
             token: None,
             session: None,
+            runtime_folder: None,
             help: ToString::to_string,
             finding_text: ToString::to_string,
         };

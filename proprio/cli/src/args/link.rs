@@ -126,10 +126,20 @@ pub struct TareArgs {
     pub link: LinkArgs,
 }
 
+/// A live stream for other viewers.
+#[derive(Debug, Args)]
+pub struct FoxgloveArgs {
+    /// Stream to Foxglove, Lichtblick and PlotJuggler on 127.0.0.1, port 8765 or this one; 0: any free one
+    #[arg(long, value_name = "PORT", num_args = 0..=1, require_equals = true, default_missing_value = "8765")]
+    pub foxglove: Option<u16>,
+}
+
 #[derive(Debug, Args)]
 pub struct RecordArgs {
     #[command(flatten)]
     pub link: LinkArgs,
+    #[command(flatten)]
+    pub foxglove: FoxgloveArgs,
     /// Recording to write
     #[arg(short, long, value_name = "FILE.mcap")]
     pub output: PathBuf,
@@ -175,13 +185,15 @@ fn pressures_kpa(text: &str) -> Result<Pressures, String> {
 #[derive(Debug, Args)]
 pub struct MonitorArgs {
     /// Session to show instead of a board; needs a table
-    #[arg(conflicts_with_all = ["port", "emulated", "allow_control", "plain"])]
+    #[arg(conflicts_with_all = ["port", "emulated", "allow_control", "plain", "foxglove"])]
     pub session: Option<PathBuf>,
     #[command(flatten)]
     pub link: LinkArgs,
     /// Port of the page on 127.0.0.1; 0: any free one
     #[arg(long, value_name = "PORT", default_value_t = 8642)]
     pub listen: u16,
+    #[command(flatten)]
+    pub foxglove: FoxgloveArgs,
     /// Folder of recordings and sessions
     #[arg(long, value_name = "FOLDER", default_value = ".")]
     pub folder: PathBuf,

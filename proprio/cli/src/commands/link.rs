@@ -1,16 +1,20 @@
 //! A link and its recording from the arguments.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use calibration_tables::{ArmFile, PLANAR_6_TABLE};
 use estimator_core::Q;
+use proprio_foxglove::FoxgloveServer;
 use proprio_link::status::{Status, TIMEOUT_S};
 use proprio_link::table::{StoredTable, TableImageError};
-use proprio_link::{FileRecorder, Flash, Link, LinkError, PortSource, Source, Subscription, VirtualDue};
+use proprio_link::{
+    FileRecorder, Flash, Link, LinkError, PortSource, Source, Subscription, VirtualDue, find_due, list,
+};
+use proprio_monitor::RunningMonitor;
 use proprio_session::{HostClock, LoadedTable};
 use telemetry::TICK_HZ;
 
-use crate::args::LinkArgs;
+use crate::args::{FoxgloveArgs, LinkArgs};
 use crate::error::Error;
 use crate::terminal;
 
@@ -29,7 +33,7 @@ type Start = fn(Box<dyn Source>, Option<u32>) -> Result<(Link, Subscription), Li
 
 fn open_by(args: &LinkArgs, start: Start) -> Result<(Option<LoadedTable<'_>>, Link, Subscription), Error> {
     let table = args.table.as_deref().map(LoadedTable::load).transpose()?;
-    let checksum = table.as_ref().map(|table| Ok::<_, Error>(table.compile::<Q>(TICK_HZ)?.checksum())).transpose()?;
+    let checksum = table.as_ref().map(checksum).transpose()?;
     let source: Box<dyn Source> = if args.emulated {
         let flash = args.flash.clone().map_or_else(|| flash_with(table.as_ref()), |path| Ok(Flash::File(path)))?;
         let arm = args.arm.clone().or_else(|| args.table.clone());
@@ -39,6 +43,36 @@ fn open_by(args: &LinkArgs, start: Start) -> Result<(Option<LoadedTable<'_>>, Li
     };
     let (link, events) = start(source, checksum)?;
     Ok((table, link, events))
+}
+
+fn checksum(table: &LoadedTable) -> Result<u32, Error> {
+    Ok(table.compile::<Q>(TICK_HZ)?.checksum())
+}
+
+/// Checksum of the table in a file.
+pub fn table_checksum(path: &Path) -> Result<u32, Error> {
+    checksum(&LoadedTable::load(path)?)
+}
+
+/// Folder of this user alone, for what running programs announce to each other.
+pub fn runtime_folder() -> Option<PathBuf> {
+    if cfg!(any(windows, target_os = "macos")) {
+        // The temporary folder there is the user's own.
+        return Some(std::env::temp_dir());
+    }
+    std::env::var_os("XDG_RUNTIME_DIR").map(PathBuf::from)
+}
+
+/// The running monitor that has the board's line, if there is one; reports that it is used.
+pub fn monitor(args: &LinkArgs) -> Option<RunningMonitor> {
+    if args.emulated {
+        return None;
+    }
+    let due = || Some(find_due(&list().ok()?).ok()?.name.clone());
+    let port = args.port.clone().or_else(due)?;
+    let monitor = RunningMonitor::find(&runtime_folder()?, &port)?;
+    terminal::eprint_line(&format_args!("{port}: through the monitor at http://{}", monitor.address()));
+    Some(monitor)
 }
 
 /// The status of the board, with a notice of the wait for it: a port without a board is silent.
@@ -70,4 +104,12 @@ pub fn stored(table: &LoadedTable) -> Result<StoredTable, Error> {
 pub fn recorder(path: &Path, link: &Link, table: Option<&LoadedTable>) -> Result<FileRecorder, Error> {
     let toml = table.map(LoadedTable::toml).transpose()?;
     Ok(FileRecorder::create(path, link, HostClock::new(), toml.as_deref())?)
+}
+
+/// Starts the live stream for other viewers, where it is asked for, and prints its address.
+pub fn stream(args: &FoxgloveArgs, link: &Link, table: Option<&LoadedTable>) -> Result<Option<FoxgloveServer>, Error> {
+    let Some(port) = args.foxglove else { return Ok(None) };
+    let server = FoxgloveServer::start(link.subscribe(), port, table.map(|table| &table.file))?;
+    terminal::eprint_line(&format_args!("Foxglove, Lichtblick, PlotJuggler: ws://{}", server.address()));
+    Ok(Some(server))
 }

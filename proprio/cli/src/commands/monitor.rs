@@ -23,12 +23,14 @@ pub fn run(args: &args::MonitorArgs) -> Result<(), Error> {
         return show(args);
     }
     if args.plain {
-        let (_, link, events) = link::open(&args.link)?;
+        let (table, link, events) = link::open(&args.link)?;
+        let _stream = link::stream(&args.foxglove, &link, table.as_ref())?;
         return plain(&link, &events, &ShutdownGuard::new());
     }
     let (table, link, events) = link::open_with_history(&args.link)?;
     let shutdown = ShutdownGuard::new();
     let warnings = link.subscribe();
+    let _stream = link::stream(&args.foxglove, &link, table.as_ref())?;
     let monitor = start(args, Some((link, events)), table)?;
     // After the end of the line the page still shows the data until then.
     while !shutdown.is_requested() {
@@ -76,6 +78,7 @@ fn start(
         folder: args.folder.clone(),
         token: token.clone(),
         session: args.session.clone(),
+        runtime_folder: link::runtime_folder(),
         help: Help::help,
         finding_text: with_remedy,
     };

@@ -20,6 +20,7 @@ pub fn run(args: &RecordArgs) -> Result<(), Error> {
     args.seconds.map_or(Ok(()), check_seconds)?;
     let (table, link, events) = link::open(&args.link)?;
     let shutdown = ShutdownGuard::new();
+    let _stream = link::stream(&args.foxglove, &link, table.as_ref())?;
     let mut session = Session::new(link::recorder(&args.output, &link, table.as_ref())?);
     let end = args.seconds.map(|seconds| Instant::now() + Duration::from_secs_f64(seconds));
     while session.ended.is_none() && !shutdown.is_requested() && end.is_none_or(|end| Instant::now() < end) {

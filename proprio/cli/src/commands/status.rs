@@ -11,8 +11,15 @@ use crate::terminal;
 use crate::{args, text_tables};
 
 pub fn run(args: &args::StatusArgs) -> Result<(), Error> {
-    let (table, link, events) = link::open(&args.link)?;
-    let status = link::status(&link, &events, table.is_some())?;
+    let status = if let Some(monitor) = link::monitor(&args.link) {
+        let checksum = args.link.table.as_deref().map(link::table_checksum).transpose()?;
+        let status = monitor.status()?;
+        let table_matches = checksum.map(|checksum| checksum == status.hello.table);
+        Status { table_matches, ..status }
+    } else {
+        let (table, link, events) = link::open(&args.link)?;
+        link::status(&link, &events, table.is_some())?
+    };
     terminal::print(&if args.json { terminal::json(&status) } else { screen(&status) })
 }
 

@@ -16,10 +16,14 @@ const SETTLED_TICK: u32 = 300;
 const SETTLED_WITHIN: Duration = Duration::from_secs(6);
 
 pub fn run(args: &TareArgs) -> Result<(), Error> {
+    let mode = if args.force { TareMode::Force } else { TareMode::IfStill };
+    if let Some(monitor) = link::monitor(&args.link) {
+        return terminal::print(&format!("{}\n", monitor.tare(mode)?));
+    }
     let (_, link, events) = link::open(&args.link)?;
     terminal::eprint_line(&"waiting up to 3 s: opening the port restarts a board, and its IMUs start");
     wait_until_settled(&events);
-    let tared = tare(&link, if args.force { TareMode::Force } else { TareMode::IfStill })?;
+    let tared = tare(&link, mode)?;
     terminal::print(&format!("{tared}\n"))
 }
 

@@ -1,5 +1,6 @@
 //! Remedies of the errors that join those of the libraries.
 
+use proprio_monitor::RunningMonitorError;
 use proprio_simulation::SimulationError;
 
 use super::Help;
@@ -13,6 +14,11 @@ impl Help for Error {
             Self::Analysis(error) => return error.help(),
             Self::Calibration(error) => return error.help(),
             Self::Monitor(error) => return error.help(),
+            Self::RunningMonitor(RunningMonitorError::Moving(_)) => "let it rest, or use --force",
+            Self::RunningMonitor(_) => "see its page, or end it and try again",
+            Self::Foxglove(proprio_foxglove::Error::Listen { .. }) => {
+                "give another with --foxglove=PORT; does another program stream to Foxglove already?"
+            }
             Self::Link(error) => return error.help(),
             Self::Drive(error) => return error.help(),
             Self::Flash(error) => return error.help(),

@@ -31,7 +31,7 @@ fn a_port_that_is_taken_is_named() {
 
 #[test]
 fn what_makes_no_sense_together_is_refused() {
-    for extra in ["--virtual", "--allow-control", "--plain", "--port=x"] {
+    for extra in ["--virtual", "--allow-control", "--plain", "--port=x", "--foxglove"] {
         let run = Folder::new().run(&["monitor", "session.csv", extra]);
         assert_eq!(run.code, Some(2), "{extra}: {}", run.stderr);
         assert!(run.stderr.contains("cannot be used with"), "{extra}: {}", run.stderr);

@@ -14,10 +14,12 @@ use tungstenite::{Message, WebSocket};
 
 use super::line::{Line, PATIENCE};
 
-/// The monitor, and the folder that it records to.
+/// The monitor, and its folders.
 pub struct Page {
     pub monitor: Monitor,
     pub folder: TempDir,
+    /// Where the monitor is announced to the user's programs.
+    pub runtime_folder: TempDir,
 }
 
 /// Answer of a server.
@@ -60,16 +62,18 @@ impl Page {
     pub fn with_table(line: &Line, token: Option<Token>, table: Option<LoadedTable>) -> Self {
         let live = Link::start_with_history(Box::new(line.clone()), None).expect("memory opens");
         let folder = tempfile::tempdir().expect("there is room for a temporary folder");
+        let runtime_folder = tempfile::tempdir().expect("there is room for a temporary folder");
         let options = Options {
             port: 0,
             table,
             folder: folder.path().to_owned(),
             token,
             session: None,
+            runtime_folder: Some(runtime_folder.path().to_owned()),
             help: ToString::to_string,
             finding_text: ToString::to_string,
         };
-        Self { monitor: Monitor::start(Some(live), options).expect("a free port"), folder }
+        Self { monitor: Monitor::start(Some(live), options).expect("a free port"), folder, runtime_folder }
     }
 
     pub fn port(&self) -> u16 {

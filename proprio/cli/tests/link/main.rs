@@ -14,6 +14,8 @@ mod older;
 mod page;
 mod reconnect;
 mod requests;
+mod running;
 mod sessions;
+mod stream;
 mod tare;
 mod uncertainty;

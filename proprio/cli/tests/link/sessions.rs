@@ -31,10 +31,12 @@ pub fn page(given: Option<PathBuf>) -> Page {
         folder: folder.path().to_owned(),
         token: None,
         session: given,
+        runtime_folder: None,
         help: ToString::to_string,
         finding_text: ToString::to_string,
     };
-    Page { monitor: Monitor::start(None, options).expect("a free port"), folder }
+    let runtime_folder = tempfile::tempdir().expect("there is room for a temporary folder");
+    Page { monitor: Monitor::start(None, options).expect("a free port"), folder, runtime_folder }
 }
 
 #[test]

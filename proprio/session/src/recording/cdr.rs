@@ -56,6 +56,16 @@ impl CdrWriter {
         self.put(value.to_le_bytes());
     }
 
+    /// A number of the type `int32`.
+    pub fn i32(&mut self, value: i32) {
+        self.put(value.to_le_bytes());
+    }
+
+    /// A number of the type `float32`.
+    pub fn f32(&mut self, value: f32) {
+        self.put(value.to_le_bytes());
+    }
+
     /// A number of the type `float64`.
     pub fn f64(&mut self, value: f64) {
         self.put(value.to_le_bytes());

@@ -12,21 +12,25 @@ use super::cdr::{CdrReader, CdrWriter};
 use crate::{HostNs, SENSOR_NAMES, Truth, degradations};
 
 /// The frame of the arm's base, {W}: x to the right, y along the tangent, z up.
-pub const FRAME: &str = "arm_base";
+const FRAME: &str = "arm_base";
 
 /// Segments in every sample of versions before 0.3.
 const EARLIER_SEGMENTS: usize = 6;
 /// Bend sensors in every sample of versions before 0.3.
 const EARLIER_SENSORS: usize = EARLIER_SEGMENTS * BEND_PER_SEGMENT;
 
-/// A message that begins with a `std_msgs/Header` in [`FRAME`].
-#[must_use]
-pub fn header(stamp: HostNs) -> CdrWriter {
+/// A message that begins with a `std_msgs/Header`.
+fn header(stamp: HostNs) -> CdrWriter {
     let mut cdr = CdrWriter::new();
+    write_header(&mut cdr, stamp);
+    cdr
+}
+
+/// Writes a `std_msgs/Header` in the frame of the arm's base, `arm_base`.
+pub fn write_header(cdr: &mut CdrWriter, stamp: HostNs) {
     cdr.u32((stamp.0 / 1_000_000_000) as u32);
     cdr.u32((stamp.0 % 1_000_000_000) as u32);
     cdr.string(FRAME);
-    cdr
 }
 
 /// `proprio_msgs/msg/Sample`.
@@ -99,15 +103,45 @@ pub fn joint_state(stamp: HostNs, estimate: &Estimate) -> Vec<u8> {
 pub fn pose_array(stamp: HostNs, estimate: &Estimate) -> Vec<u8> {
     let mut cdr = header(stamp);
     cdr.length(estimate.segments.len());
-    let mut heading = 0.0;
-    for segment in &estimate.segments {
-        let [x, y] = segment.map_or([f64::NAN; 2], |segment| segment.end.map(value));
-        heading += segment.map_or(f64::NAN, |segment| value(segment.theta));
-        // Headings count clockwise from y, turns about z counter-clockwise from x.
-        let (sin, cos) = ((FRAC_PI_2 - heading) / 2.0).sin_cos();
-        cdr.floats(&[x, y, 0.0, 0.0, 0.0, sin, cos]);
+    for end in SegmentEnd::all(estimate) {
+        cdr.floats(&[end.x_m, end.y_m, 0.0]);
+        cdr.floats(&end.quaternion());
     }
     cdr.into_bytes()
+}
+
+/// The estimated end of a segment in the frame of the arm's base; NaN where not known.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SegmentEnd {
+    /// Bend angle of the segment, rad.
+    pub theta_rad: f64,
+    /// Position to the right, m.
+    pub x_m: f64,
+    /// Position along the base's tangent, m.
+    pub y_m: f64,
+    /// Heading of the tangent, rad, clockwise from the base's.
+    pub heading_rad: f64,
+}
+
+impl SegmentEnd {
+    /// The ends of all segments, from the base.
+    pub fn all(estimate: &Estimate) -> impl Iterator<Item = Self> {
+        let mut heading_rad = 0.0;
+        estimate.segments.iter().map(move |segment| {
+            let [x_m, y_m] = segment.map_or([f64::NAN; 2], |segment| segment.end.map(value));
+            let theta_rad = segment.map_or(f64::NAN, |segment| value(segment.theta));
+            heading_rad += theta_rad;
+            Self { theta_rad, x_m, y_m, heading_rad }
+        })
+    }
+
+    /// Its orientation x, y, z, w: the x axis is along the tangent.
+    #[must_use]
+    pub fn quaternion(&self) -> [f64; 4] {
+        // Headings count clockwise from y, turns about z counter-clockwise from x.
+        let (sin, cos) = ((FRAC_PI_2 - self.heading_rad) / 2.0).sin_cos();
+        [0.0, 0.0, sin, cos]
+    }
 }
 
 /// `proprio_msgs/msg/Uncertainty`: NaN where not known.

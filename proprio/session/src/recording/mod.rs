@@ -38,9 +38,9 @@ mod writer;
 
 pub use board_messages::{BoardMessages, MessageInfo, MessageSink};
 pub use cdr::CdrWriter;
-pub use channel::{BOARD_CHANNELS, Channel, ROS2_MESSAGE};
+pub use channel::{BOARD_CHANNELS, CDR, Channel, ROS2_MESSAGE};
 pub use hole::{Hole, HoleTimes};
-pub use messages::{FRAME, chip_number, header};
+pub use messages::{SegmentEnd, chip_number, write_header};
 pub use read_error::ReadError;
 pub(crate) use reader::is_damaged_begin;
 pub use reader::{Item, RawReader, Reader, is_recording};
