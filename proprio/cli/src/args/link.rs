@@ -194,6 +194,13 @@ pub struct MonitorArgs {
 }
 
 #[derive(Debug, Args)]
+pub struct DemoArgs {
+    /// Port of the page on 127.0.0.1; 0: any free one
+    #[arg(long, value_name = "PORT", default_value_t = 8642)]
+    pub listen: u16,
+}
+
+#[derive(Debug, Args)]
 pub struct ConvertArgs {
     /// Session: CSV, recording or raw bytes (.bin)
     pub input: PathBuf,
