@@ -16,6 +16,7 @@ from ._commands import align, calibrate, check, replay, tune
 from ._errors import Error, SessionWarning
 from ._estimator import Estimator
 from ._export import to_mat, to_pandas
+from ._live import Live, open
 from ._proprio import __version__
 from ._session import read, write
 from ._table import Table
@@ -23,12 +24,14 @@ from ._table import Table
 __all__ = [
     "Error",
     "Estimator",
+    "Live",
     "SessionWarning",
     "Table",
     "__version__",
     "align",
     "calibrate",
     "check",
+    "open",
     "read",
     "replay",
     "to_mat",

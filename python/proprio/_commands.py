@@ -10,7 +10,7 @@ from typing import Any, Union
 from . import _proprio
 from ._arrays import columns, to_arrays
 from ._errors import decoded, warn
-from ._session import Session, as_list, as_paths, read
+from ._session import Session, as_files, as_list, read
 from ._table import Table, as_table
 
 AnyTable = Union[Table, str, "os.PathLike[str]"]
@@ -43,10 +43,10 @@ def replay(session: Session, table: AnyTable, *, smooth: bool = False, float: bo
         | `truth_m`, `truth_heading_rad` | as in `read` | only with truth |
         | `metrics` | dict | errors against truth, in the form of `proprio replay --json`: mm and degrees |
     """
-    with as_paths([session]) as [path]:
-        arrays, metrics, warnings = _proprio.replay(path, as_table(table), smooth, float)
-    warn(warnings)
-    return {**to_arrays(arrays), "metrics": decoded(metrics)}
+    with as_files([session]) as files:
+        arrays, metrics, warnings = _proprio.replay(files.paths[0], as_table(table), smooth, float)
+    warn(warnings, files.plain)
+    return {**to_arrays(arrays), "metrics": decoded(files.plain(metrics))}
 
 
 def check(session: Session, table: AnyTable) -> dict[str, Any]:
@@ -58,9 +58,9 @@ def check(session: Session, table: AnyTable) -> dict[str, Any]:
         `samples`: number of samples; `findings`: list of dictionaries with `sensor`, `rows`, `kind`, `figure`, `text` and `help`,
         in the form of `proprio check --json`; empty where nothing is found.
     """
-    with as_paths([session]) as [path]:
-        samples, findings, warnings = _proprio.check(path, as_table(table))
-    warn(warnings)
+    with as_files([session]) as files:
+        samples, findings, warnings = _proprio.check(files.paths[0], as_table(table))
+    warn(warnings, files.plain)
     return {"samples": samples, "findings": decoded(findings)}
 
 
@@ -82,12 +82,12 @@ def calibrate(sessions: Sessions, arm: AnyTable, *, maps: str = "auto", hysteres
         `truth`: arrays of one value for each session: `path`, `length_scale` (lengths that the markers fit, times the arm's),
         `lag_s` (time by which the truth is later than the IMUs).
     """
-    with as_paths(as_list(sessions)) as paths:
-        text, report, warnings = _proprio.calibrate(paths, as_table(arm), maps, hysteresis)
-    warn(warnings)
-    made = decoded(report)
+    with as_files(as_list(sessions)) as files:
+        text, report, warnings = _proprio.calibrate(files.paths, as_table(arm), maps, hysteresis)
+    warn(warnings, files.plain)
+    made = decoded(files.plain(report))
     lists = {name: columns(made[name]) for name in ("sensors", "segments", "truth")}
-    return {"table": Table.parse(text), **lists, "held_out": made["held_out"]}
+    return {"table": Table.parse(files.plain(text)), **lists, "held_out": made["held_out"]}
 
 
 def tune(sessions: Sessions, table: AnyTable) -> dict[str, Any]:
@@ -101,11 +101,11 @@ def tune(sessions: Sessions, table: AnyTable) -> dict[str, Any]:
         `table`: the tuned `Table`; `tuning`: the record that it has, with errors `before` and `after` in mm and degrees, and its
         `stop_reason`; `truth`: as of `calibrate`.
     """
-    with as_paths(as_list(sessions)) as paths:
-        text, report, warnings = _proprio.tune(paths, as_table(table))
-    warn(warnings)
-    made = decoded(report)
-    return {"table": Table.parse(text), "tuning": made["tuning"], "truth": columns(made["truth"])}
+    with as_files(as_list(sessions)) as files:
+        text, report, warnings = _proprio.tune(files.paths, as_table(table))
+    warn(warnings, files.plain)
+    made = decoded(files.plain(report))
+    return {"table": Table.parse(files.plain(text)), "tuning": made["tuning"], "truth": columns(made["truth"])}
 
 
 def align(session: Session, camera: Union[str, os.PathLike[str]], arm: AnyTable) -> dict[str, Any]:
@@ -123,10 +123,10 @@ def align(session: Session, camera: Union[str, os.PathLike[str]], arm: AnyTable)
         `residual_ms`, `correlation`, `matched`, `sensors`: quality, and the sensors that were compared.
         `rows`, `rows_with_truth`: numbers of samples; `truth`: as of `calibrate`.
     """
-    with as_paths([session]) as [path], tempfile.TemporaryDirectory(prefix="proprio-") as folder:
+    with as_files([session]) as files, tempfile.TemporaryDirectory(prefix="proprio-") as folder:
         output = Path(folder) / "aligned.csv"
-        report, warnings = _proprio.align(path, Path(camera), as_table(arm), output)
+        report, warnings = _proprio.align(files.paths[0], Path(camera), as_table(arm), output)
         aligned = read(output)
-    warn(warnings)
-    made = decoded(report)
+    warn(warnings, files.plain)
+    made = decoded(files.plain(report))
     return {"session": aligned, **made, "truth": columns(made["truth"])}

@@ -2,6 +2,7 @@
 
 import json
 import warnings
+from typing import Any, Callable
 
 
 class Error(Exception):
@@ -25,12 +26,12 @@ class SessionWarning(UserWarning):
     """A defect of a session past which it was used, with the text of the program `proprio`."""
 
 
-def warn(texts: "list[str]") -> None:
+def warn(texts: "list[str]", plain: "Callable[[str], str]" = str) -> None:
     """Warns of defects, at the line that called the package."""
     for text in texts:
-        warnings.warn(text, SessionWarning, stacklevel=3)
+        warnings.warn(plain(text), SessionWarning, stacklevel=3)
 
 
-def decoded(text: str):
+def decoded(text: str) -> Any:
     """A report of the extension module."""
     return json.loads(text)

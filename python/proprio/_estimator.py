@@ -44,9 +44,9 @@ class Estimator:
         Returns:
             The estimate: the keys of `replay` for one sample, so that `fusion_theta_rad` has the shape (s,).
         """
-        sample: dict[str, Any] = {"time_s": [time_s]}
-        if bend_counts is not None:
-            sample["bend_counts"] = np.asarray(bend_counts, np.float64)[np.newaxis]
+        if bend_counts is None:
+            bend_counts = np.full((self.table.segments, 2), np.nan)
+        sample: dict[str, Any] = {"time_s": [time_s], "bend_counts": np.asarray(bend_counts, np.float64)[np.newaxis]}
         if imu is not None:
             readings = np.asarray(imu, np.float64)[np.newaxis]
             sample["imu_quaternion" if readings.ndim == 3 else "imu_heading_rad"] = readings

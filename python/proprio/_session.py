@@ -51,22 +51,33 @@ def write(path: Union[str, os.PathLike[str]], session: Mapping[str, Any], *, rep
     _proprio.write(Path(path), to_raw(session), replace)
 
 
-@contextlib.contextmanager
-def as_paths(sessions: list[Session]) -> Iterator[list[Path]]:
-    """The files of sessions; arrays are written to temporary ones, `arrays-1.csv` and so on."""
-    with tempfile.TemporaryDirectory(prefix="proprio-") as folder:
-        paths = []
+class Files:
+    """The files of sessions; those of arrays are temporary, `arrays-1.csv` and so on."""
+
+    def __init__(self, sessions: list[Session], folder: str) -> None:
+        self._folder = folder + os.sep
+        self.paths = []
         for number, session in enumerate(sessions, 1):
             if isinstance(session, Mapping):
-                paths.append(Path(folder) / f"arrays-{number}.csv")
-                write(paths[-1], session)
+                self.paths.append(Path(folder) / f"arrays-{number}.csv")
+                write(self.paths[-1], session)
             else:
-                paths.append(Path(session))
+                self.paths.append(Path(session))
+
+    def plain(self, text: str) -> str:
+        """A text without the folder of the temporary files."""
+        return text.replace(self._folder, "")
+
+
+@contextlib.contextmanager
+def as_files(sessions: list[Session]) -> Iterator[Files]:
+    """The files of sessions, while the block runs."""
+    with tempfile.TemporaryDirectory(prefix="proprio-") as folder:
+        files = Files(sessions, folder)
         try:
-            yield paths
+            yield files
         except Error as error:
-            # The user has no such file.
-            raise Error(error.message.replace(folder + os.sep, ""), error.help) from None
+            raise Error(files.plain(error.message), error.help) from None
 
 
 def as_list(sessions: Union[Session, list[Session], tuple[Session, ...]]) -> list[Session]:

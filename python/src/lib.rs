@@ -11,6 +11,7 @@
 //! | `table.rs` | tables and arm descriptions |
 //! | `session.rs`, `rows.rs` | sessions as arrays; arrays as the rows of a session |
 //! | `estimates.rs`, `replay.rs`, `estimator.rs` | estimates as arrays, of a session or step by step |
+//! | `feed.rs` | the feed of a running monitor |
 //! | `check.rs`, `calibrate.rs`, `tune.rs`, `align.rs` | the other commands |
 
 mod align;
@@ -20,6 +21,7 @@ mod check;
 mod error;
 mod estimates;
 mod estimator;
+mod feed;
 mod program;
 mod replay;
 mod rows;
@@ -42,6 +44,8 @@ mod _proprio {
     use crate::check::check;
     #[pymodule_export]
     use crate::estimator::PyEstimator;
+    #[pymodule_export]
+    use crate::feed::Feed;
     #[pymodule_export]
     use crate::program::run;
     #[pymodule_export]
