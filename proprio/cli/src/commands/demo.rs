@@ -28,8 +28,7 @@ pub fn run(args: &DemoArgs) -> Result<(), Error> {
         },
         listen: args.listen,
         folder: PathBuf::from("."),
-        // The arm is a simulated one.
-        allow_control: true,
+        allow_control: false,
         plain: false,
     })
 }

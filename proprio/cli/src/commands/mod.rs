@@ -10,6 +10,7 @@ mod drive;
 mod flash;
 mod link;
 mod monitor;
+mod motion;
 mod new_arm;
 mod ports;
 mod record;
