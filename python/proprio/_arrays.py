@@ -33,6 +33,7 @@ def to_raw(session: Mapping[str, Any]) -> dict[str, Any]:
         "segments": segments,
         "time_s": time_s.tobytes(),
         "start": np.ascontiguousarray(session.get("start", np.zeros(n)), bool).tobytes(),
+        "bend_sensors": np.ascontiguousarray(session.get("bend_sensors", ()), bool).tobytes(),
         "bend_counts": _bytes(bend, "bend_counts", (n, segments, 2)),
         "imu_heading_rad": _bytes(heading, "imu_heading_rad", (n, segments)),
         "imu_quaternion": _bytes(quaternion, "imu_quaternion", (n, segments, 4)),

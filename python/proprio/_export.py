@@ -37,7 +37,7 @@ def to_pandas(arrays: Mapping[str, Any]) -> pandas.DataFrame:
     rows = len(arrays["time_s"])
     found: dict[str, np.ndarray] = {}
     for name, values in arrays.items():
-        if name != "time_s" and isinstance(values, np.ndarray) and len(values) == rows:
+        if name not in ("time_s", "bend_sensors") and isinstance(values, np.ndarray) and len(values) == rows:
             found.update(_named(name, values))
     return pandas.DataFrame(found, index=pandas.Index(arrays["time_s"], name="time_s"))
 

@@ -26,6 +26,7 @@ def read(path: Union[str, os.PathLike[str]]) -> dict[str, Any]:
     | `time_s` | (n,) float | s, by the board's clock or the file's |
     | `start` | (n,) bool | the arm was tared, and the estimator starts, before this sample |
     | `bend_counts` | (n, s, 2) float | ADC counts, 0 to 4095, of the bend sensors a and b |
+    | `bend_sensors` | (s, 2) bool | the bend sensors that the session has |
     | `imu_heading_rad` | (n, s) float | rad, clockwise, within ±π |
     | `imu_quaternion` | (n, s, 4) float | w, x, y, z; only where the file has quaternions |
     | `truth_m` | (n, s, 2) float | m, x and y of each segment's end; only with truth |
@@ -45,7 +46,8 @@ def read(path: Union[str, os.PathLike[str]]) -> dict[str, Any]:
 def write(path: Union[str, os.PathLike[str]], session: Mapping[str, Any], *, replace: bool = False) -> None:
     """Writes arrays, as `read` gives them, as a session in CSV. Raises `Error`.
 
-    `time_s` is needed, and one of `bend_counts`, `imu_heading_rad` and `imu_quaternion`; the board's output is left out. Every
+    `time_s` is needed, and one of `bend_counts`, `imu_heading_rad` and `imu_quaternion`; the board's output is left out.
+    Bend sensors have columns where `bend_sensors` is true; without it, where they were ever read. Every
     value comes back to the bit; times are rounded to 1 µs. A file of this name is replaced only with `replace`.
     """
     _proprio.write(Path(path), to_raw(session), replace)

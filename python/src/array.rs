@@ -14,7 +14,7 @@ pub enum Values {
     Bool(Vec<bool>),
 }
 
-/// Arrays with their names, all of the same number of rows.
+/// Arrays with their names.
 #[derive(Debug, Default)]
 pub struct Arrays(Vec<(String, Values, Vec<usize>)>);
 

@@ -26,6 +26,9 @@ pub struct SessionArrays {
     start: Vec<u8>,
     #[pyo3(item)]
     bend_counts: Vec<u8>,
+    /// One byte for each bend sensor: it is wired; empty where only those are that were ever read.
+    #[pyo3(item)]
+    bend_sensors: Vec<u8>,
     /// Headings, rad; empty where there are quaternions.
     #[pyo3(item)]
     imu_heading_rad: Vec<u8>,
@@ -83,6 +86,7 @@ struct Columns<'a> {
     segments: usize,
     time_s: Vec<f64>,
     start: &'a [u8],
+    bend_sensors: &'a [u8],
     bend: Vec<f64>,
     heading: Vec<f64>,
     quaternion: Vec<f64>,
@@ -96,6 +100,7 @@ impl<'a> Columns<'a> {
             segments: arrays.segments,
             time_s: floats(&arrays.time_s),
             start: &arrays.start,
+            bend_sensors: &arrays.bend_sensors,
             bend: floats(&arrays.bend_counts),
             heading: floats(&arrays.imu_heading_rad),
             quaternion: floats(&arrays.imu_quaternion),
@@ -104,12 +109,15 @@ impl<'a> Columns<'a> {
         }
     }
 
-    /// The columns of a file: bend sensors that were never read have none.
+    /// The columns of a file: bend sensors that are not wired have none.
     fn layout(&self) -> CsvLayout {
         let is_read = |i: usize, place: usize| {
             self.bend.iter().skip(SENSORS_PER_SEGMENT * i + place).step_by(SENSORS_PER_SEGMENT * self.segments)
         };
-        let has = |i, place| is_read(i, place).any(|counts| !counts.is_nan());
+        let has = |i: usize, place: usize| match self.bend_sensors.get(SENSORS_PER_SEGMENT * i + place) {
+            Some(wired) => *wired != 0,
+            None => is_read(i, place).any(|counts| !counts.is_nan()),
+        };
         CsvLayout {
             bend_sensors: (0..self.segments).map(|i| [has(i, 0), has(i, 1)]).collect(),
             imu: if self.quaternion.is_empty() { ImuForm::Heading } else { ImuForm::Quaternion },

@@ -151,6 +151,7 @@ fn read_arrays(path: &std::path::Path) -> Result<(Arrays, Vec<String>), Error> {
     let needs = RequiredColumns { bend: vec![None; header.segments.min(MAX_SEGMENTS)], truth: false };
     let mut reader = SessionReader::open(path, &needs)?;
     let segments = reader.segments().max(1);
+    let sensors: Vec<[bool; 2]> = reader.bend_sensors().take(segments).collect();
     let mut readings = Readings::new(segments);
     let mut board = BoardColumns { segments, tick: Vec::new(), theta_rad: Vec::new(), end_m: Vec::new() };
     while let Some(row) = reader.next_row()? {
@@ -160,6 +161,7 @@ fn read_arrays(path: &std::path::Path) -> Result<(Arrays, Vec<String>), Error> {
         }
     }
     let mut arrays = readings.into_arrays();
+    arrays.add("bend_sensors", Values::Bool(sensors.into_iter().flatten().collect()), &[2]);
     board.add_to(&mut arrays);
     let warnings = reader.defects().warnings().map(|warning| format!("{}: {warning}", path.display())).collect();
     Ok((arrays, warnings))

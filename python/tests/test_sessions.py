@@ -19,6 +19,7 @@ class Sessions(InFolder):
                 "time_s": (600,),
                 "start": (600,),
                 "bend_counts": (600, 6, 2),
+                "bend_sensors": (6, 2),
                 "imu_heading_rad": (600, 6),
                 "truth_m": (600, 6, 2),
                 "truth_heading_rad": (600, 6),
@@ -45,6 +46,12 @@ class Sessions(InFolder):
             for key in session:
                 self.assertTrue(same(again[key], session[key]), (name, key))
 
+    def test_a_bend_sensor_that_is_never_read_keeps_its_column(self):
+        session = proprio.read(SESSIONS / "scenario-1.csv")
+        session["bend_counts"][:, 2, 0] = np.nan
+        estimates = proprio.replay(session, proprio.Table.reference())
+        self.assertFalse(np.isnan(estimates["fusion_theta_rad"][-1]).any())
+
     def test_a_file_is_replaced_only_when_asked(self):
         session = proprio.read(SESSIONS / "scenario-1.csv")
         path = self.folder / "session.csv"
@@ -54,7 +61,7 @@ class Sessions(InFolder):
         proprio.write(path, session, replace=True)
 
     def test_a_recording_has_the_boards_estimates(self):
-        program(self.folder, "record", "--virtual", "--seconds", "3", "-o", "session.mcap")
+        program(self.folder, "record", "--virtual", "--seconds", "12", "-o", "session.mcap")
         session = proprio.read(self.folder / "session.mcap")
         self.assertGreater(len(session["time_s"]), 100)
         known = ~np.isnan(session["board_theta_rad"][:, 0])

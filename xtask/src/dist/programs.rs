@@ -1,6 +1,7 @@
 //! The programs with the files that they find beside themselves.
 
 use std::env;
+use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -19,12 +20,15 @@ pub struct Files {
 impl Files {
     /// Builds the programs; `firmware` is written already.
     pub fn build(firmware: &[PathBuf]) -> Result<Self, String> {
-        let packages = ["--package", "proprio", "--bin", "proprio", "--package", "virtual-due", "--bin", "virtual-due"];
-        cargo(&[&["build", "--locked", ANY_RUST, "--profile", "bundle"], &packages[..]].concat(), &[])?;
-        let program = |name| target().join("bundle").join(format!("{name}{}", env::consts::EXE_SUFFIX));
+        cargo(&["build", "--locked", "--profile", "bundle", "--package", "proprio", "--bin", "proprio"], &[])?;
+        // In the dev profile, in which the tests run it: its heavy crates are optimised, and built already.
+        let board = ["rustc", "--locked", ANY_RUST, "--package", "virtual-due", "--bin", "virtual-due"];
+        cargo(&[&board[..], &["--", "-C", "strip=symbols"]].concat(), &[])?;
+        let program = |folder, name| target().join(folder).join(format!("{name}{}", env::consts::EXE_SUFFIX));
         let table = root().join("calibration-tables").join("planar-6.toml");
-        let companions = [program("virtual-due")].into_iter().chain(firmware.iter().cloned()).chain([table]).collect();
-        Ok(Self { proprio: program("proprio"), companions })
+        let companions =
+            [program("debug", "virtual-due")].into_iter().chain(firmware.iter().cloned()).chain([table]).collect();
+        Ok(Self { proprio: program("bundle", "proprio"), companions })
     }
 }
 
@@ -39,6 +43,6 @@ pub fn archive(files: &Files, folder: &Path) -> Result<PathBuf, String> {
     }
     let archive = folder.join(format!("{name}.tar.gz"));
     check(Command::new("tar").current_dir(folder).arg("-czf").arg(&archive).arg(&name))?;
-    emptied(&content)?;
+    fs::remove_dir_all(&content).map_err(|error| format!("{}: {error}", content.display()))?;
     Ok(archive)
 }
