@@ -19,7 +19,7 @@ impl Help for LinkError {
             Self::Open { source, .. } => open_remedy(source),
             Self::NoVirtualDue => {
                 "take proprio from its archive or its Python package, or build it: cargo virtual-due --version"
-            },
+            }
             Self::NoFirmware(_) => {
                 "put firmware.elf beside the program, name one with --firmware, or build it: cargo build --profile firmware -p firmware --target thumbv7m-none-eabi"
             }
