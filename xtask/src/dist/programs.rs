@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use super::{copy, emptied};
+use super::files::{copy, emptied};
 use crate::board::ANY_RUST;
 use crate::tool::{cargo, check, root, target};
 
@@ -39,7 +39,7 @@ pub fn archive(files: &Files, folder: &Path) -> Result<PathBuf, String> {
     emptied(&content)?;
     let licences = ["LICENSE-APACHE", "LICENSE-MIT"].map(|licence| root().join(licence));
     for file in [&files.proprio].into_iter().chain(&files.companions).chain(&licences) {
-        copy(file, &content, &file.file_name().unwrap_or_default().to_string_lossy())?;
+        copy(file, &content)?;
     }
     let archive = folder.join(format!("{name}.tar.gz"));
     check(Command::new("tar").current_dir(folder).arg("-czf").arg(&archive).arg(&name))?;

@@ -4,8 +4,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
+use super::files::{copy, emptied};
 use super::programs::Files;
-use super::{copy, emptied};
 use crate::tool::{check, root, target};
 
 /// The version of maturin, from PyPI.
@@ -32,16 +32,18 @@ pub fn write(python: &Python, files: &Files, folder: &Path) -> Result<PathBuf, S
     let inside = package.join("proprio").join("files");
     emptied(&inside)?;
     for file in &files.companions {
-        copy(file, &inside, &file.file_name().unwrap_or_default().to_string_lossy())?;
+        copy(file, &inside)?;
     }
     let wheels = target().join("wheels");
     emptied(&wheels)?;
     let maturin = maturin(python)?;
     let arguments = ["build", "--locked", "--profile", "bundle", "--out"];
-    check(Command::new(maturin).current_dir(&package).args(arguments).arg(&wheels))?;
+    let mut build = Command::new(maturin);
+    build.current_dir(&package).env("CARGO_TARGET_DIR", target()).args(arguments).arg(&wheels);
+    check(&mut build)?;
     let mut built = fs::read_dir(&wheels).map_err(|error| format!("{}: {error}", wheels.display()))?.flatten();
     let wheel = built.next().map(|entry| entry.path()).ok_or("maturin has made no wheel")?;
-    copy(&wheel, folder, &wheel.file_name().unwrap_or_default().to_string_lossy())
+    copy(&wheel, folder)
 }
 
 /// The program maturin, in a virtual environment below `target`.
