@@ -4,10 +4,10 @@ use std::path::PathBuf;
 
 use estimator_core::Method;
 use proprio::Help;
+use proprio_calibration::JudgedTruth;
 use proprio_calibration::calibrate::{
     Calibration, CalibrationOptions, HeldOut, HysteresisMode, MapKind, MapMode, calibrate as make_table,
 };
-use proprio_calibration::{Error, JudgedTruth};
 use proprio_session::NoProgress;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -26,7 +26,7 @@ pub fn calibrate(
     hysteresis: &str,
 ) -> PyResult<(String, String, Vec<String>)> {
     let options = CalibrationOptions { maps: map_mode(maps)?, hysteresis: hysteresis_mode(hysteresis)? };
-    let run = || Ok::<_, Error>(make_table(&sessions, &arm.load()?, options, &mut NoProgress)?);
+    let run = || make_table(&sessions, &arm.load()?, options, &mut NoProgress);
     let made = py.detach(run).map_err(|error| exception(py, error))?;
     let names: Vec<String> = sessions.iter().map(|session| session.display().to_string()).collect();
     let mut warnings = Vec::new();
@@ -92,7 +92,7 @@ fn report(made: &Calibration) -> Value {
             json!({
                 "segment": segment.segment,
                 "held_back_rmse_deg": segment.held_back_rmse_deg,
-                "maps": segment.maps.iter().map(map_name).collect::<Vec<_>>(),
+                "maps": segment.maps.iter().copied().map(map_name).collect::<Vec<_>>(),
                 "imu_scale": segment.imu_scale,
             })
         })
@@ -101,17 +101,17 @@ fn report(made: &Calibration) -> Value {
     json!({ "sensors": sensors, "segments": segments, "held_out": held_out, "truth": truth_report(made.truth.iter()) })
 }
 
-fn map_name((kind, has_memory): &(MapKind, bool)) -> String {
+fn map_name((kind, has_memory): (MapKind, bool)) -> String {
     let kind = match kind {
         MapKind::Quadratic => "quadratic",
         MapKind::Curve => "curve",
     };
-    if *has_memory { format!("{kind} with memory") } else { kind.to_owned() }
+    if has_memory { format!("{kind} with memory") } else { kind.to_owned() }
 }
 
 /// RMSE of the tip by the name of each method, mm.
 fn held_out(held_out: &HeldOut) -> Value {
     let rmse =
         Method::ALL.iter().zip(held_out.tip_rmse_mm).map(|(method, rmse)| (method.name().to_owned(), json!(rmse)));
-    json!({ "tip_rmse_mm": Map::from_iter(rmse) })
+    json!({ "tip_rmse_mm": rmse.collect::<Map<_, _>>() })
 }

@@ -1,7 +1,7 @@
 //! Estimates as arrays, one row for each sample.
 
 use calibration_tables::MAX_SEGMENTS;
-use estimator_core::{FusedOps, Method, Shape, VARIANCE_SCALE};
+use estimator_core::{Angle, Condition, Covariance, FusedOps, Method, Shape, VARIANCE_SCALE};
 use proprio_analysis::Outcome;
 
 use crate::array::{Arrays, Values};
@@ -29,7 +29,7 @@ struct Shapes {
 impl Shapes {
     fn add<S: FusedOps>(&mut self, shape: &Shape<S, MAX_SEGMENTS>) {
         for segment in shape {
-            self.theta_rad.push(segment.theta.map_or(f64::NAN, |theta| theta.rad()));
+            self.theta_rad.push(segment.theta.map_or(f64::NAN, Angle::rad));
             self.end_m.extend(segment.end.as_ref().map_or([f64::NAN; 2], |end| [end.x.to_f64(), end.y.to_f64()]));
         }
     }
@@ -61,9 +61,9 @@ impl Estimates {
             let theta = uncertainty.and_then(|of| of.theta);
             self.theta_variance_rad2.push(theta.map_or(f64::NAN, |theta| theta.to_f64() / VARIANCE_SCALE));
             let end = uncertainty.and_then(|of| of.end);
-            self.end_covariance_m2.extend(end.map_or([f64::NAN; 3], |end| end.square_metres()));
+            self.end_covariance_m2.extend(end.map_or([f64::NAN; 3], Covariance::square_metres));
             self.contact.push(outcome.contacts.get(i).is_some_and(|contact| contact.in_contact));
-            self.degraded.push(outcome.conditions.get(i).is_some_and(|condition| condition.is_degraded()));
+            self.degraded.push(outcome.conditions.get(i).copied().is_some_and(Condition::is_degraded));
         }
     }
 

@@ -26,10 +26,10 @@ enum AnyEstimator {
     Float(Box<HostEstimator<'static, f64>>),
 }
 
-fn estimator<S: FusedOps>(table: &LoadedTable, rate_hz: f64) -> Result<Box<HostEstimator<'static, S>>, Error>
-where
-    S: 'static,
-{
+fn estimator<S: FusedOps + 'static>(
+    table: &LoadedTable,
+    rate_hz: f64,
+) -> Result<Box<HostEstimator<'static, S>>, Error> {
     let compiled = Box::leak(Box::new(table.compile::<S>(rate_hz)?));
     let config: &'static ArmConfig<'static, S> = Box::leak(Box::new(compiled.config()));
     Ok(Box::new(Estimator::new(config).expect("the file was checked")))

@@ -14,6 +14,8 @@
 //! | `feed.rs` | the feed of a running monitor |
 //! | `check.rs`, `calibrate.rs`, `tune.rs`, `align.rs` | the other commands |
 
+#![expect(clippy::needless_pass_by_value, reason = "PyO3 gives a function arguments of its own")]
+
 mod align;
 mod array;
 mod calibrate;

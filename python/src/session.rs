@@ -1,9 +1,9 @@
 //! Sessions as arrays, and arrays as sessions.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use calibration_tables::MAX_SEGMENTS;
-use estimator_core::ImuReading;
+use estimator_core::{ImuReading, Phase};
 use proprio_session::{Error, Existing, Header, OutputFile, RequiredColumns, Row, SessionReader};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -87,7 +87,7 @@ impl Readings {
         self.bend_counts.extend(counts.map(|counts| counts.map_or(f64::NAN, f64::from)));
         for imu in &row.sample.imu[..self.segments] {
             let heading = imu.and_then(|reading| reading.heading());
-            self.imu_heading_rad.push(heading.map_or(f64::NAN, |heading| heading.rad()));
+            self.imu_heading_rad.push(heading.map_or(f64::NAN, Phase::rad));
             self.imu_quaternion.extend(match imu {
                 Some(ImuReading::Quaternion(parts)) => parts.map(|part| f64::from(part) / QUATERNION_ONE),
                 Some(ImuReading::Heading(_)) | None => [f64::NAN; 4],
@@ -146,7 +146,7 @@ pub fn read(py: Python<'_>, path: PathBuf) -> PyResult<(Bound<'_, PyDict>, Vec<S
     Ok((arrays.into_dict(py)?, warnings))
 }
 
-fn read_arrays(path: &std::path::Path) -> Result<(Arrays, Vec<String>), Error> {
+fn read_arrays(path: &Path) -> Result<(Arrays, Vec<String>), Error> {
     let header = Header::of(path)?;
     let needs = RequiredColumns { bend: vec![None; header.segments.min(MAX_SEGMENTS)], truth: false };
     let mut reader = SessionReader::open(path, &needs)?;

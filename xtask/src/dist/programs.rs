@@ -13,23 +13,38 @@ use crate::tool::{cargo, check, root, target};
 pub struct Files {
     /// The program `proprio`.
     proprio: PathBuf,
-    /// The programs' other files: the emulated board's program, the firmware, the reference arm's table.
+    /// The programs' other files: the emulated board's program, the firmware, the reference arm's table, the licences.
     pub companions: Vec<PathBuf>,
 }
 
 impl Files {
     /// Builds the programs; `firmware` is written already.
     pub fn build(firmware: &[PathBuf]) -> Result<Self, String> {
-        cargo(&["build", "--locked", "--profile", "bundle", "--package", "proprio", "--bin", "proprio"], &[])?;
-        // In the dev profile, in which the tests run it: its heavy crates are optimised, and built already.
-        let board = ["rustc", "--locked", ANY_RUST, "--package", "virtual-due", "--bin", "virtual-due"];
-        cargo(&[&board[..], &["--", "-C", "strip=symbols"]].concat(), &[])?;
+        // With the features that the Python package needs of all crates, so that its build finds them.
+        let both = ["--package", "proprio", "--package", "proprio-python", "--bin", "proprio"];
+        cargo(&[&["build", "--locked", "--profile", "bundle"], &both[..]].concat(), &[])?;
         let program = |folder, name| target().join(folder).join(format!("{name}{}", env::consts::EXE_SUFFIX));
-        let table = root().join("calibration-tables").join("planar-6.toml");
-        let companions =
-            [program("debug", "virtual-due")].into_iter().chain(firmware.iter().cloned()).chain([table]).collect();
+        let board = emulated_board(&program("debug", "virtual-due"))?;
+        let others =
+            ["calibration-tables/planar-6.toml", "LICENSE-APACHE", "LICENSE-MIT"].map(|file| root().join(file));
+        let companions = [board].into_iter().chain(firmware.iter().cloned()).chain(others).collect();
         Ok(Self { proprio: program("bundle", "proprio"), companions })
     }
+}
+
+/// Builds the emulated board's program in the dev profile, in which the tests run it: its heavy crates are optimised there. It
+/// has the features of `cargo demo`, which finds the same build. Returns the path of a stripped copy.
+fn emulated_board(built: &Path) -> Result<PathBuf, String> {
+    let packages = ["--package", "proprio", "--package", "board-tests", "--package", "virtual-due"];
+    cargo(&[&["build", "--locked", ANY_RUST], &packages[..], &["--bin", "virtual-due"]].concat(), &[])?;
+    let folder = target().join("stripped");
+    emptied(&folder)?;
+    let program = copy(built, &folder)?;
+    // Every Linux and macOS with a linker has it; on Windows the program has its debug information in another file.
+    if !cfg!(windows) {
+        check(Command::new("strip").arg(&program))?;
+    }
+    Ok(program)
 }
 
 /// Writes `proprio-VERSION-TARGET.tar.gz` and returns its path.
@@ -37,8 +52,7 @@ pub fn archive(files: &Files, folder: &Path) -> Result<PathBuf, String> {
     let name = format!("proprio-{}-{}-{}", env!("CARGO_PKG_VERSION"), env::consts::ARCH, env::consts::OS);
     let content = folder.join(&name);
     emptied(&content)?;
-    let licences = ["LICENSE-APACHE", "LICENSE-MIT"].map(|licence| root().join(licence));
-    for file in [&files.proprio].into_iter().chain(&files.companions).chain(&licences) {
+    for file in [&files.proprio].into_iter().chain(&files.companions) {
         copy(file, &content)?;
     }
     let archive = folder.join(format!("{name}.tar.gz"));
