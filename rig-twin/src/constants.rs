@@ -93,7 +93,7 @@ pub(crate) const ACTUATOR_CREEP_SHARE: f64 = 0.08;
 // Programs of motion.
 
 /// Rest at the start of every session (assumed: longer than the tare's 1 s).
-pub(crate) const REST_S: f64 = 5.0;
+pub const REST_S: f64 = 5.0;
 /// Time in which the swings grow to full size after the rest (assumed).
 pub(crate) const FADE_IN_S: f64 = 4.0;
 /// Period range of the sweep's swings, slow, so that a camera follows (assumed).

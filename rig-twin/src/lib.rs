@@ -80,7 +80,7 @@ mod smooth_step;
 mod temperature;
 
 pub use camera::{Camera, Frame};
-pub use constants::{BEND_SENSORS, MAX_REGULATORS, MAX_SEGMENTS, REGULATORS, SEGMENTS};
+pub use constants::{BEND_SENSORS, MAX_REGULATORS, MAX_SEGMENTS, REGULATORS, REST_S, SEGMENTS};
 pub use contact::Push;
 pub use faults::{BendPlace, Fault, FaultError, Hold, SegmentNumber, TimedFault, parse_schedule, reference_table};
 pub use heading_drift::HeadingDrift;

@@ -15,8 +15,8 @@ use rig_twin::TimedFault;
 pub use arm::NewArmArgs;
 pub use force::ForceArgs;
 pub use link::{
-    ConvertArgs, DriveArgs, FlashArgs, FoxgloveArgs, LinkArgs, MonitorArgs, PortsArgs, RecordArgs, RecoverArgs,
-    StatusArgs, TableArgs, TableCommand, TareArgs,
+    ConvertArgs, DemoArgs, DriveArgs, FlashArgs, FoxgloveArgs, LinkArgs, MonitorArgs, PortsArgs, RecordArgs,
+    RecoverArgs, StatusArgs, TableArgs, TableCommand, TareArgs,
 };
 
 /// Colours of help and errors; off where stderr is not a terminal or NO_COLOR is set.
@@ -35,6 +35,8 @@ pub struct Cli {
 
 #[derive(Debug, Subcommand)]
 pub enum Command {
+    /// Show the firmware on an emulated Due with a simulated arm, on a page in the browser
+    Demo(DemoArgs),
     /// Make the description of an arm, with the pins of its sensors and regulators; asks for what is not given
     NewArm(NewArmArgs),
     /// Add the truth of a camera with its own clock to a session

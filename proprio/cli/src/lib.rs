@@ -24,18 +24,19 @@ mod status_line;
 mod terminal;
 mod text_tables;
 
+use std::ffi::OsString;
 use std::panic::catch_unwind;
-use std::process::ExitCode;
 
 use clap::Parser;
 
-use crate::help::Help;
+pub use crate::error::Error;
+pub use crate::help::Help;
 
-/// Runs the command of the program's arguments. Its exit status: 0 done, 1 a finding of `check`, a loss in `recover`, or a fault of
+/// Runs the command of `arguments`, the first of which is the program's name. Its exit status: 0 done, 1 a finding of `check`, a loss in `recover`, or a fault of
 /// proprio, 2 an input or a command that cannot be used.
 #[must_use]
-pub fn run() -> ExitCode {
-    let command = args::Cli::parse().command;
+pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
+    let command = args::Cli::parse_from(arguments).command;
     interrupt::install();
     match catch_unwind(|| command.run()) {
         Ok(Ok(status)) => status,
@@ -45,13 +46,13 @@ pub fn run() -> ExitCode {
             terminal::eprint_line(&format_args!(
                 "{error_style}error:{error_style:#} {error}\n{help_style}  help:{help_style:#} {help}"
             ));
-            ExitCode::from(if error.is_fault() { 1 } else { 2 })
+            if error.is_fault() { 1 } else { 2 }
         }
         Err(_) => {
             terminal::eprint_line(
                 &"This is a fault of proprio. Please report it, with the message above and the command.",
             );
-            ExitCode::from(1)
+            1
         }
     }
 }

@@ -3,5 +3,5 @@
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    proprio::run()
+    proprio::run(std::env::args_os()).into()
 }

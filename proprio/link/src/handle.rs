@@ -63,6 +63,12 @@ impl Link {
         Ok((Self { requests, shared, thread: Some(thread) }, subscription))
     }
 
+    /// A second handle of the link, for another thread: the link ends with the first one.
+    #[must_use]
+    pub fn second_handle(&self) -> Self {
+        Self { requests: self.requests.clone(), shared: Arc::clone(&self.shared), thread: None }
+    }
+
     /// Subscribes to all events from now on.
     #[must_use]
     pub fn subscribe(&self) -> Subscription {
@@ -170,9 +176,9 @@ fn outcome(answered: &Receiver<Result<(), RequestError>>) -> Result<(), LinkErro
 
 impl Drop for Link {
     fn drop(&mut self) {
-        // The thread may have ended already.
-        let _ = self.requests.send(LinkRequest::Stop);
         if let Some(thread) = self.thread.take() {
+            // It may have ended already.
+            let _ = self.requests.send(LinkRequest::Stop);
             let _ = thread.join();
         }
     }

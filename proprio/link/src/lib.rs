@@ -33,13 +33,13 @@
 //! | `table/` | transfer of the table to the board and back |
 //! | `source.rs` | [`Source`]: opens a line, once or again |
 //! | `ports.rs`, `serial.rs`, `virtual_due.rs` | the sources: serial ports and the emulated Due |
-//! | `firmware_path.rs` | the prebuilt firmware |
+//! | `companions.rs` | the emulated board's program and the firmware, beside the program |
 
+mod companions;
 pub mod drive;
 mod error;
 mod event;
 mod file_recorder;
-mod firmware_path;
 mod handle;
 mod history;
 mod ports;
@@ -55,10 +55,10 @@ mod tare;
 mod virtual_due;
 mod worker;
 
+pub use companions::{built_firmware, firmware_path, set_program_folder};
 pub use error::LinkError;
 pub use event::{EventKind, LinkEvent, Mismatch};
 pub use file_recorder::FileRecorder;
-pub use firmware_path::{built_firmware, firmware_path};
 pub use handle::{Link, PendingRequest};
 pub use history::ReceivedBytes;
 pub use ports::{Port, PortKind, find_due, list, udev_rules};

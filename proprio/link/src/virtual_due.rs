@@ -1,9 +1,8 @@
 //! The emulated Due as a line: the program `virtual-due`, with pipes as its serial port.
 
 use std::collections::VecDeque;
-use std::env;
 use std::io::{self, BufRead, BufReader, Read, Write};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::{Child, ChildStderr, ChildStdin, ChildStdout, Command, Stdio};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -13,11 +12,8 @@ use board_table::STORE_BYTES;
 use tempfile::NamedTempFile;
 
 use super::{LinkError, Source, Transport};
-use crate::firmware_path::firmware_path;
+use crate::companions::{firmware_path, virtual_due_path};
 use crate::table::StoredTable;
-
-/// Environment variable with the path of the program, where it is in no usual folder.
-const VARIABLE: &str = "PROPRIO_VIRTUAL_DUE";
 
 /// Longest wait of a read, as on a serial port.
 const WAIT: Duration = Duration::from_millis(10);
@@ -71,8 +67,8 @@ impl Flash {
 
 impl Source for VirtualDue {
     fn open(&mut self) -> Result<(String, Box<dyn Transport>), LinkError> {
-        let program = program().ok_or(LinkError::NoVirtualDue)?;
-        let firmware = self.firmware.clone().unwrap_or_else(|| firmware_path(&program));
+        let program = virtual_due_path().ok_or(LinkError::NoVirtualDue)?;
+        let firmware = self.firmware.clone().unwrap_or_else(firmware_path);
         if !firmware.is_file() {
             return Err(LinkError::NoFirmware(firmware));
         }
@@ -106,18 +102,6 @@ fn detach(command: &mut Command) {
 fn detach(command: &mut Command) {
     const CREATE_NEW_PROCESS_GROUP: u32 = 0x200;
     std::os::windows::process::CommandExt::creation_flags(command, CREATE_NEW_PROCESS_GROUP);
-}
-
-/// The program: named by the variable, in the folder of this one, in cargo's folder for the dev profile, or on the PATH.
-fn program() -> Option<PathBuf> {
-    let name = format!("virtual-due{}", env::consts::EXE_SUFFIX);
-    let own = env::current_exe().ok();
-    let own_folder = own.as_deref().and_then(Path::parent);
-    let built = own_folder.and_then(Path::parent).map(|target| target.join("debug"));
-    let path = env::var_os("PATH").unwrap_or_default();
-    let folders = own_folder.map(Path::to_owned).into_iter().chain(built).chain(env::split_paths(&path));
-    let named = env::var_os(VARIABLE).map(PathBuf::from);
-    named.into_iter().chain(folders.map(|folder| folder.join(&name))).find(|program| program.is_file())
 }
 
 /// The program while it runs.

@@ -2,6 +2,7 @@
 
 mod arms;
 mod boot;
+mod demo;
 #[cfg(unix)]
 mod drive;
 mod engine;
@@ -16,6 +17,7 @@ mod late_recording;
 mod link;
 #[cfg(unix)]
 mod noise;
+mod page;
 mod page_table;
 mod pressures;
 #[cfg(unix)]

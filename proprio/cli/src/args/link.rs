@@ -26,7 +26,7 @@ pub struct LinkArgs {
     /// File of the emulated Due's flash, kept between runs [default: one with --table, or with the reference arm's table]
     #[arg(long, value_name = "FILE", requires = "emulated")]
     pub flash: Option<PathBuf>,
-    /// Scenario of the simulated arm until the firmware drives it: 1 free swings, 2 pushes, 3 an obstacle
+    /// Scenario of the simulated arm: 1 free swings, 2 pushes, 3 an obstacle
     #[arg(long, value_name = "1|2|3", requires = "emulated", default_value_t = 1, value_parser = clap::value_parser!(u8).range(1..=3))]
     pub scenario: u8,
     /// Seed of the simulated arm's motion and noise
@@ -197,12 +197,19 @@ pub struct MonitorArgs {
     /// Folder of recordings and sessions
     #[arg(long, value_name = "FOLDER", default_value = ".")]
     pub folder: PathBuf,
-    /// Allow control from the page (prints an access token)
+    /// Allow control from the page (prints an access token); without it, an emulated Due's arm moves by its scenario
     #[arg(long)]
     pub allow_control: bool,
     /// Print one line per second instead
     #[arg(long, conflicts_with_all = ["listen", "folder", "allow_control"])]
     pub plain: bool,
+}
+
+#[derive(Debug, Args)]
+pub struct DemoArgs {
+    /// Port of the page on 127.0.0.1; 0: any free one
+    #[arg(long, value_name = "PORT", default_value_t = 8642)]
+    pub listen: u16,
 }
 
 #[derive(Debug, Args)]

@@ -42,8 +42,7 @@ fn firmware(args: &FlashArgs) -> Firmware {
     match (&args.firmware, &args.from_source) {
         (Some(file), _) => Firmware::File(file.clone()),
         (None, Some(folder)) => Firmware::Source(folder.clone()),
-        // Without a path of its own it looks below the current folder alone.
-        (None, None) => Firmware::File(firmware_path(&std::env::current_exe().unwrap_or_default())),
+        (None, None) => Firmware::File(firmware_path()),
     }
 }
 

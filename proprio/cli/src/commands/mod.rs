@@ -5,10 +5,12 @@ mod calibrate;
 mod check;
 mod completions;
 mod convert;
+mod demo;
 mod drive;
 mod flash;
 mod link;
 mod monitor;
+mod motion;
 mod new_arm;
 mod ports;
 mod record;
@@ -23,14 +25,12 @@ mod truth;
 mod tune;
 mod warnings;
 
-use std::process::ExitCode;
-
 use crate::args::Command;
 use crate::error::Error;
 
 impl Command {
     /// Runs the command. Its exit status is 0, but 1 for a [`check`] with findings and a [`recover`] with a loss.
-    pub fn run(self) -> Result<ExitCode, Error> {
+    pub fn run(self) -> Result<u8, Error> {
         match self {
             Self::Check(args) => return check::run(&args),
             Self::Recover(args) => return recover::run(&args),
@@ -49,9 +49,10 @@ impl Command {
             Self::Record(args) => record::run(&args),
             Self::Drive(args) => drive::run(&args),
             Self::Monitor(args) => monitor::run(&args),
+            Self::Demo(args) => demo::run(&args),
             Self::Convert(args) => convert::run(&args),
             Self::Completions(args) => completions::run(&args),
         }?;
-        Ok(ExitCode::SUCCESS)
+        Ok(0)
     }
 }

@@ -7,6 +7,7 @@ use proprio_monitor::{Monitor, Options, Plain, Token};
 use proprio_session::{HostClock, LoadedTable, SessionReader};
 
 use super::link;
+use super::motion::Motion;
 use super::warnings::with_remedy;
 use crate::error::Error;
 use crate::help::Help;
@@ -31,13 +32,18 @@ pub fn run(args: &args::MonitorArgs) -> Result<(), Error> {
     let shutdown = ShutdownGuard::new();
     let warnings = link.subscribe();
     let _stream = link::stream(&args.foxglove, &link, table.as_ref())?;
+    let second_handle = link.second_handle();
     let monitor = start(args, Some((link, events)), table)?;
+    // The page moves an arm that it may control.
+    let moves = args.link.emulated && !args.allow_control;
+    let motion = moves.then(|| Motion::start(second_handle, &args.link)).transpose()?;
     // After the end of the line the page still shows the data until then.
     while !shutdown.is_requested() {
         if let Some(warning) = warnings.next(CHECK_PERIOD).and_then(|event| event.kind.warning()) {
             terminal::warn(&warning);
         }
     }
+    drop(motion);
     if let Some(file) = monitor.finish()? {
         terminal::eprint_line(&format_args!("{file}: recorded"));
     }

@@ -2,7 +2,6 @@
 
 use std::fs::File;
 use std::path::Path;
-use std::process::ExitCode;
 
 use proprio_session::recording::{ReadError, RecoverError, Recovery, recover};
 use proprio_session::{ForeignFile, OutputFile, SessionError, SessionProblem};
@@ -12,7 +11,7 @@ use crate::error::Error;
 use crate::terminal;
 
 /// Recovers a recording. The exit status is 1 where a part of it is lost.
-pub fn run(args: &RecoverArgs) -> Result<ExitCode, Error> {
+pub fn run(args: &RecoverArgs) -> Result<u8, Error> {
     let fail = |problem| SessionError { path: args.input.clone(), line: None, column: None, problem };
     let source = File::open(&args.input).map_err(|error| fail(SessionProblem::Read(error)))?;
     let mut file = OutputFile::create(&args.output, &[&args.input], args.force.existing())?;
@@ -32,7 +31,7 @@ pub fn run(args: &RecoverArgs) -> Result<ExitCode, Error> {
     terminal::eprint_line(&format_args!(
         "{name}: {messages} messages of {seconds:.3} s, {source} ({bytes} bytes read)"
     ));
-    Ok(ExitCode::from(u8::from(recovery.has_loss())))
+    Ok(u8::from(recovery.has_loss()))
 }
 
 /// The problem of a file that is no recording.

@@ -17,7 +17,9 @@ impl Help for LinkError {
             Self::SeveralDues(_) => "name one with --port; `proprio ports` lists them",
             Self::Gone => "plug it in again",
             Self::Open { source, .. } => open_remedy(source),
-            Self::NoVirtualDue => "build it: cargo virtual-due --version",
+            Self::NoVirtualDue => {
+                "take proprio from its archive or its Python package, or build it: cargo virtual-due --version"
+            }
             Self::NoFirmware(_) => {
                 "put firmware.elf beside the program, name one with --firmware, or build it: cargo build --profile firmware -p firmware --target thumbv7m-none-eabi"
             }

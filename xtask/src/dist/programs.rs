@@ -1,0 +1,62 @@
+//! The programs with the files that they find beside themselves.
+
+use std::env;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use super::files::{copy, emptied};
+use crate::board::ANY_RUST;
+use crate::tool::{cargo, check, root, target};
+
+/// Files that belong together.
+pub struct Files {
+    /// The program `proprio`.
+    proprio: PathBuf,
+    /// The programs' other files: the emulated board's program, the firmware, the reference arm's table, the licences.
+    pub companions: Vec<PathBuf>,
+}
+
+impl Files {
+    /// Builds the programs; `firmware` is written already.
+    pub fn build(firmware: &[PathBuf]) -> Result<Self, String> {
+        // With the features that the Python package needs of all crates, so that its build finds them.
+        let both = ["--package", "proprio", "--package", "proprio-python", "--bin", "proprio"];
+        cargo(&[&["build", "--locked", "--profile", "bundle"], &both[..]].concat(), &[])?;
+        let program = |folder, name| target().join(folder).join(format!("{name}{}", env::consts::EXE_SUFFIX));
+        let board = emulated_board(&program("debug", "virtual-due"))?;
+        let others =
+            ["calibration-tables/planar-6.toml", "LICENSE-APACHE", "LICENSE-MIT"].map(|file| root().join(file));
+        let companions = [board].into_iter().chain(firmware.iter().cloned()).chain(others).collect();
+        Ok(Self { proprio: program("bundle", "proprio"), companions })
+    }
+}
+
+/// Builds the emulated board's program in the dev profile, in which the tests run it: its heavy crates are optimised there. It
+/// has the features of `cargo demo`, which finds the same build. Returns the path of a stripped copy.
+fn emulated_board(built: &Path) -> Result<PathBuf, String> {
+    let packages = ["--package", "proprio", "--package", "board-tests", "--package", "virtual-due"];
+    cargo(&[&["build", "--locked", ANY_RUST], &packages[..], &["--bin", "virtual-due"]].concat(), &[])?;
+    let folder = target().join("stripped");
+    emptied(&folder)?;
+    let program = copy(built, &folder)?;
+    // Every Linux and macOS with a linker has it; on Windows the program has its debug information in another file.
+    if !cfg!(windows) {
+        check(Command::new("strip").arg(&program))?;
+    }
+    Ok(program)
+}
+
+/// Writes `proprio-VERSION-TARGET.tar.gz` and returns its path.
+pub fn archive(files: &Files, folder: &Path) -> Result<PathBuf, String> {
+    let name = format!("proprio-{}-{}-{}", env!("CARGO_PKG_VERSION"), env::consts::ARCH, env::consts::OS);
+    let content = folder.join(&name);
+    emptied(&content)?;
+    for file in [&files.proprio].into_iter().chain(&files.companions) {
+        copy(file, &content)?;
+    }
+    let archive = folder.join(format!("{name}.tar.gz"));
+    check(Command::new("tar").current_dir(folder).arg("-czf").arg(&archive).arg(&name))?;
+    fs::remove_dir_all(&content).map_err(|error| format!("{}: {error}", content.display()))?;
+    Ok(archive)
+}
