@@ -2,9 +2,6 @@
 
 use telemetry::{DecodeError, Encoder, MAX_FRAME, Payload};
 
-/// Bytes of a frame's content before its body: version, topic and number.
-const HEADER: usize = 4;
-
 /// Bytes of a frame's checksum.
 const CRC: usize = 4;
 
@@ -38,28 +35,26 @@ pub fn frame_of(version: u8, topic: u8, bytes: &[u8]) -> Option<Vec<u8>> {
     Some(frame.to_vec())
 }
 
-/// Content of an undamaged frame: version, topic and body.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Content {
-    /// Version of the protocol.
-    pub version: u8,
-    /// Number of its kind of message.
-    pub topic: u8,
-    /// Its message.
-    pub body: Vec<u8>,
-}
-
-/// Decodes the bytes before a zero by other crates than `telemetry` does. `None` for a damaged frame.
-pub fn reference(block: &[u8]) -> Option<Content> {
+/// Content of the frame in the bytes before a zero, from its version to its body, by other crates than `telemetry` has. `None`
+/// for a damaged frame.
+pub fn reference(block: &[u8]) -> Option<Vec<u8>> {
     if block.len() >= MAX_FRAME {
         return None;
     }
     let mut content = [0; MAX_FRAME];
     let length = cobs::decode(block, &mut content).ok()?.frame_size();
-    let (checked, crc) = content[..length].split_at_checked(length.checked_sub(CRC)?)?;
-    if crc32fast::hash(checked).to_le_bytes() != crc || checked.len() < HEADER {
-        return None;
+    let (content, crc) = content[..length].split_last_chunk::<CRC>()?;
+    (crc32fast::hash(content).to_le_bytes() == *crc).then(|| content.to_vec())
+}
+
+/// The result that a decoder must have for the content of a frame.
+///
+/// # Errors
+/// Those of the decoder; of a damaged frame [`DecodeError::Damaged`], which stands for [`DecodeError::Oversize`], too.
+pub fn expected<P: Payload>(content: Option<&[u8]>) -> Result<P, DecodeError> {
+    match content {
+        Some([version, ..]) if !P::VERSIONS.contains(version) => Err(DecodeError::Version(*version)),
+        Some([version, topic, _, _, body @ ..]) => P::read(*version, *topic, body),
+        _ => Err(DecodeError::Damaged),
     }
-    let (header, body) = checked.split_at(HEADER);
-    Some(Content { version: header[0], topic: header[1], body: body.to_vec() })
 }

@@ -46,6 +46,7 @@ use proprio_check::Finding;
 use proprio_link::{Link, Subscription};
 use proprio_session::LoadedTable;
 use telemetry::{Command, TICK_HZ};
+use tokio::io::{AsyncRead, AsyncWrite};
 
 pub use access::Token;
 pub use error::Error;
@@ -162,6 +163,17 @@ impl Drop for Monitor {
             let _ = thread.join();
         }
     }
+}
+
+/// Serves one connection of a monitor without a board on any stream, which stands for one to the port in `options`. Tests and
+/// fuzzers use it.
+pub async fn serve_stream<S>(options: Options<'_>, stream: S)
+where
+    S: AsyncRead + AsyncWrite + Unpin + Send + 'static,
+{
+    let port = options.port;
+    let state = AppState { monitor: Arc::new(shared(None, options)), port };
+    server::serve_connection(stream, server::router(state)).await;
 }
 
 /// The state that the threads share.
