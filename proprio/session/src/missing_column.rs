@@ -73,3 +73,16 @@ impl fmt::Display for MissingColumn {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::MissingColumn;
+    use crate::file_content::FileContent;
+
+    #[test]
+    fn a_similar_name_is_shown_without_its_control_characters() {
+        let names = ["time_s", "truth2_x_m\u{5}time_s"].map(str::to_owned);
+        let message = MissingColumn::new("truth2_x_mm", &names, FileContent::Session).to_string();
+        assert_eq!(message, "column truth2_x_mm is missing; did you mean truth2_x_m\\u{5}time_s?");
+    }
+}

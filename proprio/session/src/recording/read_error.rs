@@ -41,3 +41,14 @@ fn topics(names: &[String]) -> String {
         format!("it has {}", names.iter().map(|name| shown(name)).collect::<Vec<_>>().join(", "))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::ReadError;
+
+    #[test]
+    fn topics_of_other_programs_are_shown_without_their_control_characters() {
+        let message = ReadError::Foreign(vec!["/scan\u{1b}[2J".to_owned()]).to_string();
+        assert!(message.ends_with("it has /scan\\u{1b}[2J"), "{message}");
+    }
+}
