@@ -44,7 +44,9 @@ fn frames(path: &Path, segments: usize) -> Result<(bool, Vec<CameraFrame>), Sess
 fn written(frames: &[CameraFrame], has_base: bool, segments: usize) -> String {
     let markers = has_base.then(|| "base".to_owned()).into_iter().chain((1..=segments).map(|i| format!("truth{i}")));
     let mut text = "time_s".to_owned();
-    markers.for_each(|marker| text += &format!(",{marker}_x_m,{marker}_y_m,{marker}_heading_rad"));
+    for marker in markers {
+        write!(text, ",{marker}_x_m,{marker}_y_m,{marker}_heading_rad").expect("memory takes it");
+    }
     for frame in frames {
         write!(text, "\n{}", frame.time_s).expect("memory takes it");
         let base = has_base.then_some(&frame.base);

@@ -16,6 +16,6 @@ pub fn with_file<T>(suffix: &str, bytes: &[u8], read: impl FnOnce(&Path) -> T) -
 pub fn check_error(error: &SessionError, text: &[u8]) {
     let message = error.to_string();
     assert!(!message.chars().any(char::is_control) && message.len() < 2000, "{message:?}");
-    let lines = text.iter().filter(|byte| **byte == b'\n').count() as u64 + 1;
+    let lines = text.split(|byte| *byte == b'\n').count() as u64;
     assert!(error.line.is_none_or(|line| (1..=lines).contains(&line)), "{message} in {lines} lines");
 }

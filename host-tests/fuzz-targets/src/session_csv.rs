@@ -80,13 +80,20 @@ impl Session {
         };
         let headings: Vec<bool> = (0..segments).map(is_heading).collect();
         let mut text = format!("time_s,{TARE}");
+        let mut column = |of: &str, i: usize, part: &str| {
+            write!(text, ",{of}{}{part}", i + 1).expect("memory takes it");
+        };
         for i in 0..segments {
-            let sensors = ["a", "b"].into_iter().zip(self.bend_sensors[i]).filter(|(_, present)| *present);
-            sensors.for_each(|(name, _)| text += &format!(",bend{}{name}_adc", i + 1));
-            let imu: &[&str] = if headings[i] { &["rad"] } else { &["qw", "qx", "qy", "qz"] };
-            imu.iter().for_each(|part| text += &format!(",imu{}_{part}", i + 1));
-            let truth: &[&str] = if has_headings { &["x_m", "y_m", "heading_rad"] } else { &["x_m", "y_m"] };
-            truth.iter().filter(|_| has_truth[i]).for_each(|part| text += &format!(",truth{}_{part}", i + 1));
+            for (name, _) in ["a_adc", "b_adc"].iter().zip(self.bend_sensors[i]).filter(|(_, present)| *present) {
+                column("bend", i, name);
+            }
+            for part in if headings[i] { &["_rad"][..] } else { &["_qw", "_qx", "_qy", "_qz"] } {
+                column("imu", i, part);
+            }
+            let truth = if has_headings { &["_x_m", "_y_m", "_heading_rad"][..] } else { &["_x_m", "_y_m"] };
+            for part in truth.iter().filter(|_| has_truth[i]) {
+                column("truth", i, part);
+            }
         }
         let mut starts = 0;
         for row in &self.rows {
@@ -109,7 +116,9 @@ impl Session {
         match row.sample.imu[i] {
             Some(ImuReading::Heading(phase)) => cell(Some(phase.rad().rem_euclid(std::f64::consts::TAU))),
             Some(ImuReading::Quaternion(parts)) => {
-                parts.into_iter().for_each(|part| cell(Some(f64::from(part) / QUATERNION_ONE)));
+                for part in parts {
+                    cell(Some(f64::from(part) / QUATERNION_ONE));
+                }
             }
             None => (0..if is_heading { 1 } else { 4 }).for_each(|_| cell(None)),
         }

@@ -61,7 +61,7 @@ fn examine_slot(parts: &mut Parts) {
     let crc = slot[PAGE_BYTES..].get(..claimed).filter(|_| fixes & 1 != 0).map_or(generation, |body| body_crc([body]));
     let mut header = MAGIC.to_vec();
     header.extend([FORMAT.to_le_bytes(), [0; 2]].concat());
-    [generation, image_bytes, source_bytes, crc].iter().for_each(|field| header.extend(field.to_le_bytes()));
+    header.extend([generation, image_bytes, source_bytes, crc].map(u32::to_le_bytes).as_flattened());
     let header_crc = if fixes & 2 != 0 { body_crc([&header[..]]) } else { image_bytes };
     header.extend(header_crc.to_le_bytes());
     slot[..header.len()].copy_from_slice(&header);

@@ -41,7 +41,7 @@ pub fn sessions() -> Result<Vec<Seed>, Box<dyn Error>> {
         seeds.push(seed(format!("{name}-windows"), ONE, bare.replace('\n', "\r\n").as_bytes()));
         let places = begin(&text, ROWS, |name| is_first(name) && !name.ends_with("heading_deg"));
         seeds.push(seed(format!("{name}-places"), ONE, places.as_bytes()));
-        let gaps: String = bare.lines().take(2).map(|line| format!("{line}\n")).collect();
+        let gaps = begin(&bare, 1, |_| true);
         let cells = ",".repeat(bare.lines().next().unwrap_or_default().matches(',').count());
         seeds.push(seed(format!("{name}-gaps"), ONE, format!("{gaps}7{cells}\n").as_bytes()));
     }
