@@ -11,7 +11,7 @@ use telemetry::{
     TABLE_CHUNK_BYTES, TableAnnouncement, TableChunk, TareMode, vector,
 };
 
-use crate::{Seed, root, seed, text_of};
+use crate::seed::{Seed, root, seed, text_of};
 
 /// First byte of received bytes in the inputs of `frame_decoder`.
 const STREAM: u8 = 0xFF;

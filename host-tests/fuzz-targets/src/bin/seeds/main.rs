@@ -3,14 +3,13 @@
 
 mod board;
 mod recordings;
+mod seed;
 mod text;
 
 use std::error::Error;
 use std::fs;
-use std::path::{Path, PathBuf};
 
-/// Name and bytes of a seed.
-type Seed = (String, Vec<u8>);
+use seed::{Seed, root};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let targets: [(&str, Vec<Seed>); 9] = [
@@ -34,19 +33,4 @@ fn main() -> Result<(), Box<dyn Error>> {
         println!("{target}: {} seeds, {bytes} bytes", seeds.len());
     }
     Ok(())
-}
-
-/// The repository's folder.
-fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
-}
-
-/// A text of the repository.
-fn text_of(path: &str) -> Result<String, Box<dyn Error>> {
-    fs::read_to_string(root().join(path)).map_err(|error| format!("{path}: {error}").into())
-}
-
-/// A seed of a first byte and what follows it.
-fn seed(name: impl Into<String>, first: u8, rest: &[u8]) -> Seed {
-    (name.into(), [&[first], rest].concat())
 }

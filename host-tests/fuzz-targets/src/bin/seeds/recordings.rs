@@ -8,7 +8,7 @@ use proprio_session::recording::{Item, Reader, Recorder, recover};
 use proprio_session::{HostNs, Truth};
 use telemetry::{Decoder, Message};
 
-use crate::{Seed, root, seed};
+use crate::seed::{Seed, root, seed};
 
 /// Kinds of an input.
 const FILE: u8 = 0;

@@ -4,7 +4,7 @@ use std::error::Error;
 
 use calibration_tables::ArmFile;
 
-use crate::{Seed, seed, text_of};
+use crate::seed::{Seed, seed, text_of};
 
 /// Rows of a session.
 const ROWS: usize = 5;
