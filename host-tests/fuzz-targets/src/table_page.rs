@@ -79,18 +79,20 @@ fn examine_slot(parts: &mut Parts) {
     }
 }
 
-/// Transfers tables in pieces, with the right checksum where the input has so, and erases them.
+/// Transfers tables in pieces, with a right or a wrong checksum, and erases them.
 fn transfer(parts: &mut Parts) {
     let mut store = TableStore::new(RamFlash::new());
-    let mut announced = Vec::new();
+    let (mut announced, mut is_wrong) = (Vec::new(), false);
     while let Some(kind) = parts.byte() {
         let before = contents(&store);
         let may_change = match kind % 4 {
             0 => {
-                announced = parts.sized().repeat(usize::from(kind / 4) + 1);
-                let image_bytes = parts.byte().unwrap_or(0).into();
+                let (image_bytes, length) = (parts.number(), parts.number() as usize);
+                announced = parts.bytes(length).to_vec();
                 let source_bytes = (announced.len() as u32).saturating_sub(image_bytes);
-                let _ = store.begin(Announcement { image_bytes, source_bytes, crc: body_crc([&announced[..]]) });
+                is_wrong = kind & 0x80 != 0;
+                let crc = body_crc([&announced[..]]) ^ u32::from(is_wrong);
+                let _ = store.begin(Announcement { image_bytes, source_bytes, crc });
                 false
             }
             1 => {
@@ -109,6 +111,7 @@ fn transfer(parts: &mut Parts) {
                     committed.is_err() || contents(&store) == Some(announced.clone()),
                     "the table that was announced"
                 );
+                assert!(committed.is_err() || !is_wrong, "a table with a wrong checksum");
                 committed.is_ok()
             }
             _ => {

@@ -51,9 +51,24 @@ pub fn frames() -> Result<Vec<Seed>, Box<dyn Error>> {
         let request = Request { id: 7, session: SESSION, command };
         seeds.push(seed(format!("request-{name}-body"), request.topic(), &body(&request)));
         let mut buffer = [0; MAX_FRAME];
-        seeds.push(seed(format!("request-{name}-frame"), STREAM, encoder.encode(&request, &mut buffer)?));
+        let frame = encoder.encode(&request, &mut buffer)?;
+        seeds.push(seed(format!("request-{name}-frame"), STREAM, frame));
+        if name == "ping" {
+            seeds.push(seed("flipped-bits", STREAM, &flipped(frame)));
+        }
     }
     Ok(seeds)
+}
+
+/// A frame with each of its bits flipped in turn.
+fn flipped(frame: &[u8]) -> Vec<u8> {
+    let mut stream = Vec::new();
+    for bit in 0..8 * (frame.len() - 1) {
+        stream.extend(frame);
+        let at = stream.len() - frame.len() + bit / 8;
+        stream[at] ^= 1 << (bit % 8);
+    }
+    stream
 }
 
 /// Commands of every kind.
@@ -76,7 +91,8 @@ fn commands() -> Vec<(&'static str, Command)> {
     ]
 }
 
-/// Each command in a session of its own, armed for set-points; a session in which the arm is driven; frames as bytes; and a flood.
+/// Each command in a session of its own, armed for set-points; commands under one number and under lower ones; a session in
+/// which the arm is driven; frames as bytes; and a flood.
 pub fn requests() -> Vec<Seed> {
     let part = |id: u32, command: &Command| {
         let request = body(&Request { id, session: SESSION, command: command.clone() });
@@ -89,6 +105,14 @@ pub fn requests() -> Vec<Seed> {
         seeds.push((name.to_owned(), [&ping[..], &arm, &part(3, &command), &ticks(5), &[3], &ticks(200)].concat()));
     }
     let commands = commands();
+    let same_number =
+        commands.iter().flat_map(|(_, command)| [part(3, command), ticks(5)]).collect::<Vec<_>>().concat();
+    seeds.push(("same-number".to_owned(), [&ping[..], &arm, &same_number].concat()));
+    let other = Request { id: 3, session: SESSION + 1, command: Command::Reboot };
+    let other = [&[1, body(&other).len() as u8], &body(&other)[..]].concat();
+    seeds.push(("other-session".to_owned(), [&ping[..], &arm, &other].concat()));
+    let lower = (1..9).rev().map(|id| part(id, &Command::Arm)).collect::<Vec<_>>().concat();
+    seeds.push(("lower-numbers".to_owned(), [&ping[..], &lower].concat()));
     let set = &commands.iter().find(|(name, _)| *name == "set").expect("it is in the list").1;
     let mut drive = [ping.clone(), arm.clone()].concat();
     for id in 3..12 {
@@ -125,20 +149,21 @@ pub fn tables() -> Result<Vec<Seed>, Box<dyn Error>> {
             if name.ends_with("segment") {
                 let lengths = [7, stored.image.len() as u32, stored.source.len() as u32].map(u32::to_le_bytes).concat();
                 seeds.push(seed(format!("{name}-slot"), 1, &[&[3], &lengths[..], &stored.body()].concat()));
-                seeds.push((format!("{name}-transfer"), transfer(&stored.image)));
+                seeds.push((format!("{name}-transfer"), transfer(&stored, false)));
+                seeds.push((format!("{name}-wrong-checksum"), transfer(&stored, true)));
             }
         }
     }
     Ok(seeds)
 }
 
-/// The transfer of an image in pieces, and its erasure. A part of an input holds 255 bytes, so the image is cut.
-fn transfer(image: &[u8]) -> Vec<u8> {
-    let image = &image[..image.len().min(250)];
-    let mut parts = vec![2, 0, image.len() as u8];
-    parts.extend(image);
-    parts.push(image.len() as u8);
-    for _ in image.chunks(TABLE_CHUNK_BYTES) {
+/// The transfer of a table in pieces, with a right checksum or a wrong one, and its erasure.
+fn transfer(stored: &StoredTable, is_wrong: bool) -> Vec<u8> {
+    let body = stored.body();
+    let mut parts = vec![2, if is_wrong { 0x80 } else { 0 }];
+    parts.extend([stored.image.len(), body.len()].map(|length| (length as u32).to_le_bytes()).as_flattened());
+    parts.extend(&body);
+    for _ in body.chunks(TABLE_CHUNK_BYTES) {
         parts.extend([2, TABLE_CHUNK_BYTES as u8]);
     }
     parts.extend([3, 0x83]);
