@@ -7,6 +7,7 @@ mod commands;
 mod demo;
 mod dist;
 mod faults;
+mod fuzz;
 mod panics;
 mod pictures;
 mod results;
@@ -29,11 +30,12 @@ fn main() -> ExitCode {
         Some("results") => results::run(),
         Some("style") => style::run(),
         Some("faults") => faults::run(),
+        Some("fuzz") => fuzz::run(arguments.get(1..).unwrap_or_default()),
         Some("soak") => soak::run(arguments.get(1..).unwrap_or_default()),
         Some("commands") => commands::run(),
         Some("pictures") => pictures::run(),
         _ => Err(
-            "usage: cargo xtask demo | verify | bench | faults | soak | panics | dist | style | results | commands | pictures | accept"
+            "usage: cargo xtask demo | verify | bench | faults | soak | fuzz | panics | dist | style | results | commands | pictures | accept"
                 .to_owned(),
         ),
     };

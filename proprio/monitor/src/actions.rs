@@ -151,23 +151,29 @@ impl From<Control> for Command {
     }
 }
 
+/// The command in the body of a page's request, or the reason why there is none.
+fn command_of(body: &[u8]) -> Result<Command, String> {
+    let control: Control = serde_json::from_slice(body).map_err(|error| error.to_string())?;
+    match control {
+        Control::SetPressures { kpa } if kpa.len() > MAX_REGULATORS => {
+            Err(format!("a board has {MAX_REGULATORS} regulators at most"))
+        }
+        control => Ok(control.into()),
+    }
+}
+
 /// Sends a request to the board.
 pub(super) async fn control(State(state): State<AppState>, headers: HeaderMap, body: Bytes) -> Answer<()> {
     // The token is checked before the body is parsed.
     check_token(&state, &headers).map_err(Refused::into_response)?;
-    let control: Control =
-        serde_json::from_slice(&body).map_err(|error| (StatusCode::BAD_REQUEST, error.to_string()).into_response())?;
-    if matches!(&control, Control::SetPressures { kpa } if kpa.len() > MAX_REGULATORS) {
-        let text = format!("a board has {MAX_REGULATORS} regulators at most");
-        return Err((StatusCode::BAD_REQUEST, text).into_response());
-    }
+    let command = command_of(&body).map_err(|text| (StatusCode::BAD_REQUEST, text).into_response())?;
     let shared = Arc::clone(&state.monitor);
     // This handler is dropped with its connection: nothing is sent for a page that has gone, except what vents.
     let page = Arc::new(());
     let asker = Arc::downgrade(&page);
-    let kept = (control == Control::Vent).then(|| Arc::clone(&page));
+    let kept = (command == Command::Disarm).then(|| Arc::clone(&page));
     let requested = run_blocking(move || {
-        let done = shared.link.as_ref().map(|link| link.request_of(&asker, control.into()));
+        let done = shared.link.as_ref().map(|link| link.request_of(&asker, command));
         drop(kept);
         done
     });

@@ -48,6 +48,7 @@ use proprio_check::Finding;
 use proprio_link::{Link, Subscription};
 use proprio_session::LoadedTable;
 use telemetry::{Command, TICK_HZ};
+use tokio::io::{AsyncRead, AsyncWrite};
 
 pub use access::Token;
 pub use error::Error;
@@ -187,6 +188,17 @@ fn announce(link: Option<&Link>, folder: Option<&Path>, address: SocketAddr) -> 
     let token = Token::new().ok()?;
     let announcement = Announcement::new(folder?, line, address, token.to_string()).ok()?;
     Some((announcement, token))
+}
+
+/// Serves one connection of a monitor without a board on any stream, which stands for one to the port in `options`. Tests and
+/// fuzzers use it.
+pub async fn serve_stream<S>(options: Options<'_>, stream: S)
+where
+    S: AsyncRead + AsyncWrite + Unpin + Send + 'static,
+{
+    let port = options.port;
+    let state = AppState { monitor: Arc::new(shared(None, options, None)), port };
+    server::serve_connection(stream, server::router(state)).await;
 }
 
 /// The state that the threads share.

@@ -15,6 +15,7 @@ use axum::routing::{get, post};
 use hyper::server::conn::http1;
 use hyper_util::rt::{TokioIo, TokioTimer};
 use hyper_util::service::TowerToHyperService;
+use tokio::io::{AsyncRead, AsyncWrite};
 use tokio::net::TcpListener;
 
 use super::access::{Refused, check_host, check_origin};
@@ -73,15 +74,22 @@ pub(super) fn router(state: AppState) -> Router {
 
 /// Serves connections until the listener fails.
 pub(super) async fn serve(listener: TcpListener, router: Router) -> io::Result<()> {
-    let mut http = http1::Builder::new();
-    http.timer(TokioTimer::new()).header_read_timeout(body::PART_TIMEOUT);
     loop {
         let (stream, _) = listener.accept().await?;
-        let service = TowerToHyperService::new(router.clone());
-        let connection = http.serve_connection(TokioIo::new(stream), service).with_upgrades();
-        // A page that leaves ends its connection.
-        tokio::spawn(async move { drop(connection.await) });
+        tokio::spawn(serve_connection(stream, router.clone()));
     }
+}
+
+/// Serves one connection to its end, but for a feed, which continues by itself.
+pub(super) async fn serve_connection<S>(stream: S, router: Router)
+where
+    S: AsyncRead + AsyncWrite + Unpin + Send + 'static,
+{
+    let mut http = http1::Builder::new();
+    http.timer(TokioTimer::new()).header_read_timeout(body::PART_TIMEOUT);
+    let service = TowerToHyperService::new(router);
+    // A page that leaves ends its connection.
+    drop(http.serve_connection(TokioIo::new(stream), service).with_upgrades().await);
 }
 
 /// Checks the access of every request, receives its body, and adds headers to every response.

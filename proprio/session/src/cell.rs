@@ -4,6 +4,7 @@ use board_table::MAX_FULL_SCALE_PA;
 use estimator_core::{ImuReading, Phase};
 
 use crate::SessionProblem;
+use crate::shown::shown;
 
 /// Units of 2⁻³⁰ in 1.
 const QUATERNION_ONE: f64 = 1_073_741_824.0;
@@ -89,11 +90,6 @@ pub(crate) fn pressure_pa(cell: &str, factor: f64) -> Result<f64, SessionProblem
     } else {
         Err(SessionProblem::Pressure(shown(cell)))
     }
-}
-
-/// A cell's text as it can be shown: one line, not too long.
-fn shown(cell: &str) -> String {
-    cell.trim().escape_debug().take(40).collect()
 }
 
 /// A unit quaternion w, x, y, z, kept to 2⁻³⁰: a BNO055's 2⁻¹⁴ exactly.

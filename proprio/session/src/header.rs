@@ -5,6 +5,7 @@ use std::path::Path;
 use crate::column_names::segment_of;
 use crate::csv_file::CsvFile;
 use crate::reader::board_segments;
+use crate::shown::shown;
 use crate::source::{FileFormat, SessionFile};
 use crate::{SessionError, SessionProblem};
 
@@ -15,7 +16,7 @@ pub struct Header {
     pub kind: FileFormat,
     /// Segments of a CSV, by its columns; those of the first sample otherwise.
     pub segments: usize,
-    /// Columns of a CSV that a session does not have.
+    /// Columns of a CSV that a session does not have, as they can be shown.
     pub unknown: Vec<String>,
 }
 
@@ -36,7 +37,7 @@ impl Header {
         let file = CsvFile::new(source)?;
         let names = file.names().iter();
         let segments = names.clone().filter_map(|name| segment_of(name)).max().unwrap_or(0);
-        let unknown = names.filter(|name| segment_of(name).is_none()).cloned().collect();
+        let unknown = names.filter(|name| segment_of(name).is_none()).map(|name| shown(name)).collect();
         Ok(Self { kind, segments, unknown })
     }
 }

@@ -6,7 +6,7 @@
 //! | `row.rs`, `required_columns.rs`, `table.rs` | a row; the columns that a table needs of it; a table with its path |
 //! | `reader.rs`, `defects.rs` | [`SessionReader`]: the rows of a session of any kind; defects of its file |
 //! | `csv_file.rs`, `csv_rows.rs`, `column_names.rs`, `columns.rs`, `cell.rs`, `header.rs`, `line_limit.rs`, `source.rs` | CSV files |
-//! | `file_content.rs`, `foreign_file.rs`, `missing_column.rs`, `time_unit.rs` | likely reasons of errors: a file in place of another, another name, another unit |
+//! | `file_content.rs`, `foreign_file.rs`, `missing_column.rs`, `time_unit.rs`, `shown.rs` | likely reasons of errors: a file in place of another, another name, another unit; a file's text in messages |
 //! | `camera.rs`, `motion_capture/`, `pressures.rs` | a camera's poses, in a file of ours or in a motion-capture program's export; pressures over time |
 //! | `row_assembler.rs` | [`RowAssembler`]: rows from the messages of a board, recorded or live |
 //! | `recording/` | MCAP: written, read, recovered |
@@ -46,6 +46,7 @@ mod required_columns;
 mod row;
 mod row_assembler;
 mod session_error;
+mod shown;
 mod source;
 mod table;
 mod time_unit;

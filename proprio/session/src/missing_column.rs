@@ -4,6 +4,7 @@ use std::fmt;
 
 use crate::column_names::{is_known, is_truth};
 use crate::file_content::FileContent;
+use crate::shown::shown;
 
 /// Similarity (Jaro–Winkler) from which on an unknown column may be the missing one.
 const SIMILAR: f64 = 0.8;
@@ -27,7 +28,7 @@ pub enum MissingReason {
         /// The content that is read.
         expected: FileContent,
     },
-    /// An unknown column has a similar name.
+    /// An unknown column has a similar name: as it can be shown.
     Similar(String),
     /// The session has no truth.
     NoTruth,
@@ -42,7 +43,7 @@ impl MissingColumn {
         let reason = if found != expected && found != FileContent::Other {
             MissingReason::Content { found, expected }
         } else if let Some(similar) = similar(name, names) {
-            MissingReason::Similar(similar.to_owned())
+            MissingReason::Similar(shown(similar))
         } else if is_truth(name) && !names.iter().any(|name| is_truth(name)) {
             MissingReason::NoTruth
         } else {
@@ -70,5 +71,18 @@ impl fmt::Display for MissingColumn {
             MissingReason::NoTruth => f.write_str("; the session has no truth"),
             MissingReason::Unknown => Ok(()),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::MissingColumn;
+    use crate::file_content::FileContent;
+
+    #[test]
+    fn a_similar_name_is_shown_without_its_control_characters() {
+        let names = ["time_s", "truth2_x_m\u{5}time_s"].map(str::to_owned);
+        let message = MissingColumn::new("truth2_x_mm", &names, FileContent::Session).to_string();
+        assert_eq!(message, "column truth2_x_mm is missing; did you mean truth2_x_m\\u{5}time_s?");
     }
 }

@@ -78,6 +78,19 @@ fn a_frame_of_another_version_is_told_apart_from_a_damaged_one() {
     assert_eq!((decoder.counts().wrong_version, decoder.counts().damaged), (1, 0));
 }
 
+/// Found by fuzzing, beside another decoder that took every frame of less than a header for damaged.
+#[test]
+fn a_frame_of_another_version_may_be_shorter_than_a_header_of_this_one() {
+    let with_crc = |content: &[u8]| {
+        let crc = crc::Crc::<u32>::new(&crc::CRC_32_ISO_HDLC).checksum(content);
+        block_by_hand(&[content, &crc.to_le_bytes()].concat())
+    };
+    let result = |content: &[u8]| decode(&mut Decoder::<Message>::new(), &with_crc(content));
+    assert_eq!(result(&[0, 0, 0]), [Err(DecodeError::Version(0))]);
+    assert_eq!(result(&[PROTOCOL_VERSION, topic::HELLO, 0]), [Err(DecodeError::Damaged)]);
+    assert_eq!(result(&[]), [Err(DecodeError::Damaged)]);
+}
+
 #[test]
 fn an_unknown_topic_is_skipped_and_its_number_counts() {
     let mut decoder = Decoder::<Message>::new();

@@ -6,57 +6,13 @@ use super::{Axis, BodySelection, MotionCaptureProblem};
 use crate::{CameraFrame, CameraReader, SessionError, SessionProblem};
 
 /// Motive 3: two rigid bodies with a marker of one of them, metres, quaternions, y up; the second body is lost in frame 1.
-const MOTIVE: &str = "\
-Format Version,1.25,Take Name,arm,Capture Frame Rate,120.000000,Export Frame Rate,120.000000,Total Exported Frames,3,Rotation Type,Quaternion,Length Units,Meters,Coordinate Space,Global
-
-,Type,Rigid Body,Rigid Body,Rigid Body,Rigid Body,Rigid Body,Rigid Body,Rigid Body,Rigid Body,Rigid Body Marker,Rigid Body Marker,Rigid Body Marker,Rigid Body,Rigid Body,Rigid Body,Rigid Body,Rigid Body,Rigid Body,Rigid Body,Rigid Body
-,Name,Base,Base,Base,Base,Base,Base,Base,Base,Base:Marker 001,Base:Marker 001,Base:Marker 001,Tip,Tip,Tip,Tip,Tip,Tip,Tip,Tip
-,ID,1,1,1,1,1,1,1,1,2,2,2,3,3,3,3,3,3,3,3
-,Parent,,,,,,,,,,,,,,,,,,,
-,,Rotation,Rotation,Rotation,Rotation,Position,Position,Position,Mean Marker Error,Position,Position,Position,Rotation,Rotation,Rotation,Rotation,Position,Position,Position,Mean Marker Error
-Frame,Time (Seconds),X,Y,Z,W,X,Y,Z,,X,Y,Z,X,Y,Z,W,X,Y,Z,
-0,0.000000,0.000000,0.000000,0.000000,1.000000,0.100000,0.500000,-0.200000,0.0001,0.1,0.5,-0.2,0.000000,0.258819,0.000000,0.965926,0.100000,0.500000,-0.300000,0.0002
-1,0.008333,0.000000,0.000000,0.000000,1.000000,0.100000,0.500000,-0.200000,0.0001,0.1,0.5,-0.2,,,,,,,,
-2,0.016667,0.000000,0.000000,0.000000,1.000000,0.100000,0.500000,-0.200000,0.0001,0.1,0.5,-0.2,0.000000,0.000000,0.000000,1.000000,0.100000,0.500000,-0.297000,0.0002
-";
+const MOTIVE: &str = include_str!("../../../../host-tests/motion-capture/motive.csv");
 
 /// Vicon Tracker: a section of trajectories before that of the objects; mm and degrees, z up; zeros and empty cells are lost objects.
-const VICON: &str = "\
-Trajectories
-100
-,,Base1,,
-Frame,Sub Frame,X,Y,Z
-,,mm,mm,mm
-1,0,1.0,2.0,3.0
-
-Objects
-100
-,,Global Angle Arm:Base,,,,,,Global Angle Arm:Tip,,,,,
-Frame,Sub Frame,RX,RY,RZ,TX,TY,TZ,RX,RY,RZ,TX,TY,TZ
-,,deg,deg,deg,mm,mm,mm,deg,deg,deg,mm,mm,mm
-1,0,0,0,0,100,200,500,0,0,30,100,300,500
-2,0,0,0,0,100,200,500,0,0,0,0,0,0
-3,0,0,0,0,100,200,500,,,,,,
-4,0,0,0,0,100,200,500,0,0,0,100,297,500
-
-Devices
-1000
-";
+const VICON: &str = include_str!("../../../../host-tests/motion-capture/vicon.csv");
 
 /// Qualisys Track Manager: mm, a matrix column by column, z up, a tab at the end of each row.
-const QUALISYS: &str = "\
-NO_OF_FRAMES\t2
-NO_OF_CAMERAS\t8
-NO_OF_BODIES\t2
-FREQUENCY\t100
-DESCRIPTION\t--
-TIME_STAMP\t2026-05-04, 10:11:12\t100.5
-DATA_INCLUDED\t6D
-BODY_NAMES\tBase\tTip
-Frame\tTime\tBase X\tY\tZ\tRoll\tPitch\tYaw\tResidual\tRot[0]\tRot[1]\tRot[2]\tRot[3]\tRot[4]\tRot[5]\tRot[6]\tRot[7]\tRot[8]\tTip X\tY\tZ\tRoll\tPitch\tYaw\tResidual\tRot[0]\tRot[1]\tRot[2]\tRot[3]\tRot[4]\tRot[5]\tRot[6]\tRot[7]\tRot[8]\t
-1\t0.00000\t100.0\t200.0\t500.0\t0\t0\t0\t0.4\t1\t0\t0\t0\t1\t0\t0\t0\t1\t100.0\t300.0\t500.0\t0\t0\t30\t0.4\t0.866025\t0.5\t0\t-0.5\t0.866025\t0\t0\t0\t1\t
-2\t0.01000\t100.0\t200.0\t500.0\t0\t0\t0\t0.4\t1\t0\t0\t0\t1\t0\t0\t0\t1\t0.0\t0.0\t0.0\t0\t0\t0\t0\t0\t0\t0\t0\t0\t0\t0\t0\t0\t
-";
+const QUALISYS: &str = include_str!("../../../../host-tests/motion-capture/qualisys.tsv");
 
 fn frames(text: &str, selection: &BodySelection) -> Result<Vec<CameraFrame>, SessionError> {
     let folder = tempfile::tempdir().expect("a folder can be made");

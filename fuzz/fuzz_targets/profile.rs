@@ -1,0 +1,4 @@
+//! Profiles of pressures.
+#![no_main]
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| fuzz_targets::profile(bytes));

@@ -1,0 +1,4 @@
+//! Recordings and their recovery.
+#![no_main]
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| fuzz_targets::recording(bytes));

@@ -1,0 +1,4 @@
+//! The table in the board's flash.
+#![no_main]
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| fuzz_targets::table_page(bytes));
