@@ -16,8 +16,8 @@ use crate::channels::{self, ARM, TRANSFORMS};
 use crate::scene::Scene;
 use crate::stream::{Stream, StreamMessage};
 
-/// Time for which events are gathered, a tick of the board: each wake-up costs more than the work on a message.
-const PERIOD: Duration = Duration::from_millis(10);
+/// Time for which events are gathered, two ticks of the board: each wake-up costs more than the work on a message.
+const PERIOD: Duration = Duration::from_millis(20);
 /// The same while there is no client.
 const IDLE_PERIOD: Duration = Duration::from_millis(50);
 

@@ -9,7 +9,7 @@ use tokio::sync::broadcast;
 use crate::channels;
 
 /// Capacity of a client's queue, batches: two seconds at least. A slower client loses the oldest.
-const CAPACITY: usize = 256;
+const CAPACITY: usize = 128;
 
 /// Messages that are sent together.
 pub type Batch = Arc<[StreamMessage]>;

@@ -21,8 +21,8 @@ const PREFIX: &str = "proprio-monitor-";
 /// Longest wait for an answer: a silent board has ten seconds for its status.
 const TIMEOUT: Duration = Duration::from_secs(40);
 
-/// A running monitor.
-#[derive(Debug, Serialize, Deserialize)]
+/// A running monitor. Without `Debug`, so that its token is not logged.
+#[derive(Serialize, Deserialize)]
 pub struct RunningMonitor {
     /// Name of the board's line.
     line: String,
