@@ -5,6 +5,7 @@ use csv::StringRecord;
 use super::axis::Axis;
 use super::error::MotionCaptureProblem;
 use super::rotation::Rotation;
+use crate::shown::shown;
 
 /// Columns of an export, and their units.
 #[derive(Debug, Clone, PartialEq)]
@@ -85,7 +86,7 @@ pub(super) fn length_unit(name: &str) -> Result<f64, MotionCaptureProblem> {
         "meters" | "m" => Ok(1.0),
         "centimeters" | "cm" => Ok(1e-2),
         "millimeters" | "mm" => Ok(1e-3),
-        _ => Err(MotionCaptureProblem::Unit(name.to_owned())),
+        _ => Err(MotionCaptureProblem::Unit(shown(name))),
     }
 }
 
@@ -94,14 +95,14 @@ pub(super) fn angle_unit(name: &str) -> Result<f64, MotionCaptureProblem> {
     match name.to_ascii_lowercase().as_str() {
         "deg" => Ok(std::f64::consts::PI / 180.0),
         "rad" => Ok(1.0),
-        _ => Err(MotionCaptureProblem::Unit(name.to_owned())),
+        _ => Err(MotionCaptureProblem::Unit(shown(name))),
     }
 }
 
 /// A rate of frames, Hz.
 pub(super) fn rate_hz(text: &str) -> Result<f64, MotionCaptureProblem> {
     let rate = text.parse().ok().filter(|rate: &f64| rate.is_finite() && *rate > 0.0);
-    rate.ok_or_else(|| MotionCaptureProblem::Unit(text.to_owned()))
+    rate.ok_or_else(|| MotionCaptureProblem::Unit(shown(text)))
 }
 
 /// All of the columns, or none where one is missing.

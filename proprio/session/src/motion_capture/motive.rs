@@ -7,6 +7,7 @@ use super::axis::Axis;
 use super::error::MotionCaptureProblem;
 use super::layout::{Body, Layout, TimeColumn, all, cell, length_unit, value_of};
 use super::rotation::Rotation;
+use crate::shown::shown;
 
 /// First cell of an export.
 pub(super) const BEGIN: &str = "Format Version";
@@ -51,7 +52,7 @@ pub(super) fn layout(rows: &[StringRecord]) -> Result<Layout, MotionCaptureProbl
                 Rotation::Euler { columns, order, factor: std::f64::consts::PI / 180.0 }
             }
         };
-        Some(Body { name: name.to_owned(), position, rotation })
+        Some(Body { name: shown(name), position, rotation })
     };
     let time =
         (0..axes.len()).find(|column| cell(axes, *column).starts_with("Time (")).ok_or(MotionCaptureProblem::Header)?;
@@ -77,6 +78,6 @@ fn form(name: &str) -> Result<Form, MotionCaptureProblem> {
     let order = <[u8; 3]>::try_from(name.as_bytes()).ok().map(|letters| letters.map(axis));
     match order {
         Some([Some(first), Some(second), Some(third)]) => Ok(Form::Euler([first, second, third])),
-        _ => Err(MotionCaptureProblem::Unit(name.to_owned())),
+        _ => Err(MotionCaptureProblem::Unit(shown(name))),
     }
 }

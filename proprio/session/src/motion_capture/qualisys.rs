@@ -7,6 +7,7 @@ use super::axis::Axis;
 use super::error::MotionCaptureProblem;
 use super::layout::{Body, Layout, TimeColumn, all, cell, rate_hz, value_of};
 use super::rotation::Rotation;
+use crate::shown::shown;
 
 /// First cell of an export.
 pub(super) const BEGIN: &str = "NO_OF_FRAMES";
@@ -30,7 +31,7 @@ pub(super) fn layout(rows: &[StringRecord]) -> Result<Layout, MotionCaptureProbl
         let find = |axis: &str| (start..end).find(|column| cell(columns, *column) == axis);
         let position = all([Some(start), find("Y"), find("Z")])?;
         let matrix = all(std::array::from_fn::<_, 9, _>(|part| find(&format!("Rot[{part}]"))))?;
-        Some(Body { name: name.to_owned(), position, rotation: Rotation::Matrix(matrix) })
+        Some(Body { name: shown(name), position, rotation: Rotation::Matrix(matrix) })
     };
     let time = (0..columns.len()).find(|column| cell(columns, *column) == "Time");
     let rate = keys.iter().find_map(|row| value_of(row, "FREQUENCY"));

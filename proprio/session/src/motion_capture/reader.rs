@@ -12,6 +12,7 @@ use super::selection::BodySelection;
 use super::{motive, qualisys, vicon};
 use crate::csv_file::{csv_error, line_at};
 use crate::line_limit::LineLimit;
+use crate::shown::shown;
 use crate::source::SessionFile;
 use crate::{FileDefects, Pose, SessionError, SessionProblem, cell};
 
@@ -135,7 +136,7 @@ impl MotionCaptureReader {
                 return Ok(None);
             }
             if !first.is_empty() {
-                return Err(self.cell_error(0, SessionProblem::NotANumber(first.chars().take(40).collect())));
+                return Err(self.cell_error(0, SessionProblem::NotANumber(shown(first))));
             }
         }
         let time_s = match self.layout.time {

@@ -7,6 +7,7 @@ use super::axis::Axis;
 use super::error::MotionCaptureProblem;
 use super::layout::{Body, Layout, TimeColumn, all, angle_unit, cell, length_unit, rate_hz};
 use super::rotation::Rotation;
+use crate::shown::shown;
 
 /// First cells of sections.
 pub(super) const SECTIONS: [&str; 6] = ["Objects", "Segments", "Trajectories", "Joints", "Devices", "Model Outputs"];
@@ -42,7 +43,7 @@ pub(super) fn layout(rows: &[StringRecord]) -> Result<Layout, MotionCaptureProbl
         };
         metres = length_unit(unit_of(position[0]))?;
         let name = cell(names, *start);
-        bodies.push(Body { name: name.strip_prefix(PREFIX).unwrap_or(name).to_owned(), position, rotation });
+        bodies.push(Body { name: shown(name.strip_prefix(PREFIX).unwrap_or(name)), position, rotation });
     }
     Ok(Layout { time: TimeColumn::Frames { column: 0, rate_hz: rate_hz(cell(rate, 0))? }, metres, up: Axis::Z, bodies })
 }
