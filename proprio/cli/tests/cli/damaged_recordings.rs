@@ -77,8 +77,10 @@ fn a_hole_in_a_recording_with_truth_is_named_by_calibrate_and_tune() {
     let folder = Folder::with("sweep.csv", sweep().to_string());
     folder.done(&["convert", "sweep.csv", "sweep.mcap"]);
     let whole = std::fs::read(folder.path("sweep.mcap")).expect("it was written");
-    // At the middle byte is the index of a chunk, whose damage is harmless.
-    folder.write("sweep.mcap", flipped(&whole, whole.len() / 2 + 1000, 4));
+    // In a message; the index of a chunk is between chunks, and its damage is harmless.
+    let message =
+        whole[whole.len() / 2..].windows(8).position(|bytes| bytes == b"arm_base").expect("messages have a frame");
+    folder.write("sweep.mcap", flipped(&whole, whole.len() / 2 + message, 4));
     let calibrate = ["calibrate", "sweep.mcap", "--arm", arm(), "-o", "table.toml"];
     let tune = ["tune", "sweep.mcap", "--table", "table.toml", "-o", "tuned.toml"];
     for command in [calibrate, tune] {
