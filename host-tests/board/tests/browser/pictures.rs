@@ -64,5 +64,5 @@ fn pictures_of_the_documents_report() {
     browser.screen([1000, 800], "light");
     let page = browser.folder.path().join("report.html");
     browser.open(&format!("file://{}", page.display()));
-    browser.picture_of("report.png", "document.getElementById('drift')");
+    browser.picture_of("report.png", "document.getElementById('drift_error')");
 }
