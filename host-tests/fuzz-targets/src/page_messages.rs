@@ -24,8 +24,8 @@ const BUFFER: usize = 1 << 16;
 /// Serves a connection of the page.
 ///
 /// # Panics
-/// Where an answer is none of HTTP, has no content security policy or is an internal error; where a request is accepted
-/// without its origin or its token; where a body that is no JSON is accepted; and where the feed does not answer its end.
+/// Where an answer is not HTTP, has no content security policy or is an internal error; where a request is accepted without
+/// its origin or its token; where a body that is not JSON is accepted; and where the feed does not answer its end.
 pub fn page_messages(bytes: &[u8]) {
     let Some((first, rest)) = bytes.split_first() else { return };
     let (has_origin, has_token) = (first & 1 == 0, first & 2 == 0);

@@ -2,7 +2,7 @@
 //! PlotJuggler.
 //!
 //! A thread takes the link's events, makes the messages of a [recording](proprio_session::recording)'s channels of them, and of
-//! two channels more for 3D panels, and passes them to the clients that have subscribed. A message that nobody receives is not
+//! two channels more for 3D panels, and passes them to the clients that have subscribed. A channel without a subscriber is not
 //! encoded. Each client has a bounded queue, which drops its oldest messages: a slow client delays neither the board nor
 //! another client. No client can send anything to the board.
 //!

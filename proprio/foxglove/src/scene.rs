@@ -19,7 +19,7 @@ const SEGMENTS: [Colour; 2] = [[0.12, 0.40, 0.67, 1.0], [0.42, 0.66, 0.86, 1.0]]
 const IN_CONTACT: Colour = [0.84, 0.19, 0.15, 1.0];
 const ELLIPSE: Colour = [0.95, 0.61, 0.07, 0.5];
 
-/// The arm as far as estimates do not have it: its geometry, contact and uncertainty.
+/// Geometry, contact and uncertainty of the arm, which estimates do not contain.
 pub struct Scene {
     geometry: Vec<Geometry>,
     uncertainty: Option<Uncertainty>,

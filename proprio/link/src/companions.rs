@@ -1,6 +1,6 @@
 //! The files that belong to a program of this workspace: the emulated board's program and the firmware.
 //!
-//! Both are beside the program, as in an archive or a Python package, or where cargo leaves them.
+//! Both are in the program's folder, as in an archive or a Python package, or in cargo's target folder.
 
 use std::env;
 use std::ffi::OsString;

@@ -33,7 +33,7 @@
 //! | `table/` | transfer of the table to the board and back |
 //! | `source.rs` | [`Source`]: opens a line, once or again |
 //! | `ports.rs`, `serial.rs`, `virtual_due.rs` | the sources: serial ports and the emulated Due |
-//! | `companions.rs` | the emulated board's program and the firmware, beside the program |
+//! | `companions.rs` | paths of the emulated board's program and of the firmware |
 
 mod companions;
 pub mod drive;

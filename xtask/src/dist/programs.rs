@@ -1,4 +1,4 @@
-//! The programs with the files that they find beside themselves.
+//! The programs and the files that they find in their own folder.
 
 use std::env;
 use std::fs;

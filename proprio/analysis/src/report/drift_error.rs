@@ -1,4 +1,5 @@
-//! Deviation of the IMUs' bend angles from the truth, or from the bend sensors' where there is none: drift without the arm's motion.
+//! Deviation of the IMUs' bend angles from the truth, or from the bend sensors in a session without truth: drift without the arm's
+//! motion.
 
 use calibration_tables::{AnchorToml, ArmFile};
 use estimator_core::{FusedOps, Method};
@@ -79,7 +80,7 @@ impl Segment {
         self.timeline.bins().iter().any(|bin| channels.clone().any(|channel| bin.mean(channel).is_some()))
     }
 
-    /// The methods' deviations from the reference whose channels begin at `first`; the bend sensors' from themselves is none.
+    /// The methods' deviations from the reference whose channels begin at `first`, without that of the reference itself.
     fn series(&self, first: usize) -> Vec<Series> {
         let of = |(k, method): (usize, Method)| {
             let channel = first + k;

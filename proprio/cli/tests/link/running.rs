@@ -1,37 +1,11 @@
 //! Programs of the user that reach the board through a running monitor.
 
 use proprio_monitor::{RunningMonitor, RunningMonitorError};
-use telemetry::{
-    Actuation, Command, Conditions, Health, Message, PressureLimit, Refusal, SensorHealth, SensorState, TareMode,
-    TareReport,
-};
+use telemetry::{Command, Message, Refusal, SensorState, TareMode, TareReport};
 
 use super::http::Page;
 use super::line::{Line, sample};
-
-/// Health of a board of six segments at this tick.
-fn health(tick: u32) -> Health {
-    let sensor = SensorHealth { state: SensorState::Ok, missed: 0 };
-    Health {
-        tick,
-        max_estimate_latency_us: 2000,
-        longest_imu_read_us: 1500,
-        load_permille: 100,
-        overruns: 0,
-        stale_scans: 0,
-        dropped_frames: 0,
-        damaged_frames: 0,
-        unknown_frames: 0,
-        bus_recoveries: 0,
-        saturations: 0,
-        actuation: Actuation::Disarmed,
-        limit: PressureLimit::None,
-        pressures_pa: [0; 6].into_iter().collect(),
-        bend: [sensor; 12].into_iter().collect(),
-        imu: [sensor; 6].into_iter().collect(),
-        conditions: [Conditions::default(); 6].into_iter().collect(),
-    }
-}
+use super::page::health;
 
 /// The page of a board that answers, and its monitor as the user's programs find it.
 fn running(line: &Line) -> (Page, RunningMonitor) {
@@ -53,7 +27,7 @@ fn a_program_gets_the_status_of_the_board_from_the_monitor() {
         while !status.is_finished() {
             let mut board = line.board();
             if tick % 25 == 0 {
-                board.send(&Message::Health(health(tick)));
+                board.send(&Message::Health(health(tick, SensorState::Ok)));
             }
             board.send(&Message::Sample(sample(tick)));
             drop(board);

@@ -202,8 +202,9 @@ pub fn bytes(bytes: &[u8]) -> Vec<u8> {
     cdr.into_bytes()
 }
 
-/// The bytes in a `std_msgs/msg/UInt8MultiArray`; `None` where it is none: recordings of version 0.1 hold the bytes themselves. Bytes
-/// of a board do not have its form: that begins with twelve bytes, ten of them 0, which end a frame each.
+/// The bytes in a `std_msgs/msg/UInt8MultiArray`; `None` for any other message, as in recordings of version 0.1, which hold the
+/// received bytes themselves. A board's bytes do not have this form: eleven of its first twelve bytes are 0, each of which ends a
+/// frame.
 pub fn read_bytes(message: &[u8]) -> Option<&[u8]> {
     let mut cdr = CdrReader::new(message)?;
     let (dimensions, offset) = (cdr.length()?, cdr.u32()?);

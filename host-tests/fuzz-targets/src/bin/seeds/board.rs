@@ -11,7 +11,7 @@ use telemetry::{
     TABLE_CHUNK_BYTES, TableAnnouncement, TableChunk, TareMode, vector,
 };
 
-use crate::seed::{Seed, root, seed, text_of};
+use crate::seed::{Seed, TABLES, root, seed, text_of};
 
 /// First byte of received bytes in the inputs of `frame_decoder`.
 const STREAM: u8 = 0xFF;
@@ -132,13 +132,7 @@ pub fn requests() -> Vec<Seed> {
 /// Images of tables, slots with them, and transfers.
 pub fn tables() -> Result<Vec<Seed>, Box<dyn Error>> {
     let mut seeds = Vec::new();
-    for (name, path) in [
-        ("planar-6", "calibration-tables/planar-6.toml"),
-        ("description", "calibration-tables/arms/planar-6.toml"),
-        ("version-0.1", "host-tests/tables/version-0.1.toml"),
-        ("version-0.1-anchor", "host-tests/tables/version-0.1-anchor.toml"),
-        ("trunk-planar", "host-tests/tables/trunk-planar.toml"),
-    ] {
+    for (name, path) in TABLES {
         let (text, mut file) = (text_of(path)?, ArmFile::parse(&text_of(path)?)?);
         let whole = StoredTable::new(&file, text.as_bytes())?;
         file.segments.truncate(1);

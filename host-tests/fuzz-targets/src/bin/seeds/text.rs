@@ -4,7 +4,7 @@ use std::error::Error;
 
 use calibration_tables::ArmFile;
 
-use crate::seed::{Seed, seed, text_of};
+use crate::seed::{Seed, TABLES, seed, text_of};
 
 /// Rows of a session.
 const ROWS: usize = 5;
@@ -99,13 +99,7 @@ pub fn profiles() -> Vec<Seed> {
 /// The repository's tables and arm descriptions, whole, of one segment, and without one section each.
 pub fn tables() -> Result<Vec<Seed>, Box<dyn Error>> {
     let mut seeds = Vec::new();
-    for (name, path) in [
-        ("planar-6", "calibration-tables/planar-6.toml"),
-        ("description", "calibration-tables/arms/planar-6.toml"),
-        ("version-0.1", "host-tests/tables/version-0.1.toml"),
-        ("version-0.1-anchor", "host-tests/tables/version-0.1-anchor.toml"),
-        ("trunk-planar", "host-tests/tables/trunk-planar.toml"),
-    ] {
+    for (name, path) in TABLES {
         let text = text_of(path)?;
         let mut file = ArmFile::parse(&text)?;
         seeds.push((name.to_owned(), text.into_bytes()));
