@@ -28,13 +28,12 @@ mod scene_schemas;
 mod server;
 mod stream;
 
-use std::net::{Ipv4Addr, SocketAddr, TcpListener};
+use std::net::SocketAddr;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::thread::JoinHandle;
 
 use calibration_tables::ArmFile;
 use proprio_link::Subscription;
+use proprio_server::LocalServer;
 
 pub use error::Error;
 
@@ -43,12 +42,7 @@ use stream::Stream;
 
 /// A server that runs until it is dropped.
 #[derive(Debug)]
-pub struct FoxgloveServer {
-    address: SocketAddr,
-    stop: Arc<AtomicBool>,
-    stop_server: Option<tokio::sync::oneshot::Sender<()>>,
-    threads: Vec<JoinHandle<()>>,
-}
+pub struct FoxgloveServer(LocalServer);
 
 impl FoxgloveServer {
     /// Starts to serve the events of a link on this port of 127.0.0.1; 0: any free one. `table` has the geometry of the arm;
@@ -58,56 +52,17 @@ impl FoxgloveServer {
     /// [`Error::Listen`].
     pub fn start(events: Subscription, port: u16, table: Option<&ArmFile>) -> Result<Self, Error> {
         let failed = |source| Error::Listen { port, source };
-        let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port)).map_err(failed)?;
-        listener.set_nonblocking(true).map_err(failed)?;
-        let address = listener.local_addr().map_err(failed)?;
+        let mut server = LocalServer::bind(port).map_err(failed)?;
         let stream = Arc::new(Stream::new());
-        let (stop_server, stopped) = tokio::sync::oneshot::channel();
-        let stop = Arc::new(AtomicBool::new(false));
-        let mut server = Self { address, stop, stop_server: Some(stop_server), threads: Vec::new() };
-
-        let (feed, stop) = (Feed::new(Arc::clone(&stream), table), Arc::clone(&server.stop));
-        server.spawn("foxglove feed", move || feed.run(&events, &stop)).map_err(failed)?;
-
-        let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(failed)?;
-        let work = async move {
-            let listener = tokio::net::TcpListener::from_std(listener)?;
-            tokio::select! {
-                served = server::serve(listener, stream) => served,
-                _ = stopped => Ok(()),
-            }
-        };
-        let serve = move || {
-            // A server error cannot be reported at this point.
-            let _ = runtime.block_on(work);
-            // Do not wait for a client that does not read.
-            runtime.shutdown_background();
-        };
-        server.spawn("foxglove", serve).map_err(failed)?;
-        Ok(server)
-    }
-
-    fn spawn(&mut self, name: &str, work: impl FnOnce() + Send + 'static) -> std::io::Result<()> {
-        self.threads.push(std::thread::Builder::new().name(name.to_owned()).spawn(work)?);
-        Ok(())
+        let feed = Feed::new(Arc::clone(&stream), table);
+        server.spawn("foxglove feed", move |stop| feed.run(&events, stop)).map_err(failed)?;
+        server.serve("foxglove", |listener| server::serve(listener, stream)).map_err(failed)?;
+        Ok(Self(server))
     }
 
     /// Its address.
     #[must_use]
-    pub fn address(&self) -> SocketAddr {
-        self.address
-    }
-}
-
-impl Drop for FoxgloveServer {
-    fn drop(&mut self) {
-        self.stop.store(true, Ordering::Relaxed);
-        if let Some(stop) = self.stop_server.take() {
-            // The server may have ended already.
-            let _ = stop.send(());
-        }
-        for thread in self.threads.drain(..) {
-            let _ = thread.join();
-        }
+    pub const fn address(&self) -> SocketAddr {
+        self.0.address()
     }
 }

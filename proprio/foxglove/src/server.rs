@@ -9,9 +9,7 @@ use axum::extract::State;
 use axum::extract::ws::{WebSocketUpgrade, rejection::WebSocketUpgradeRejection};
 use axum::http::{HeaderMap, StatusCode};
 use axum::response::{IntoResponse, Response};
-use hyper::server::conn::http1;
-use hyper_util::rt::{TokioIo, TokioTimer};
-use hyper_util::service::TowerToHyperService;
+use proprio_server::serve_connection;
 use tokio::net::TcpListener;
 
 use crate::access;
@@ -28,16 +26,11 @@ const LONGEST: usize = 65_536;
 /// Serves connections until the listener fails.
 pub async fn serve(listener: TcpListener, stream: Arc<Stream>) -> io::Result<()> {
     let router = Router::new().fallback(connect).with_state(stream);
-    let mut http = http1::Builder::new();
-    http.timer(TokioTimer::new()).header_read_timeout(HEAD_TIMEOUT);
     loop {
         let (tcp, _) = listener.accept().await?;
         // Small messages are sent at once, where the system can do that.
         let _ = tcp.set_nodelay(true);
-        let service = TowerToHyperService::new(router.clone());
-        let connection = http.serve_connection(TokioIo::new(tcp), service).with_upgrades();
-        // A client that leaves ends its connection.
-        tokio::spawn(async move { drop(connection.await) });
+        tokio::spawn(serve_connection(tcp, router.clone(), HEAD_TIMEOUT));
     }
 }
 

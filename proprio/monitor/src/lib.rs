@@ -36,16 +36,16 @@ mod server;
 mod sessions;
 mod socket;
 
-use std::net::{Ipv4Addr, SocketAddr, TcpListener};
+use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::thread::JoinHandle;
+use std::sync::atomic::AtomicBool;
 
 use calibration_tables::CompiledTable;
 use estimator_core::Q;
 use proprio_check::Finding;
 use proprio_link::{Link, Subscription};
+use proprio_server::{LocalServer, serve_connection};
 use proprio_session::LoadedTable;
 use telemetry::{Command, TICK_HZ};
 use tokio::io::{AsyncRead, AsyncWrite};
@@ -87,11 +87,8 @@ pub struct Options<'p> {
 /// A server that runs until it is dropped.
 #[derive(Debug)]
 pub struct Monitor {
-    address: SocketAddr,
+    server: LocalServer,
     shared: Arc<MonitorState>,
-    stop: Arc<AtomicBool>,
-    stop_server: Option<tokio::sync::oneshot::Sender<()>>,
-    threads: Vec<JoinHandle<()>>,
     _announcement: Option<Announcement>,
 }
 
@@ -103,56 +100,26 @@ impl Monitor {
     pub fn start(live: Option<(Link, Subscription)>, options: Options) -> Result<Self, Error> {
         let port = options.port;
         let failed = |source| Error::Listen { port, source };
-        let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port)).map_err(failed)?;
-        listener.set_nonblocking(true).map_err(failed)?;
-        let address = listener.local_addr().map_err(failed)?;
+        let mut server = LocalServer::bind(port).map_err(failed)?;
+        let address = server.address();
         let compiled = options.table.as_ref().map(|table| table.compile::<Q>(TICK_HZ)).transpose()?;
         let (link, events) = live.unzip();
         let announcement = announce(link.as_ref(), options.runtime_folder.as_deref(), address);
         let (announcement, program_token) = announcement.unzip();
         let shared = Arc::new(shared(link, options, program_token));
-        let stop = Arc::new(AtomicBool::new(false));
-        let (stop_server, stopped) = tokio::sync::oneshot::channel();
-        let mut monitor = Self {
-            address,
-            shared,
-            stop,
-            stop_server: Some(stop_server),
-            threads: Vec::new(),
-            _announcement: announcement,
-        };
         if let Some(events) = events {
-            let (shared, stop) = (Arc::clone(&monitor.shared), Arc::clone(&monitor.stop));
-            monitor.spawn("hub", move || hub(&shared, events, compiled.as_ref(), &stop)).map_err(failed)?;
+            let shared = Arc::clone(&shared);
+            server.spawn("hub", move |stop| hub(&shared, events, compiled.as_ref(), stop)).map_err(failed)?;
         }
-        let state = AppState { monitor: Arc::clone(&monitor.shared), port: address.port() };
-        let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(failed)?;
-        let work = async move {
-            let listener = tokio::net::TcpListener::from_std(listener)?;
-            tokio::select! {
-                served = server::serve(listener, server::router(state)) => served,
-                _ = stopped => Ok(()),
-            }
-        };
-        let serve = move || {
-            // A server error cannot be reported at this point.
-            let _ = runtime.block_on(work);
-            // Do not wait for a long session that is being opened.
-            runtime.shutdown_background();
-        };
-        monitor.spawn("server", serve).map_err(failed)?;
-        Ok(monitor)
-    }
-
-    fn spawn(&mut self, name: &str, work: impl FnOnce() + Send + 'static) -> std::io::Result<()> {
-        self.threads.push(std::thread::Builder::new().name(name.to_owned()).spawn(work)?);
-        Ok(())
+        let state = AppState { monitor: Arc::clone(&shared), port: address.port() };
+        server.serve("server", |listener| server::serve(listener, server::router(state))).map_err(failed)?;
+        Ok(Self { server, shared, _announcement: announcement })
     }
 
     /// Its address.
     #[must_use]
-    pub fn address(&self) -> SocketAddr {
-        self.address
+    pub const fn address(&self) -> SocketAddr {
+        self.server.address()
     }
 
     /// Ends the monitor: vents the board, where a page could have driven it, and completes the recording. Returns its path.
@@ -165,19 +132,6 @@ impl Monitor {
             let _ = link.request(Command::Disarm);
         }
         Ok(self.shared.finish_recording()?.map(|progress| progress.file))
-    }
-}
-
-impl Drop for Monitor {
-    fn drop(&mut self) {
-        self.stop.store(true, Ordering::Relaxed);
-        if let Some(stop) = self.stop_server.take() {
-            // The server may have ended already.
-            let _ = stop.send(());
-        }
-        for thread in self.threads.drain(..) {
-            let _ = thread.join();
-        }
     }
 }
 
@@ -198,7 +152,7 @@ where
 {
     let port = options.port;
     let state = AppState { monitor: Arc::new(shared(None, options, None)), port };
-    server::serve_connection(stream, server::router(state)).await;
+    serve_connection(stream, server::router(state), body::PART_TIMEOUT).await;
 }
 
 /// The state that the threads share.

@@ -12,10 +12,7 @@ use axum::http::header::{
 use axum::middleware::{self, Next};
 use axum::response::{IntoResponse, Response};
 use axum::routing::{get, post};
-use hyper::server::conn::http1;
-use hyper_util::rt::{TokioIo, TokioTimer};
-use hyper_util::service::TowerToHyperService;
-use tokio::io::{AsyncRead, AsyncWrite};
+use proprio_server::serve_connection;
 use tokio::net::TcpListener;
 
 use super::access::{Refused, check_host, check_origin};
@@ -76,20 +73,8 @@ pub(super) fn router(state: AppState) -> Router {
 pub(super) async fn serve(listener: TcpListener, router: Router) -> io::Result<()> {
     loop {
         let (stream, _) = listener.accept().await?;
-        tokio::spawn(serve_connection(stream, router.clone()));
+        tokio::spawn(serve_connection(stream, router.clone(), body::PART_TIMEOUT));
     }
-}
-
-/// Serves one connection to its end, but for a feed, which continues by itself.
-pub(super) async fn serve_connection<S>(stream: S, router: Router)
-where
-    S: AsyncRead + AsyncWrite + Unpin + Send + 'static,
-{
-    let mut http = http1::Builder::new();
-    http.timer(TokioTimer::new()).header_read_timeout(body::PART_TIMEOUT);
-    let service = TowerToHyperService::new(router);
-    // A page that leaves ends its connection.
-    drop(http.serve_connection(TokioIo::new(stream), service).with_upgrades().await);
 }
 
 /// Checks the access of every request, receives its body, and adds headers to every response.
