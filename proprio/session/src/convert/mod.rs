@@ -51,9 +51,7 @@ pub fn convert(
     let reader = any_columns(input, &header)?;
     let (file, mut left_out) = match (header.kind, kind) {
         (_, FileFormat::Csv) => {
-            let path = output.to_owned();
-            let failed = |source| Error::Output { path: path.clone(), source };
-            let left_out = to_csv::write(reader, &mut file, failed, progress)?;
+            let left_out = to_csv::write(reader, &mut file, OutputFile::error, progress)?;
             (file, left_out)
         }
         (FileFormat::Recording, _) => extract(input, file, reader.has_truth())?,
@@ -74,7 +72,7 @@ pub fn convert(
 pub fn csv_text(input: &Path, progress: &mut dyn Progress) -> Result<Vec<u8>, Error> {
     let reader = any_columns(input, &Header::of(input)?)?;
     let mut text = Vec::new();
-    let failed = |error| {
+    let failed = |_: &Vec<u8>, error| {
         let problem = SessionProblem::Read(error);
         SessionError { path: input.to_owned(), line: None, column: None, problem }.into()
     };
