@@ -44,12 +44,13 @@ pub struct ArmFile {
     /// Record of the tuning, if the filters were tuned.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub tuning: Option<TuningToml>,
+    /// Wiring to the board; `None`: the reference wiring of docs/how-to/wiring.md. Before the segments in
+    /// the file, so that one cut short has fewer segments than pins and is refused.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub board: Option<BoardToml>,
     /// The segments from the base to the tip.
     #[serde(rename = "segment")]
     pub segments: Vec<SegmentToml>,
-    /// Wiring to the board; `None`: the reference wiring of docs/how-to/wiring.md.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub board: Option<BoardToml>,
 }
 
 /// `[tare]`: the arm rests in its reference pose for the first `seconds`.

@@ -206,6 +206,18 @@ fn board() -> impl Strategy<Value = BoardToml> {
     )
 }
 
+/// A file that was cut short in a copy would otherwise be that of a shorter arm, or of one with the reference wiring.
+#[test]
+fn a_written_table_that_lost_a_segment_is_refused() {
+    let text = parse(&format!("{TABLE}{BOARD}")).to_toml();
+    let starts: Vec<usize> = text.match_indices("[[segment]]").map(|(start, _)| start).collect();
+    assert_eq!(starts.len(), 2);
+    for start in starts {
+        let error = ArmFile::parse(&text[..start]).expect_err("it must be refused").to_string();
+        assert!(error.contains("segment"), "{error}");
+    }
+}
+
 proptest! {
     #[test]
     fn a_written_wiring_is_read_as_it_was(board in board()) {

@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use std::process::{Child, ChildStderr, ChildStdin, ChildStdout, Command, Stdio};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
 use std::sync::{Arc, Mutex, PoisonError};
+use std::thread::JoinHandle;
 use std::time::Duration;
 
 use board_table::STORE_BYTES;
@@ -112,6 +113,8 @@ struct Running {
     /// Bytes that did not fit the reader's buffer.
     rest: Vec<u8>,
     last_lines: Arc<Mutex<VecDeque<String>>>,
+    /// Thread that reads `last_lines`; it ends with the program.
+    reader_of_lines: Option<JoinHandle<()>>,
     /// Its flash, where that is not kept.
     _flash: Option<NamedTempFile>,
 }
@@ -121,12 +124,24 @@ impl Running {
         let missing = || LinkError::Ended("the virtual Due has no pipes".to_owned());
         let input = child.stdin.take().ok_or_else(missing)?;
         let output = pump(child.stdout.take().ok_or_else(missing)?)?;
-        let last_lines = read_lines(child.stderr.take().ok_or_else(missing)?)?;
-        Ok(Self { child, input, output, rest: Vec::new(), last_lines, _flash: flash })
+        let (last_lines, reader_of_lines) = read_lines(child.stderr.take().ok_or_else(missing)?)?;
+        Ok(Self {
+            child,
+            input,
+            output,
+            rest: Vec::new(),
+            last_lines,
+            reader_of_lines: Some(reader_of_lines),
+            _flash: flash,
+        })
     }
 
     fn ended(&mut self) -> io::Error {
         let status = self.child.wait().map_or_else(|error| error.to_string(), |status| status.to_string());
+        if let Some(reader) = self.reader_of_lines.take() {
+            // It has no result, and panics on nothing.
+            let _ = reader.join();
+        }
         let lines = self.last_lines.lock().unwrap_or_else(PoisonError::into_inner);
         let lines: Vec<&str> = lines.iter().map(String::as_str).collect();
         io::Error::other(format!("the virtual Due has ended ({status}): {}", lines.join("; ")))
@@ -149,7 +164,7 @@ fn pump(mut output: ChildStdout) -> Result<Receiver<Vec<u8>>, LinkError> {
 }
 
 /// Keeps the last lines of its standard error.
-fn read_lines(errors: ChildStderr) -> Result<Arc<Mutex<VecDeque<String>>>, LinkError> {
+fn read_lines(errors: ChildStderr) -> Result<(Arc<Mutex<VecDeque<String>>>, JoinHandle<()>), LinkError> {
     let last_lines = Arc::new(Mutex::new(VecDeque::new()));
     let shared = Arc::clone(&last_lines);
     let work = move || {
@@ -161,8 +176,8 @@ fn read_lines(errors: ChildStderr) -> Result<Arc<Mutex<VecDeque<String>>>, LinkE
             lines.push_back(line);
         }
     };
-    std::thread::Builder::new().name("virtual-due errors".to_owned()).spawn(work).map_err(LinkError::Thread)?;
-    Ok(last_lines)
+    let builder = std::thread::Builder::new().name("virtual-due errors".to_owned());
+    Ok((last_lines, builder.spawn(work).map_err(LinkError::Thread)?))
 }
 
 impl Transport for Running {
@@ -181,7 +196,10 @@ impl Transport for Running {
     }
 
     fn write(&mut self, bytes: &[u8]) -> io::Result<()> {
-        self.input.write_all(bytes).and_then(|()| self.input.flush())
+        match self.input.write_all(bytes).and_then(|()| self.input.flush()) {
+            Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Err(self.ended()),
+            result => result,
+        }
     }
 }
 

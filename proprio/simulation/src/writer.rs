@@ -50,7 +50,8 @@ impl<W: Write> SessionWriter<W> {
                 write!(sink, ",bend{i}{sensor}_adc")?;
             }
         }
-        for (i, _) in segments().filter(|(_, segment)| segment.imu) {
+        // An IMU that is not there has its columns, with empty cells.
+        for (i, _) in segments() {
             match imu {
                 ImuColumns::Deg => write!(sink, ",imu{i}_deg")?,
                 ImuColumns::Quaternion => write!(sink, ",imu{i}_qw,imu{i}_qx,imu{i}_qy,imu{i}_qz")?,
@@ -77,12 +78,10 @@ impl<W: Write> SessionWriter<W> {
             }
         }
         for (segment, quaternion) in self.layout.segments().iter().zip(&sample.quaternions) {
-            if !segment.imu {
-                continue;
-            }
+            let quaternion = quaternion.filter(|_| segment.imu);
             match self.imu {
                 ImuColumns::Deg => write!(self.sink, ",{}", quaternion.map(heading_deg).unwrap_or_default())?,
-                ImuColumns::Quaternion => write_quaternion(&mut self.sink, *quaternion)?,
+                ImuColumns::Quaternion => write_quaternion(&mut self.sink, quaternion)?,
             }
         }
         for end in sample.truth.iter().take_while(|_| self.truth) {

@@ -23,7 +23,10 @@ impl FlashFile {
     pub fn load<W: World>(path: PathBuf, machine: &mut Machine<W>) -> io::Result<Self> {
         let kept = match fs::read(&path) {
             Ok(content) if content.len() == FLASH_BYTES => content,
-            Ok(_) => return Err(ErrorKind::InvalidData.into()),
+            Ok(content) => {
+                let reason = format!("the file has {} bytes, expected {FLASH_BYTES}", content.len());
+                return Err(io::Error::new(ErrorKind::InvalidData, reason));
+            }
             Err(error) if error.kind() == ErrorKind::NotFound => vec![0xFF; FLASH_BYTES],
             Err(error) => return Err(error),
         };

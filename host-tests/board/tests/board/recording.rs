@@ -96,6 +96,17 @@ fn status_shows_the_state_of_the_virtual_due() {
 }
 
 #[test]
+fn a_flash_file_of_another_size_is_named_with_the_size_that_it_must_have() {
+    let folder = folder("flash of another size");
+    std::fs::write(folder.join("flash.bin"), [0; 1000]).expect("the folder is writable");
+    let arguments = ["status", "--virtual", "--firmware", "firmware", "--flash", "flash.bin"];
+    let run = proprio(&folder, &arguments).output().expect("the tool starts");
+    let error = String::from_utf8_lossy(&run.stderr);
+    assert_eq!(run.status.code(), Some(2), "{error}");
+    assert!(error.contains("flash.bin") && error.contains("512 KiB") && !error.contains("pipe"), "{error}");
+}
+
+#[test]
 fn status_is_json_for_programs() {
     let folder = folder("status as JSON");
     let printed = done(&folder, &["status", "--virtual", "--firmware", "firmware", "--table", &table(), "--json"]);

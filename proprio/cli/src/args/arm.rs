@@ -17,12 +17,12 @@ pub struct NewArmArgs {
     /// Bend sensors of each segment, 0 to 2, such as 2,2,1; at most 12 in all
     #[arg(long, value_name = "N", value_delimiter = ',', num_args = 1)]
     pub bend: Option<Vec<u8>>,
-    /// Number of pressure regulators, 0 to 8
-    #[arg(long, value_name = "N", default_value_t = 0)]
-    pub regulators: u8,
-    /// Pressure of the regulators at full duty, kPa over the atmosphere
-    #[arg(long, value_name = "KPA", default_value_t = 280.0, allow_negative_numbers = true)]
-    pub full_scale_kpa: f64,
+    /// Number of pressure regulators, 0 to 8 [default: 0]
+    #[arg(long, value_name = "N")]
+    pub regulators: Option<u8>,
+    /// Pressure of the regulators at full duty, kPa over the atmosphere [default: 280]
+    #[arg(long, value_name = "KPA", allow_negative_numbers = true)]
+    pub full_scale_kpa: Option<f64>,
     /// Arm description to write
     #[arg(short, long, value_name = "ARM.toml")]
     pub output: PathBuf,

@@ -19,13 +19,8 @@ rate_hz = {TICK_HZ:?}
 [tare]
 seconds = 1.0
 
-# Segments from the base: length of the curved part, and of the rigid connector at its "start" or
-# "end". Measure both.
 "#
     );
-    for length_mm in &arm.lengths_mm {
-        section(&mut text, &format!("[[segment]]\nlength_mm = {length_mm:?}\noffset_mm = 0.0\noffset_at = \"end\""));
-    }
     text += "# Wiring (docs/how-to/wiring.md): bend sensors a and b of a segment on A0 to A11; its IMU on a\n";
     text += "# channel of the multiplexer, 0 to 7, at address 0x28 or 0x29. Change it to fit yours.\n[board]\n";
     let [address, _] = IMU_ADDRESSES;
@@ -45,6 +40,11 @@ seconds = 1.0
     for pin in REGULATOR_PINS.iter().take(usize::from(arm.regulators)) {
         let full_scale_kpa = arm.full_scale_kpa;
         section(&mut text, &format!("[[board.regulator]]\npin = \"D{pin}\"\nfull_scale_kpa = {full_scale_kpa:?}"));
+    }
+    text += "# Segments from the base: length of the curved part, and of the rigid connector at its \"start\" or\n";
+    text += "# \"end\". Measure both.\n";
+    for length_mm in &arm.lengths_mm {
+        section(&mut text, &format!("[[segment]]\nlength_mm = {length_mm:?}\noffset_mm = 0.0\noffset_at = \"end\""));
     }
     text.truncate(text.trim_end().len());
     text + "\n"

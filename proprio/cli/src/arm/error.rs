@@ -16,8 +16,8 @@ pub enum NewArmError {
         /// Error of standard input.
         source: std::io::Error,
     },
-    /// A list with a part that is no number.
-    #[error("{option}: {part:?} is no number of the list")]
+    /// An answer, or a part of one, that is no number of the option's kind.
+    #[error("{option}: {part:?} is not a number that it takes")]
     Number {
         /// The option.
         option: &'static str,

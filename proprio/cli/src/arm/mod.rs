@@ -18,5 +18,5 @@ mod summary;
 pub use choice::NewArm;
 pub use description::description;
 pub use error::NewArmError;
-pub use questions::{Question, answer};
-pub use summary::{ArmSummary, wiring_table};
+pub use questions::{Question, answer, answer_or};
+pub use summary::{ArmSummary, REFERENCE_WIRING, wiring_table};

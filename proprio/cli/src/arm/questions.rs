@@ -26,11 +26,37 @@ pub fn answer<T: FromStr + Clone>(given: Option<&[T]>, question: &Question) -> R
     }
 }
 
-/// Reads a line of numbers with commas between them.
-fn read<T: FromStr>(option: &'static str, input: &mut dyn BufRead) -> Result<Vec<T>, NewArmError> {
+/// The number of an option, or of the answer to its question where standard input is a terminal; else, and for an empty
+/// answer, `default`.
+pub fn answer_or<T: FromStr + Copy>(given: Option<T>, question: &Question, default: T) -> Result<T, NewArmError> {
+    match given {
+        Some(number) => Ok(number),
+        None if std::io::stdin().is_terminal() => {
+            terminal::eprint_line(&question.text);
+            read_one(question.option, default, &mut std::io::stdin().lock())
+        }
+        None => Ok(default),
+    }
+}
+
+/// Reads a line with one number or none.
+fn read_one<T: FromStr + Copy>(option: &'static str, default: T, input: &mut dyn BufRead) -> Result<T, NewArmError> {
+    let line = read_line(option, input)?;
+    let number = || line.parse().map_err(|_| NewArmError::Number { option, part: line.clone() });
+    if line.is_empty() { Ok(default) } else { number() }
+}
+
+/// Reads a line without the space around it.
+fn read_line(option: &'static str, input: &mut dyn BufRead) -> Result<String, NewArmError> {
     let mut line = String::new();
     input.read_line(&mut line).map_err(|source| NewArmError::Answer { option, source })?;
-    if line.trim().is_empty() {
+    Ok(line.trim().to_owned())
+}
+
+/// Reads a line of numbers with commas between them.
+fn read<T: FromStr>(option: &'static str, input: &mut dyn BufRead) -> Result<Vec<T>, NewArmError> {
+    let line = read_line(option, input)?;
+    if line.is_empty() {
         return Err(NewArmError::Missing(option));
     }
     let number =
@@ -59,7 +85,17 @@ mod tests {
     }
 
     #[test]
+    fn an_option_with_a_default_has_one_number_or_none() {
+        let regulators =
+            |line: &str| read_one("--regulators", 0_u8, &mut line.as_bytes()).map_err(|error| error.to_string());
+        assert_eq!(regulators(" 4 \n"), Ok(4));
+        assert_eq!(regulators("\n"), Ok(0));
+        let error = "--regulators: \"4,4\" is not a number that it takes";
+        assert_eq!(regulators("4,4\n"), Err(error.to_owned()));
+    }
+
+    #[test]
     fn a_part_that_is_no_number_is_named() {
-        assert_eq!(lengths("90,long\n"), Err("--lengths-mm: \"long\" is no number of the list".to_owned()));
+        assert_eq!(lengths("90,long\n"), Err("--lengths-mm: \"long\" is not a number that it takes".to_owned()));
     }
 }

@@ -11,6 +11,9 @@ use telemetry::{LINE_BYTES_PER_SECOND, STREAM_BYTES_PER_SECOND};
 use super::line_budget::LineBudget;
 use crate::text_tables::{table, text};
 
+/// Note on a file that has no wiring of its own.
+pub const REFERENCE_WIRING: &str = "it has no section [board]: the wiring is the reference of docs/how-to/wiring.md";
+
 /// An arm on its board.
 #[derive(Serialize)]
 pub struct ArmSummary {
@@ -23,6 +26,8 @@ pub struct ArmSummary {
     regulators: usize,
     wiring: Wiring,
     line_bytes_per_s: LineBudget,
+    #[serde(skip)]
+    has_reference_wiring: bool,
 }
 
 impl ArmSummary {
@@ -40,6 +45,7 @@ impl ArmSummary {
             regulators,
             line_bytes_per_s: LineBudget::of(segments, regulators),
             wiring,
+            has_reference_wiring: file.board.is_none(),
         })
     }
 
@@ -54,7 +60,8 @@ impl ArmSummary {
             counted(*imus, "IMU"),
             counted(*regulators, "regulator")
         );
-        format!("{counts}\n\n{}\n{}", wiring_table(&self.wiring), line(&self.line_bytes_per_s))
+        let note = if self.has_reference_wiring { format!("{REFERENCE_WIRING}\n") } else { String::new() };
+        format!("{counts}\n{note}\n{}\n{}", wiring_table(&self.wiring), line(&self.line_bytes_per_s))
     }
 }
 

@@ -8,7 +8,7 @@ use proprio_link::table::wiring;
 use proprio_session::{OutputFile, is_stdout};
 
 use crate::args::NewArmArgs;
-use crate::arm::{NewArm, Question, answer, description, wiring_table};
+use crate::arm::{NewArm, Question, answer, answer_or, description, wiring_table};
 use crate::error::Error;
 use crate::terminal;
 
@@ -22,11 +22,26 @@ const BEND: Question = Question {
     text: "Bend sensors of each segment, 0 to 2, with commas between them, such as 2,2,1:",
 };
 
+const REGULATORS: Question =
+    Question { option: "--regulators", text: "Number of pressure regulators, 0 to 8 [default: 0]:" };
+
+const FULL_SCALE: Question = Question {
+    option: "--full-scale-kpa",
+    text: "Pressure of the regulators at full duty, kPa over the atmosphere [default: 280]:",
+};
+
+/// Full scale of a regulator, kPa, unless another is given.
+const FULL_SCALE_KPA: f64 = 280.0;
+
 pub fn run(args: &NewArmArgs) -> Result<(), Error> {
     let lengths_mm = answer(args.lengths_mm.as_deref(), &LENGTHS)?;
     let bend_sensors = answer(args.bend.as_deref(), &BEND)?;
     let name = args.name.clone().unwrap_or_else(|| name_of(&args.output));
-    let &NewArmArgs { regulators, full_scale_kpa, .. } = args;
+    let regulators = answer_or(args.regulators, &REGULATORS, 0)?;
+    let full_scale_kpa = match args.full_scale_kpa {
+        None if regulators == 0 => FULL_SCALE_KPA,
+        given => answer_or(given, &FULL_SCALE, FULL_SCALE_KPA)?,
+    };
     let arm = NewArm { name, lengths_mm, bend_sensors, regulators, full_scale_kpa };
     arm.check()?;
     let text = description(&arm);

@@ -9,6 +9,7 @@ use telemetry::TableStatus;
 
 use super::link;
 use crate::args::{LinkArgs, TableCommand};
+use crate::arm::REFERENCE_WIRING;
 use crate::error::Error;
 use crate::progress_bar::Bar;
 use crate::{terminal, text_tables};
@@ -34,6 +35,9 @@ fn push_file(file: &Path, args: &LinkArgs) -> Result<(), Error> {
     let bytes = stored.image.len() + stored.source.len();
     let (file, checksum, arm) = (file.display(), hello.table, hello.arm);
     terminal::print(&format!("{file}: on the board and in use, table {checksum:08x} of arm {arm}, {bytes} bytes\n"))?;
+    if table.file.board.is_none() {
+        terminal::print(&format!("{REFERENCE_WIRING}\n"))?;
+    }
     if table.file.is_description() {
         terminal::print("it is an arm description: the board sends samples, and no shape until it has a table\n")?;
     }

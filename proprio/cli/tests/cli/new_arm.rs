@@ -151,7 +151,8 @@ fn the_first_example_of_the_wiring_page_is_what_new_arm_makes() {
     let section = page.split("```toml\n").nth(1).and_then(|rest| rest.split("```").next()).expect("the section");
     let written = ArmFile::load(&folder.path("arm.toml")).expect("an arm description");
     let text = folder.read("arm.toml");
-    let (geometry, _) = text.split_once("[board]").expect("the section");
-    let of_page = ArmFile::parse(&format!("{geometry}{section}")).expect("the section is valid");
+    let (head, rest) = text.split_once("[board]").expect("the section");
+    let (_, segments) = rest.split_once("[[segment]]").expect("the segments");
+    let of_page = ArmFile::parse(&format!("{head}{section}[[segment]]{segments}")).expect("the section is valid");
     assert_eq!(written.board, of_page.board);
 }

@@ -58,11 +58,20 @@ fn the_reference_arms_description_gives_the_bytes_of_the_reference_arm() {
 
 #[test]
 fn a_session_has_the_columns_of_the_arms_sensors() {
-    let folder = Folder::with("arm.toml", three().replace("imu = { channel = 1, address = 0x28 }", ""));
+    let folder = Folder::with("arm.toml", three());
     let names = session(&folder, "--scenario 1 --seconds 1 --seed 82", "session.csv").names;
-    let readings = ["time_s", "bend1a_adc", "bend2a_adc", "bend3a_adc", "imu1_deg", "imu3_deg"];
+    let readings = ["time_s", "bend1a_adc", "bend2a_adc", "bend3a_adc", "imu1_deg", "imu2_deg", "imu3_deg"];
     let truth = (1..=3).flat_map(|i| ["x_mm", "y_mm", "heading_deg"].map(|name| format!("truth{i}_{name}")));
     assert_eq!(names, readings.map(str::to_owned).into_iter().chain(truth).collect::<Vec<_>>());
+}
+
+#[test]
+fn a_segment_without_imu_has_an_empty_column_and_the_sweep_is_calibrated() {
+    let folder = Folder::with("arm.toml", three().replace("imu = { channel = 1, address = 0x28 }", ""));
+    let sweep = session(&folder, "--scenario sweep --seconds 120 --seed 82", "sweep.csv");
+    let column = sweep.names.iter().position(|name| name == "imu2_deg").expect("the column");
+    assert!(folder.read("sweep.csv").lines().skip(1).all(|row| row.split(',').nth(column) == Some("")));
+    folder.done(&["calibrate", "sweep.csv", "--arm", "arm.toml", "-o", "table.toml"]);
 }
 
 #[test]
