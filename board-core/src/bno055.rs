@@ -7,19 +7,23 @@
 //! | phase | transactions in one tick | next phase after |
 //! |---|---|---|
 //! | identify | PAGE_ID ← 0, CHIP_ID → | CHIP_ID is 0xA0 |
-//! | inspect | OPR_MODE →, then OPR_MODE ← IMUPLUS, or SYS_TRIGGER ← RST_SYS | one tick |
+//! | inspect | OPR_MODE →, then UNIT_SEL ← its mark, or SYS_TRIGGER ← RST_SYS | one tick |
 //! | boot | none | 700 ms have passed; identified again |
+//! | start | OPR_MODE ← IMUPLUS | one tick |
 //! | settle | none for two ticks, then SYS_STATUS … OPR_MODE → | fusion runs; after 1 s without, reset |
-//! | run | QUA_DATA →, every 4th tick SYS_STATUS … OPR_MODE or CHIP_ID → | an error |
+//! | run | QUA_DATA →, UNIT_SEL … OPR_MODE →, every 8th tick from SYS_STATUS on | fusion has ended |
 //!
 //! A chip in CONFIGMODE has just come out of a reset and holds all defaults (BST-BNO055-DS000, 3.2 and 3.3.1), which
 //! suit IMUPLUS here: a quaternion has no selectable unit (3.6.5.5), and the internal clock works on every board, also on
 //! those without a crystal. A chip in any other mode is reset first, so that each start is from the
-//! same state. A start takes 5 ticks from CONFIGMODE and about 76 ticks with a reset.
+//! same state. A start takes 6 ticks from CONFIGMODE and about 77 ticks with a reset.
 //!
-//! A supply that dips returns the chip silently to CONFIGMODE, where it answers and reads zero (3.3.1). A reading that
-//! is no unit quaternion, and a reading after any error, is therefore followed by a check of mode and status in the same
-//! tick; both are checked every 80 ms anyway, and so is the identity. After a start the heading has a new zero.
+//! A supply that dips returns the chip silently to CONFIGMODE, where it answers and reads zero or its last reading
+//! (3.3.1), and a multiplexer that fails may connect another IMU than it confirms. A reading therefore counts only with
+//! the mode and the mark that were read after it. The mark is a number of the IMU's own in the bits of UNIT_SEL that
+//! select the units of acceleration, rate, Euler angles and temperature (3.6.1): a quaternion has none. It is written in
+//! CONFIGMODE and lost in a reset. Another mark is another chip, which is left as it is. A chip that does not keep its
+//! mark is read without it. After a start the heading has a new zero.
 //!
 //! The published crate `bno055` 0.4 does not suit: its start blocks for 650 ms and more, each of its calls first
 //! writes the page register, which doubles the transactions, and it records a mode before the write has succeeded, so
@@ -36,6 +40,7 @@ const CHIP_ID: u8 = 0x00;
 const PAGE_ID: u8 = 0x07;
 const QUA_DATA_W_LSB: u8 = 0x20;
 const SYS_STATUS: u8 = 0x39;
+const UNIT_SEL: u8 = 0x3B;
 const OPR_MODE: u8 = 0x3D;
 const SYS_TRIGGER: u8 = 0x3F;
 
@@ -47,6 +52,8 @@ const MODE_CONFIG: u8 = 0x00;
 const MODE_IMUPLUS: u8 = 0x08;
 /// SYS_STATUS: the fusion algorithm runs.
 const STATUS_FUSION: u8 = 5;
+/// UNIT_SEL after a reset (4.2.1).
+const UNITS: u8 = 0x80;
 /// SYS_TRIGGER: reset.
 const RST_SYS: u8 = 0x20;
 
@@ -56,7 +63,7 @@ const BOOT_TICKS: u32 = 70;
 const SWITCH_TICKS: u32 = 2;
 /// Longest time until fusion runs; after it the chip is started again.
 const SETTLE_TICKS: u32 = 100;
-/// Period of the checks of mode and status, ticks; the identity is checked halfway between.
+/// Period of the checks of the status, ticks.
 const CHECK_TICKS: u32 = 8;
 
 /// Square of a quaternion's norm of 1 within 1 %: the chip's unit is 2¹⁴ steps (3.6.5.5).
@@ -67,7 +74,7 @@ const NORM_SQUARED: RangeInclusive<u64> = ((1 << 28) * 99 * 99 / 10_000)..=((1 <
 pub enum Answer {
     /// The orientation w, x, y, z in units of 2⁻¹⁴, of norm 1 within 1 %.
     Quaternion([i16; 4]),
-    /// The chip answers, but with no unit quaternion, or it is no BNO055.
+    /// The chip answers, but with no unit quaternion, or it is another IMU, or no BNO055.
     Invalid,
     /// The chip is starting; the heading of its first reading has a new zero.
     Starting,
@@ -77,6 +84,8 @@ pub enum Answer {
 #[derive(Debug)]
 pub struct Bno055 {
     address: u8,
+    /// UNIT_SEL with its mark.
+    marked_units: u8,
     phase: Phase,
 }
 
@@ -87,20 +96,22 @@ enum Phase {
     Boot {
         since: u32,
     },
+    Start,
     Settle {
         since: u32,
     },
-    /// `trusted`: no error since the last good check of mode and status.
+    /// `units`: UNIT_SEL when fusion began.
     Run {
-        trusted: bool,
+        units: u8,
     },
 }
 
 impl Bno055 {
-    /// The IMU at `address`, in any state.
+    /// The IMU at `address`, in any state, which gets `mark`: 1 to 15, and no other IMU's.
     #[must_use]
-    pub const fn new(address: u8) -> Self {
-        Self { address, phase: Phase::Identify }
+    pub const fn new(address: u8, mark: u8) -> Self {
+        // Bits 0 to 2 and 4 select units; bit 3 is reserved.
+        Self { address, marked_units: UNITS | mark & 0b0111 | (mark & 0b1000) << 1, phase: Phase::Identify }
     }
 
     /// Returns whether a step in this tick would make no transaction, so that it does not need the bus.
@@ -109,12 +120,11 @@ impl Bno055 {
         match self.phase {
             Phase::Boot { since } => tick.wrapping_sub(since) < BOOT_TICKS,
             Phase::Settle { since } => tick.wrapping_sub(since) < SWITCH_TICKS,
-            Phase::Identify | Phase::Inspect | Phase::Run { .. } => false,
+            Phase::Identify | Phase::Inspect | Phase::Start | Phase::Run { .. } => false,
         }
     }
 
-    /// Advances the driver in tick number `tick`: at most two transactions. The future may be dropped at any await: the next
-    /// step then checks mode and status before it returns a reading.
+    /// Advances the driver in tick number `tick`: at most two transactions. The future may be dropped at any await.
     ///
     /// # Errors
     ///
@@ -127,8 +137,9 @@ impl Bno055 {
         match self.phase {
             Phase::Identify | Phase::Boot { .. } => self.identify(i2c).await,
             Phase::Inspect => self.inspect(i2c, tick).await,
+            Phase::Start => self.start(i2c, tick).await,
             Phase::Settle { since } => self.settle(i2c, tick.wrapping_sub(since)).await,
-            Phase::Run { trusted } => self.run(i2c, tick, trusted).await,
+            Phase::Run { units } => self.run(i2c, tick, units).await,
         }
     }
 
@@ -145,8 +156,8 @@ impl Bno055 {
     async fn inspect<I: I2c>(&mut self, i2c: &mut I, tick: u32) -> Result<Answer, I::Error> {
         let [mode] = self.read(i2c, OPR_MODE).await?;
         if mode & MODE_MASK == MODE_CONFIG {
-            self.write(i2c, OPR_MODE, MODE_IMUPLUS).await?;
-            self.phase = Phase::Settle { since: tick };
+            self.write(i2c, UNIT_SEL, self.marked_units).await?;
+            self.phase = Phase::Start;
         } else {
             self.phase = Phase::Boot { since: tick };
             match self.write(i2c, SYS_TRIGGER, RST_SYS).await {
@@ -158,44 +169,48 @@ impl Bno055 {
         Ok(Answer::Starting)
     }
 
+    async fn start<I: I2c>(&mut self, i2c: &mut I, tick: u32) -> Result<Answer, I::Error> {
+        self.write(i2c, OPR_MODE, MODE_IMUPLUS).await?;
+        self.phase = Phase::Settle { since: tick };
+        Ok(Answer::Starting)
+    }
+
     async fn settle<I: I2c>(&mut self, i2c: &mut I, ticks: u32) -> Result<Answer, I::Error> {
-        let (status, mode) = self.status_and_mode(i2c).await?;
-        if mode == MODE_IMUPLUS && status == STATUS_FUSION {
-            self.phase = Phase::Run { trusted: true };
-        } else if mode != MODE_IMUPLUS || ticks >= SETTLE_TICKS {
+        let state = self.state(i2c).await?;
+        if state.has_fusion() {
+            self.phase = Phase::Run { units: state.units };
+        } else if state.mode != MODE_IMUPLUS || ticks >= SETTLE_TICKS {
             self.phase = Phase::Identify;
         }
         Ok(Answer::Starting)
     }
 
-    async fn run<I: I2c>(&mut self, i2c: &mut I, tick: u32, trusted: bool) -> Result<Answer, I::Error> {
-        self.phase = Phase::Run { trusted: false };
+    async fn run<I: I2c>(&mut self, i2c: &mut I, tick: u32, units: u8) -> Result<Answer, I::Error> {
         let quaternion = self.quaternion(i2c).await?;
-        let is_unit = is_unit(quaternion);
-        let turn = tick % CHECK_TICKS;
-        let is_sound = if !trusted || !is_unit || turn == 0 {
-            self.status_and_mode(i2c).await? == (STATUS_FUSION, MODE_IMUPLUS)
-        } else if turn == CHECK_TICKS / 2 {
-            self.is_bno055(i2c).await?
-        } else {
-            true
-        };
-        if !is_sound {
+        let state =
+            if tick.is_multiple_of(CHECK_TICKS) { self.state(i2c).await? } else { self.state_but_status(i2c).await? };
+        if !state.has_fusion() {
             self.phase = Phase::Identify;
             return Ok(Answer::Starting);
         }
-        self.phase = Phase::Run { trusted: true };
-        Ok(if is_unit { Answer::Quaternion(quaternion) } else { Answer::Invalid })
+        let is_valid = state.units == units && is_unit(quaternion);
+        Ok(if is_valid { Answer::Quaternion(quaternion) } else { Answer::Invalid })
     }
 
     async fn is_bno055<I: I2c>(&self, i2c: &mut I) -> Result<bool, I::Error> {
         Ok(self.read(i2c, CHIP_ID).await? == [IDENTITY])
     }
 
-    /// SYS_STATUS 0x39 and OPR_MODE 0x3D in one read, with SYS_ERR, UNIT_SEL and a reserved byte between them.
-    async fn status_and_mode<I: I2c>(&self, i2c: &mut I) -> Result<(u8, u8), I::Error> {
-        let [status, _, _, _, mode] = self.read(i2c, SYS_STATUS).await?;
-        Ok((status, mode & MODE_MASK))
+    /// SYS_STATUS 0x39, UNIT_SEL 0x3B and OPR_MODE 0x3D in one read.
+    async fn state<I: I2c>(&self, i2c: &mut I) -> Result<State, I::Error> {
+        let [status, _, units, _, mode] = self.read(i2c, SYS_STATUS).await?;
+        Ok(State { status, units, mode: mode & MODE_MASK })
+    }
+
+    /// The same without the status, in two bytes less.
+    async fn state_but_status<I: I2c>(&self, i2c: &mut I) -> Result<State, I::Error> {
+        let [units, _, mode] = self.read(i2c, UNIT_SEL).await?;
+        Ok(State { status: STATUS_FUSION, units, mode: mode & MODE_MASK })
     }
 
     async fn quaternion<I: I2c>(&self, i2c: &mut I) -> Result<[i16; 4], I::Error> {
@@ -211,6 +226,19 @@ impl Bno055 {
 
     async fn write<I: I2c>(&self, i2c: &mut I, register: u8, value: u8) -> Result<(), I::Error> {
         i2c.write(self.address, &[register, value]).await
+    }
+}
+
+/// State of the chip.
+struct State {
+    status: u8,
+    units: u8,
+    mode: u8,
+}
+
+impl State {
+    fn has_fusion(&self) -> bool {
+        self.status == STATUS_FUSION && self.mode == MODE_IMUPLUS
     }
 }
 

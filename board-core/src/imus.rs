@@ -5,8 +5,7 @@
 //!
 //! # How long a tick can take
 //!
-//! An IMU that runs costs three transactions, and a fourth in every fourth tick: six take 2.2 to 2.4 ms on the wire at
-//! 400 kHz, and 3.3 ms if all of them must be checked. A missing IMU does not delay the others: after three NACKs it is
+//! An IMU that runs costs four transactions: six take 3.0 ms on the wire at 400 kHz. A missing IMU does not delay the others: after three NACKs it is
 //! polled only every 25 ticks (250 ms), and each poll costs the selection of its channel and one address. Eight
 //! take a third more. A tick has at most six transactions for each IMU and one recovery of the bus.
 //!
@@ -15,8 +14,9 @@
 //! | fault | reaction | state |
 //! |---|---|---|
 //! | no acknowledge | polled again in the next tick, after three every 25 ticks | `NoResponse` after three ticks |
-//! | no unit quaternion | the reading is rejected, mode and status are checked | `Invalid` after three ticks |
-//! | no fusion, wrong mode or identity | restarted; runs again after 5 to 76 ticks | `NoResponse` at once, then `Ok` |
+//! | no unit quaternion | the reading is rejected | `Invalid` after three ticks |
+//! | another IMU than the one that was started: a multiplexer that confirms a wrong channel | readings are rejected until it is the right one | `Invalid` after three ticks |
+//! | no fusion, or wrong mode | restarted; runs again after 6 to 77 ticks | `NoResponse` at once, then `Ok` |
 //! | the tick ended in an IMU's transaction | the bus is recovered; polled again after 25 ticks | `Timeout` after three ticks |
 //! | bus error, or a multiplexer that fails | [`BusRecovery`], multiplexer reset, then the rest of the tick | `NoResponse` after three ticks |
 //! | the same reading while another IMU turns | readings are rejected until one differs | `Stuck` after 50 ticks |
@@ -26,7 +26,7 @@
 //!
 //! An IMU that was `NoResponse` may have restarted, and its heading with it: a user of headings aligns them again after
 //! an [`Event::Imu`] with `NoResponse`. After a supply dip the chip does not answer for 650 ms; it is polled at most 250 ms
-//! later and takes 5 ticks to start: well under 2 s.
+//! later and takes 6 ticks to start: well under 2 s.
 
 mod bus;
 mod channel;
@@ -88,7 +88,8 @@ pub struct Imus<I, R> {
 impl<I: I2c + BusRecovery, R: OutputPin> Imus<I, R> {
     /// The IMUs that are wired, not read yet. Makes no transaction.
     pub fn new(i2c: I, mux: Tca9548a<R>, wiring: &Wiring) -> Self {
-        let channels = wiring.segments.iter().map(|segment| segment.imu.and_then(ImuChannel::new));
+        let segments = wiring.segments.iter().zip(1..);
+        let channels = segments.map(|(segment, mark)| segment.imu.and_then(|place| ImuChannel::new(place, mark)));
         Self { bus: Bus::new(i2c, mux), channels: vector(channels), copies: CopyDetector::new() }
     }
 

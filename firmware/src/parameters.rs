@@ -12,7 +12,7 @@ pub const TICK_HZ: u32 = (1_000_000 / TICK_US) as u32;
 pub const SCAN_US: u32 = 200;
 
 /// Deadline of the IMUs' poll after a tick's trigger, µs. An IMU that has not answered by then counts as not read.
-pub const IMUS_US: u64 = 5_000;
+pub const IMUS_US: u64 = 6_000;
 
 /// ADC channels of the analog pins: A0 … A7 are channels 7 … 0, A8 … A11 are 10 … 13.
 pub const ANALOG_CHANNELS: u16 = 0x3CFF;

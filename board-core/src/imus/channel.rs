@@ -47,11 +47,11 @@ pub(super) struct ImuChannel {
 }
 
 impl ImuChannel {
-    /// The IMU at this place; `None` for a channel that the multiplexer does not have.
-    pub(super) fn new(place: ImuAddress) -> Option<Self> {
+    /// The IMU at this place, with a mark of its own; `None` for a channel that the multiplexer does not have.
+    pub(super) fn new(place: ImuAddress, mark: u8) -> Option<Self> {
         Some(Self {
             channel: Channel::ALL.get(usize::from(place.channel)).copied()?,
-            imu: Bno055::new(place.address),
+            imu: Bno055::new(place.address, mark),
             outcome: Outcome::Skipped,
             nack_count: 0,
             polled_at: 0,

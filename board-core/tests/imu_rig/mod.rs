@@ -39,6 +39,7 @@ pub struct Chip {
     pub is_plugged: bool,
     pub mode: u8,
     pub page: u8,
+    pub units: u8,
     pub answers_from: u32,
     pub quaternion: [i16; 4],
     /// Value of QUA_DATA in place of the measured one.
@@ -49,7 +50,8 @@ pub struct Chip {
 
 impl Chip {
     fn reset(&mut self, tick: u32) {
-        (self.mode, self.page, self.answers_from) = (0, 0, tick + POWER_ON_TICKS);
+        (self.mode, self.page, self.units) = (0, 0, 0x80);
+        self.answers_from = tick + POWER_ON_TICKS;
     }
 
     fn read(&self, register: u8) -> u8 {
@@ -62,6 +64,7 @@ impl Chip {
                 quaternion[offset / 2].to_le_bytes()[offset % 2]
             }
             0x39 => [0, 5][usize::from(self.mode == 8)],
+            0x3B => self.units,
             0x3D => 0x10 | self.mode,
             _ => 0,
         }
@@ -70,6 +73,7 @@ impl Chip {
     fn write(&mut self, register: u8, value: u8, tick: u32) {
         match register {
             0x07 => self.page = value,
+            0x3B if self.mode == 0 => self.units = value,
             0x3D => self.mode = value & 0x0F,
             0x3F if value & 0x20 != 0 => self.reset(tick),
             _ => panic!("{value:#04x} written to {register:#04x}"),
@@ -99,6 +103,8 @@ pub struct SimulatedBus {
     pub mux_ignores: bool,
     /// The multiplexer does not acknowledge.
     pub mux_is_gone: bool,
+    /// The multiplexer connects the channel that is so many further on, and confirms the one that is selected.
+    pub mux_lies_by: u8,
     /// The transaction of this number in the tick never ends.
     pub hangs_at: Option<usize>,
     /// Transactions of this tick: address, and how many bits were on the wire.
@@ -153,7 +159,7 @@ impl SimulatedBus {
     fn speak_to_chip(&mut self, address: u8, operations: &mut [Operation<'_>]) -> Option<Result<(), ErrorKind>> {
         assert!(self.connected.count_ones() <= 1, "several IMUs are connected: {:#010b}", self.connected);
         let (tick, connected) = (self.tick, self.connected);
-        let place = ImuAddress { channel: connected.trailing_zeros() as u8, address };
+        let place = ImuAddress { channel: connected.trailing_zeros() as u8 + self.mux_lies_by, address };
         let chip = self.chips.iter_mut().find(|chip| chip.place == place);
         let Some(chip) = chip.filter(|chip| chip.is_plugged && chip.answers_from <= tick) else {
             return Some(self.refuse());
@@ -248,6 +254,7 @@ impl ImuRig {
             is_plugged: true,
             mode: 0,
             page: 0,
+            units: 0x80,
             answers_from: 0,
             quaternion: heading(10.0 * (k + 1) as f64),
             forced: None,
@@ -261,6 +268,7 @@ impl ImuRig {
             holder: None,
             mux_ignores: false,
             mux_is_gone: false,
+            mux_lies_by: 0,
             hangs_at: None,
             log: Vec::new(),
             recoveries: 0,
