@@ -8,8 +8,8 @@
 //! | `twi1` | 5 | a byte on the I²C bus | 5 | 1.2 | the IMUs' bus |
 //! | `time` | 5 | a timer's alarm | 5 | 2.3 | delays and deadlines |
 //! | `tick` | 4 | 10 ms | 100 | 37 | scan, pressures, watchdog |
-//! | `commands` | 3 | 10 ms | 1100 | 1035 | requests of the host |
-//! | `estimation` | 2 | 10 ms | 6000 | 4803 | IMUs (5 ms at most), estimator, messages |
+//! | `commands` | 3 | 10 ms | 1100 | 1044 | requests of the host |
+//! | `estimation` | 2 | 10 ms | 6000 | 5639 | IMUs (6 ms at most), estimator, messages |
 //! | `table` | 1 | a request about the table | | | pages of the flash |
 //! | `idle` | 0 | | | | sleep |
 //!

@@ -1,16 +1,16 @@
 //! Detector of a stuck IMU: one that repeats its reading, bit for bit, while another one turns.
 //!
 //! At rest an IMU may repeat its reading for any time. It is stuck if it gave the same bytes for 50 ticks (0.5 s) and,
-//! within at most the last 50 ticks, another IMU turned by more than 1°: that is 2 °/s, forty times the drift of the
-//! worst unit and, with a noise of 0.1°, seven sigma.
+//! within at most the last 50 ticks, another IMU turned by more than 0.5°: that is 1 °/s, twenty times the drift of the
+//! worst unit. The noise of another IMU does not reach it where this one's is so small that its bytes repeat.
 
 use telemetry::MAX_SEGMENTS;
 
 /// Ticks of the same bytes, and of the window in which another IMU must turn.
 const WINDOW_TICKS: u8 = 50;
 
-/// sin²(1°/2), in units of 2⁻⁵⁶.
-const TURNED: i64 = 5_487_360_000_000;
+/// sin²(0.5°/2), in units of 2⁻⁵⁶.
+const TURNED: i64 = 1_371_866_000_000;
 
 type Quaternion = [i16; 4];
 
@@ -54,7 +54,7 @@ impl StuckDetector {
     }
 }
 
-/// Returns whether the rotation from one to the other is of more than 1°. The norm of the vector part of conj(a)·b is
+/// Returns whether the rotation from one to the other is of more than 0.5°. The norm of the vector part of conj(a)·b is
 /// sin(angle/2), which unlike the scalar part, its cosine, is not lost in the rounding of small angles, and is the same
 /// for q and −q. It is at most the product of the norms, and the readings are of norm 1 within 1 %: nothing overflows.
 fn has_turned(a: Quaternion, b: Quaternion) -> bool {
@@ -76,12 +76,12 @@ mod tests {
     }
 
     #[test]
-    fn one_degree_is_a_turn_and_noise_is_not() {
+    fn half_a_degree_is_a_turn_and_rounding_is_not() {
         for heading in [0.0, 45.0, 180.0, 359.7, 720.0] {
             let start = about_z(heading);
-            assert!(has_turned(start, about_z(heading + 1.05)), "from {heading}°");
-            assert!(has_turned(start, about_z(heading - 1.05)), "from {heading}°");
-            assert!(!has_turned(start, about_z(heading + 0.95)), "from {heading}°");
+            assert!(has_turned(start, about_z(heading + 0.53)), "from {heading}°");
+            assert!(has_turned(start, about_z(heading - 0.53)), "from {heading}°");
+            assert!(!has_turned(start, about_z(heading + 0.47)), "from {heading}°");
             assert!(!has_turned(start, start.map(|component| -component)), "at {heading}°");
         }
     }

@@ -15,6 +15,8 @@ pub struct Trial {
     /// The board.
     pub board: Board,
     program: MotionProgram,
+    /// Speed of the motion over that of the session's swings.
+    pace: f64,
     start_s: f64,
     fault_at: Cycles,
 }
@@ -26,11 +28,21 @@ impl Trial {
     /// If the board does not arm.
     #[must_use]
     pub fn swinging(seed: u64, seconds: u64) -> Self {
+        Self::at_pace(seed, seconds, 1.0)
+    }
+
+    /// The same with another speed of the motion: 1 is that of the session's swings.
+    ///
+    /// # Panics
+    /// As [`Trial::swinging`].
+    #[must_use]
+    pub fn at_pace(seed: u64, seconds: u64, pace: f64) -> Self {
         let mut board = Board::new(WiredRig::new(Scenario::FreeSwing, seed));
         board.run_ms(2500);
         assert_eq!(board.request(Command::Arm), RequestOutcome::Ack);
         let start_s = board.machine.seconds();
-        let mut trial = Self { board, program: MotionProgram::new(Scenario::FreeSwing, seed), start_s, fault_at: 0 };
+        let program = MotionProgram::new(Scenario::FreeSwing, seed);
+        let mut trial = Self { board, program, pace, start_s, fault_at: 0 };
         trial.run_ms(seconds * 1000);
         trial
     }
@@ -40,7 +52,8 @@ impl Trial {
         let mut left_ms = ms;
         while left_ms > 0 {
             let step_ms = left_ms.min(SET_POINT_MS);
-            self.board.set_pressures(&self.program.duties(self.board.machine.seconds() - self.start_s));
+            let time_s = self.board.machine.seconds() - self.start_s;
+            self.board.set_pressures(&self.program.duties(time_s * self.pace));
             self.board.run_ms(step_ms);
             left_ms -= step_ms;
         }

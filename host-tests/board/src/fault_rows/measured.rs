@@ -41,6 +41,11 @@ pub(super) fn swinging() -> Trial {
     Trial::swinging(SEED, BEFORE_S)
 }
 
+/// A board whose arm has moved for [`BEFORE_S`] at a twelfth of that speed.
+pub(super) fn slow() -> Trial {
+    Trial::at_pace(SEED, BEFORE_S, 1.0 / 12.0)
+}
+
 /// A board whose arm has swung for [`BEFORE_S`], and has swung on with these faults for some time, ms.
 pub(super) fn with(faults: &str, ms: u64) -> Trial {
     let mut trial = swinging();

@@ -2,7 +2,7 @@
 
 use telemetry::{Event, Message, SensorState};
 
-use super::measured::{Measured, Row, bend_noticed_ms, imu_back_ms, imu_noticed_ms, text_of, tip, with, within};
+use super::measured::{Measured, Row, bend_noticed_ms, imu_back_ms, imu_noticed_ms, slow, text_of, tip, with, within};
 use crate::trial::Trial;
 
 pub(super) const ROWS: &[(&str, Row)] = &[
@@ -14,6 +14,7 @@ pub(super) const ROWS: &[(&str, Row)] = &[
     ("bend_factor", bend_factor),
     ("imu_unplugged", imu_unplugged),
     ("imu_frozen", imu_frozen),
+    ("imu_frozen_slow", imu_frozen_slow),
     ("imu_reset", imu_reset),
     ("imu_brown_out", imu_brown_out),
     ("imu_replugged", imu_replugged),
@@ -138,6 +139,22 @@ fn imu_frozen() -> Measured {
         measured_ms: 8_000,
     };
     row.measure(|trial| trial.noticed_ms(|event| event == Event::Imu(2, SensorState::Stuck)))
+}
+
+fn imu_frozen_slow() -> Measured {
+    let injected = "imu3:frozen";
+    let mut trial = slow();
+    trial.inject(injected);
+    trial.run_ms(8_000);
+    let stuck = trial.noticed_ms(|event| event == Event::Imu(2, SensorState::Stuck));
+    let (tip, is_near) = tip(&trial, 0.0, 8e3);
+    Measured {
+        row: "IMU frozen in slow motion, a twelfth of the speed",
+        injected,
+        promise: "stuck within 1 s, the estimate stays near",
+        measured: format!("stuck after {}; {tip}", text_of(stuck)),
+        holds: within(stuck, 1e3) && is_near,
+    }
 }
 
 fn imu_restarted(row: &'static str, injected: &'static str, trial: &Trial) -> Measured {

@@ -44,6 +44,11 @@ fn a_frozen_imu_is_stuck_after_half_a_second_and_the_tip_stays() {
 }
 
 #[test]
+fn a_frozen_imu_is_stuck_within_a_second_in_slow_motion() {
+    assert_holds("imu_frozen_slow");
+}
+
+#[test]
 fn quaternions_of_zeros_are_never_used() {
     assert_holds("imu_zeros");
 }
@@ -66,6 +71,11 @@ fn a_stuck_multiplexer_never_exchanges_imus() {
 #[test]
 fn a_multiplexer_on_the_wrong_channel_never_exchanges_imus() {
     assert_holds("mux_wrong");
+}
+
+#[test]
+fn a_multiplexer_that_confirms_a_wrong_channel_never_exchanges_imus() {
+    assert_holds("mux_lying");
 }
 
 #[test]
