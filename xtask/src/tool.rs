@@ -3,7 +3,7 @@
 use std::env;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::process::{Command, Stdio};
 
 /// The tool, and the folder that it works in.
 pub struct Tool {
@@ -75,6 +75,15 @@ pub fn cargo(arguments: &[&str], variables: &[(&str, &str)]) -> Result<(), Strin
 fn copy(from: &Path, to: &Path) -> Result<(), String> {
     let done = to.parent().map_or(Ok(()), fs::create_dir_all).and_then(|()| fs::copy(from, to));
     done.map(|_| ()).map_err(|error| format!("{} to {}: {error}", from.display(), to.display()))
+}
+
+/// Runs a command that must succeed, and returns what it prints.
+pub fn output(command: &mut Command) -> Result<Vec<u8>, String> {
+    match command.stderr(Stdio::inherit()).output() {
+        Ok(output) if output.status.success() => Ok(output.stdout),
+        Ok(output) => Err(format!("{}: {}", command.get_program().display(), output.status)),
+        Err(error) => Err(format!("{}: {error}", command.get_program().display())),
+    }
 }
 
 /// Runs a command that must succeed.

@@ -75,6 +75,8 @@ pub enum Command {
     Recover(RecoverArgs),
     /// Print a completion script for a shell
     Completions(CompletionsArgs),
+    /// Write a manual page of each command
+    Man(ManArgs),
 }
 
 #[derive(Debug, Args)]
@@ -325,4 +327,13 @@ pub enum MotionName {
 pub struct CompletionsArgs {
     /// The shell
     pub shell: Shell,
+}
+
+#[derive(Debug, Args)]
+pub struct ManArgs {
+    /// Folder of the pages, which is made
+    #[arg(value_name = "FOLDER")]
+    pub folder: PathBuf,
+    #[command(flatten)]
+    pub force: ForceArgs,
 }

@@ -4,10 +4,12 @@
 //! |---|---|
 //! | `firmware.rs` | the firmware: its ELF file and its plain image |
 //! | `programs.rs` | `proprio` and `virtual-due`, stripped, with the firmware and the reference arm's table, as a `.tar.gz` |
+//! | `deb.rs` | the same as a Debian package, with manual pages, completions and the rule for the port |
 //! | `wheel.rs` | the Python package with all of them |
 //! | `checksums.rs`, `files.rs` | checksums of the files; copies |
 
 mod checksums;
+mod deb;
 mod files;
 mod firmware;
 mod programs;
@@ -18,13 +20,18 @@ use std::path::Path;
 
 use crate::tool::target;
 
-/// Builds everything. Without a Python there is no wheel.
+/// Builds everything. Without a Python there is no wheel, without dpkg no Debian package.
 pub fn run() -> Result<(), String> {
     let folder = target().join("dist");
     files::emptied(&folder)?;
     let mut written = firmware::write(&folder)?;
     let bundle = programs::Files::build(&written)?;
     written.push(programs::archive(&bundle, &folder)?);
+    if deb::is_possible() {
+        written.push(deb::write(&bundle, &folder)?);
+    } else {
+        println!("SKIPPED: no dpkg-deb here; the Debian package was not built");
+    }
     match wheel::Python::find() {
         Some(python) => written.push(wheel::write(&python, &bundle, &folder)?),
         None => println!("SKIPPED: no python3 with venv and pip here; the wheel was not built"),

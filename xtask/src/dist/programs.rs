@@ -12,7 +12,7 @@ use crate::tool::{cargo, check, root, target};
 /// Files that belong together.
 pub struct Files {
     /// The program `proprio`.
-    proprio: PathBuf,
+    pub proprio: PathBuf,
     /// The programs' other files: the emulated board's program, the firmware, the reference arm's table, the licences.
     pub companions: Vec<PathBuf>,
 }

@@ -98,7 +98,7 @@ fn status_shows_the_state_of_the_virtual_due() {
 #[test]
 fn a_flash_file_of_another_size_is_named_with_the_size_that_it_must_have() {
     let folder = folder("flash of another size");
-    std::fs::write(folder.join("flash.bin"), [0; 1000]).expect("the folder is writable");
+    fs::write(folder.join("flash.bin"), [0; 1000]).expect("the folder is writable");
     let arguments = ["status", "--virtual", "--firmware", "firmware", "--flash", "flash.bin"];
     let run = proprio(&folder, &arguments).output().expect("the tool starts");
     let error = String::from_utf8_lossy(&run.stderr);

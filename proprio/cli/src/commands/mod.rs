@@ -9,6 +9,7 @@ mod demo;
 mod drive;
 mod flash;
 mod link;
+mod man;
 mod monitor;
 mod motion;
 mod new_arm;
@@ -52,6 +53,7 @@ impl Command {
             Self::Demo(args) => demo::run(&args),
             Self::Convert(args) => convert::run(&args),
             Self::Completions(args) => completions::run(&args),
+            Self::Man(args) => man::run(&args),
         }?;
         Ok(0)
     }

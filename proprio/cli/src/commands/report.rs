@@ -70,7 +70,7 @@ pub fn run(args: &ReportArgs) -> Result<(), Error> {
 }
 
 /// Refuses a folder that has files already, unless they may be replaced.
-fn check_folder(folder: &Path, existing: Existing) -> Result<(), Error> {
+pub(super) fn check_folder(folder: &Path, existing: Existing) -> Result<(), Error> {
     let is_filled = fs::read_dir(folder).is_ok_and(|mut entries| entries.next().is_some());
     if is_filled && existing == Existing::Keep {
         return Err(proprio_session::Error::Exists(folder.to_owned()).into());

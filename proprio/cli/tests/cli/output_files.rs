@@ -311,3 +311,20 @@ fn a_longer_file_in_shared_memory_is_replaced_whole() {
     let estimates = std::fs::read_to_string(&path).expect("the estimates are there");
     assert!(estimates.starts_with("time_s,") && !estimates.contains("old"));
 }
+
+#[test]
+fn each_command_has_a_manual_page_and_a_filled_folder_is_kept() {
+    let folder = Folder::new();
+    folder.done(&["man", "pages"]);
+    let page = |name: &str| folder.read(&format!("pages/{name}.1"));
+    let overview = page("proprio");
+    let commands: Vec<&str> =
+        overview.lines().filter_map(|line| line.strip_prefix(r"proprio\-")?.strip_suffix("(1)")).collect();
+    assert!(commands.len() >= 20, "{overview}");
+    for command in commands {
+        let name = command.replace(r"\-", "-");
+        assert!(name == "help" || page(&format!("proprio-{name}")).contains(".SH SYNOPSIS"), "{name}");
+    }
+    let error = folder.refused(&["man", "pages"]);
+    assert!(error.starts_with("pages: "), "{error}");
+}
