@@ -10,7 +10,6 @@ use axum::http::header::{CONTENT_TYPE, HeaderName};
 use axum::http::{HeaderMap, StatusCode};
 use axum::response::{IntoResponse, Response};
 use proprio_link::TareError;
-use proprio_link::status::Status;
 use proprio_session::NoProgress;
 use serde::{Deserialize, Serialize};
 use telemetry::{Command, MAX_REGULATORS, SetPressures, TareMode};
@@ -25,10 +24,10 @@ const BYTES: [(HeaderName, &str); 1] = [(CONTENT_TYPE, "application/octet-stream
 /// Time for which the board holds set-points, ms: it vents when the page is closed, or hidden and slowed by its browser.
 const VALID_MS: u16 = 500;
 
-type Answer<T> = Result<T, Response>;
+pub(super) type Answer<T> = Result<T, Response>;
 
 /// Runs work that blocks on a thread of its own.
-async fn run_blocking<T: Send + 'static>(work: impl FnOnce() -> T + Send + 'static) -> Answer<T> {
+pub(super) async fn run_blocking<T: Send + 'static>(work: impl FnOnce() -> T + Send + 'static) -> Answer<T> {
     let done = tokio::task::spawn_blocking(work).await;
     done.map_err(|_| (StatusCode::INTERNAL_SERVER_ERROR, "this is a fault of proprio").into_response())
 }
@@ -204,30 +203,8 @@ pub(super) async fn tare(State(state): State<AppState>, headers: HeaderMap, body
     tare_board(state, &body, ": let it rest, or tare it anyway").await
 }
 
-/// Tares the board for a program of this user.
-pub(super) async fn tare_for_program(
-    State(state): State<AppState>,
-    headers: HeaderMap,
-    body: Bytes,
-) -> Answer<Json<TareOutcome>> {
-    let token = state.monitor.program_token.as_ref().ok_or(Refused::Token);
-    token.and_then(|token| token.check(&headers)).map_err(Refused::into_response)?;
-    tare_board(state, &body, "").await
-}
-
-/// The status of the board, measured within seconds, as `proprio status` has it.
-pub(super) async fn board_status(State(state): State<AppState>) -> Answer<Json<Status>> {
-    let shared = Arc::clone(&state.monitor);
-    let measured = run_blocking(move || {
-        let has_table = shared.sessions.stored_table().is_ok_and(|table| table.is_some());
-        shared.link.as_ref().map(|link| Status::of(link, &link.subscribe(), has_table))
-    });
-    let status = measured.await?.ok_or_else(|| (StatusCode::NOT_FOUND, "there is no board").into_response())?;
-    Ok(Json(status.map_err(|error| state.failure(&error.into()))?))
-}
-
 /// Tares the board; `remedy` follows the error of an arm that moves.
-async fn tare_board(state: AppState, body: &[u8], remedy: &str) -> Answer<Json<TareOutcome>> {
+pub(super) async fn tare_board(state: AppState, body: &[u8], remedy: &str) -> Answer<Json<TareOutcome>> {
     let TareRequest { force } =
         serde_json::from_slice(body).map_err(|error| (StatusCode::BAD_REQUEST, error.to_string()).into_response())?;
     let mode = if force { TareMode::Force } else { TareMode::IfStill };

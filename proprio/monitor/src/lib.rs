@@ -30,6 +30,7 @@ mod live;
 mod monitor_state;
 mod page_row;
 mod plain;
+mod programs;
 mod recording;
 mod running;
 mod server;

@@ -9,6 +9,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use proprio_link::status::Status;
+use proprio_link::table::TableOnBoard;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use telemetry::TareMode;
@@ -27,7 +28,7 @@ pub struct RunningMonitor {
     /// Name of the board's line.
     line: String,
     address: SocketAddr,
-    /// Token that permits this user's programs to tare the board.
+    /// Token that permits this user's programs to change the board's tare and table.
     token: String,
 }
 
@@ -117,6 +118,38 @@ impl RunningMonitor {
         let request = serde_json::json!({"force": mode == TareMode::Force});
         let TareOutcome { is_moving, text } = self.request("POST", "/board/tare", &request.to_string())?;
         if is_moving { Err(RunningMonitorError::Moving(text)) } else { Ok(text) }
+    }
+
+    /// The table of the board.
+    ///
+    /// # Errors
+    /// [`RunningMonitorError`].
+    pub fn table(&self) -> Result<TableOnBoard, RunningMonitorError> {
+        self.request("GET", "/board/table", "")
+    }
+
+    /// Text of the board's table.
+    ///
+    /// # Errors
+    /// [`RunningMonitorError`].
+    pub fn pull_table(&self) -> Result<String, RunningMonitorError> {
+        self.request("GET", "/board/table.toml", "")
+    }
+
+    /// Stores a table, the text of its file, on the board, which restarts with it.
+    ///
+    /// # Errors
+    /// [`RunningMonitorError`].
+    pub fn push_table(&self, toml: &str) -> Result<TableOnBoard, RunningMonitorError> {
+        self.request("POST", "/board/table", toml)
+    }
+
+    /// Erases the table of the board, which restarts without one.
+    ///
+    /// # Errors
+    /// [`RunningMonitorError`].
+    pub fn erase_table(&self) -> Result<(), RunningMonitorError> {
+        self.request("DELETE", "/board/table", "")
     }
 
     fn request<T: DeserializeOwned>(&self, method: &str, path: &str, body: &str) -> Result<T, RunningMonitorError> {

@@ -17,7 +17,7 @@ use tokio::net::TcpListener;
 
 use super::access::{Refused, check_host, check_origin};
 use super::app_state::AppState;
-use super::{actions, body, socket};
+use super::{actions, body, programs, socket};
 
 /// The files of the page, embedded in this program.
 const FILES: [(&str, &str, &str); 14] = [
@@ -63,8 +63,10 @@ pub(super) fn router(state: AppState) -> Router {
         .route("/control", post(actions::control))
         .route("/tare", post(actions::tare))
         .route("/table", post(actions::push_table))
-        .route("/board", get(actions::board_status))
-        .route("/board/tare", post(actions::tare_for_program))
+        .route("/board", get(programs::status))
+        .route("/board/tare", post(programs::tare))
+        .route("/board/table", get(programs::table).post(programs::push_table).delete(programs::erase_table))
+        .route("/board/table.toml", get(programs::pull_table))
         .layer(middleware::from_fn_with_state(state.clone(), guard))
         .with_state(state)
 }

@@ -7,5 +7,5 @@ mod wiring;
 
 pub use error::TableImageError;
 pub use stored::StoredTable;
-pub use transfer::{PulledTable, TransferError, erase, pull, push, state};
+pub use transfer::{PulledTable, TableOnBoard, TransferError, erase, on_board, pull, push};
 pub use wiring::wiring;

@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 
 use board_table::body_crc;
 use proprio_session::Progress;
+use serde::{Deserialize, Serialize};
 use telemetry::{Command, Hello, Message, Refusal, TABLE_CHUNK_BYTES, TableChunk, TableState, TableStatus};
 
 use super::stored::{StoredTable, expand};
@@ -62,6 +63,17 @@ pub struct PulledTable {
     pub toml: String,
     /// Number of the table on the board.
     pub generation: u32,
+}
+
+/// The table of a board: its arm, its checksum, and the state of its storage.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct TableOnBoard {
+    /// Name of the arm; empty without a table.
+    pub arm: String,
+    /// Checksum of the table that is in use; 0: none.
+    pub checksum: u32,
+    /// State of the storage.
+    pub state: TableState,
 }
 
 /// Sends a table to a board, which checks it, restarts and uses it; returns the board's `Hello` after that. `progress` is
@@ -151,11 +163,18 @@ fn read(link: &Link, events: &Subscription, offset: u32) -> Result<TableChunk, T
     }
 }
 
-/// Requests the state of the table on a board.
+/// Requests the table of a board.
 ///
 /// # Errors
 /// [`TransferError`]; a board of an earlier version sends no state.
-pub fn state(link: &Link) -> Result<TableState, TransferError> {
+pub fn on_board(link: &Link) -> Result<TableOnBoard, TransferError> {
+    let state = state(link)?;
+    let hello = link.state().hello;
+    let (arm, checksum) = hello.map_or((String::new(), 0), |hello| (hello.arm.as_str().to_owned(), hello.table));
+    Ok(TableOnBoard { arm, checksum, state })
+}
+
+fn state(link: &Link) -> Result<TableState, TransferError> {
     link.wait_until_connected()?;
     let events = link.subscribe();
     link.request(Command::Ping)?;
