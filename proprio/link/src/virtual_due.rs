@@ -112,9 +112,7 @@ struct Running {
     output: Receiver<Vec<u8>>,
     /// Bytes that did not fit the reader's buffer.
     rest: Vec<u8>,
-    last_lines: Arc<Mutex<VecDeque<String>>>,
-    /// Thread that reads `last_lines`; it ends with the program.
-    reader_of_lines: Option<JoinHandle<()>>,
+    last_lines: LastLines,
     /// Its flash, where that is not kept.
     _flash: Option<NamedTempFile>,
 }
@@ -124,27 +122,13 @@ impl Running {
         let missing = || LinkError::Ended("the virtual Due has no pipes".to_owned());
         let input = child.stdin.take().ok_or_else(missing)?;
         let output = pump(child.stdout.take().ok_or_else(missing)?)?;
-        let (last_lines, reader_of_lines) = read_lines(child.stderr.take().ok_or_else(missing)?)?;
-        Ok(Self {
-            child,
-            input,
-            output,
-            rest: Vec::new(),
-            last_lines,
-            reader_of_lines: Some(reader_of_lines),
-            _flash: flash,
-        })
+        let last_lines = LastLines::read(child.stderr.take().ok_or_else(missing)?)?;
+        Ok(Self { child, input, output, rest: Vec::new(), last_lines, _flash: flash })
     }
 
     fn ended(&mut self) -> io::Error {
         let status = self.child.wait().map_or_else(|error| error.to_string(), |status| status.to_string());
-        if let Some(reader) = self.reader_of_lines.take() {
-            // It has no result, and panics on nothing.
-            let _ = reader.join();
-        }
-        let lines = self.last_lines.lock().unwrap_or_else(PoisonError::into_inner);
-        let lines: Vec<&str> = lines.iter().map(String::as_str).collect();
-        io::Error::other(format!("the virtual Due has ended ({status}): {}", lines.join("; ")))
+        io::Error::other(format!("the virtual Due has ended ({status}): {}", self.last_lines.text()))
     }
 }
 
@@ -163,21 +147,40 @@ fn pump(mut output: ChildStdout) -> Result<Receiver<Vec<u8>>, LinkError> {
     Ok(receiver)
 }
 
-/// Keeps the last lines of its standard error.
-fn read_lines(errors: ChildStderr) -> Result<(Arc<Mutex<VecDeque<String>>>, JoinHandle<()>), LinkError> {
-    let last_lines = Arc::new(Mutex::new(VecDeque::new()));
-    let shared = Arc::clone(&last_lines);
-    let work = move || {
-        for line in BufReader::new(errors).lines().map_while(Result::ok) {
-            let mut lines = shared.lock().unwrap_or_else(PoisonError::into_inner);
-            if lines.len() == LINES {
-                lines.pop_front();
+/// The last lines of its standard error.
+struct LastLines {
+    lines: Arc<Mutex<VecDeque<String>>>,
+    /// Reads them, and ends with the program.
+    reader: Option<JoinHandle<()>>,
+}
+
+impl LastLines {
+    /// Reads lines in a thread of its own.
+    fn read(errors: ChildStderr) -> Result<Self, LinkError> {
+        let lines = Arc::new(Mutex::new(VecDeque::new()));
+        let shared = Arc::clone(&lines);
+        let work = move || {
+            for line in BufReader::new(errors).lines().map_while(Result::ok) {
+                let mut lines = shared.lock().unwrap_or_else(PoisonError::into_inner);
+                if lines.len() == LINES {
+                    lines.pop_front();
+                }
+                lines.push_back(line);
             }
-            lines.push_back(line);
+        };
+        let reader = std::thread::Builder::new().name("virtual-due errors".to_owned()).spawn(work);
+        Ok(Self { lines, reader: Some(reader.map_err(LinkError::Thread)?) })
+    }
+
+    /// The lines of a program that has ended.
+    fn text(&mut self) -> String {
+        if let Some(reader) = self.reader.take() {
+            // It has no result, and panics on nothing.
+            let _ = reader.join();
         }
-    };
-    let builder = std::thread::Builder::new().name("virtual-due errors".to_owned());
-    Ok((last_lines, builder.spawn(work).map_err(LinkError::Thread)?))
+        let lines = self.lines.lock().unwrap_or_else(PoisonError::into_inner);
+        lines.iter().map(String::as_str).collect::<Vec<_>>().join("; ")
+    }
 }
 
 impl Transport for Running {

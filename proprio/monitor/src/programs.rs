@@ -16,9 +16,8 @@ use super::actions::{Answer, TareOutcome, run_blocking, tare_board};
 use super::app_state::AppState;
 use crate::error::Error;
 
-fn check_token(state: &AppState, headers: &HeaderMap) -> Answer<()> {
-    let token = state.monitor.program_token.as_ref().ok_or(Refused::Token);
-    token.and_then(|token| token.check(headers)).map_err(Refused::into_response)
+fn check_token(state: &AppState, headers: &HeaderMap) -> Result<(), Refused> {
+    state.monitor.program_token.as_ref().ok_or(Refused::Token)?.check(headers)
 }
 
 /// Runs work on the board's link, which blocks.
@@ -40,7 +39,7 @@ pub(super) async fn status(State(state): State<AppState>) -> Answer<Json<Status>
 
 /// Tares the board.
 pub(super) async fn tare(State(state): State<AppState>, headers: HeaderMap, body: Bytes) -> Answer<Json<TareOutcome>> {
-    check_token(&state, &headers)?;
+    check_token(&state, &headers).map_err(Refused::into_response)?;
     tare_board(state, &body, "").await
 }
 
@@ -60,7 +59,7 @@ pub(super) async fn push_table(
     headers: HeaderMap,
     body: Bytes,
 ) -> Answer<Json<TableOnBoard>> {
-    check_token(&state, &headers)?;
+    check_token(&state, &headers).map_err(Refused::into_response)?;
     with_board(state, move |link| {
         let file = ArmFile::parse(&String::from_utf8_lossy(&body)).map_err(TableImageError::File)?;
         table::push(link, &StoredTable::new(&file, &body)?, &mut NoProgress)?;
@@ -71,6 +70,6 @@ pub(super) async fn push_table(
 
 /// Erases the table of the board, which restarts without one.
 pub(super) async fn erase_table(State(state): State<AppState>, headers: HeaderMap) -> Answer<Json<()>> {
-    check_token(&state, &headers)?;
+    check_token(&state, &headers).map_err(Refused::into_response)?;
     with_board(state, |link| Ok(table::erase(link).map(|_| ())?)).await
 }

@@ -9,7 +9,7 @@ use super::choice::NewArm;
 pub fn description(arm: &NewArm) -> String {
     let name = serde_json::to_string(&arm.name).expect("a text has a form in JSON, which is one of TOML too");
     let mut text = format!(
-        r#"# Arm description. `proprio calibrate` makes a table of it and a session with camera truth; `proprio
+        r"# Arm description. `proprio calibrate` makes a table of it and a session with camera truth; `proprio
 # check` checks it and prints its wiring. docs/reference/table.md explains the keys.
 format = 1
 arm = {name}
@@ -19,7 +19,7 @@ rate_hz = {TICK_HZ:?}
 [tare]
 seconds = 1.0
 
-"#
+"
     );
     text += "# Wiring (docs/how-to/wiring.md): bend sensors a and b of a segment on A0 to A11; its IMU on a\n";
     text += "# channel of the multiplexer, 0 to 7, at address 0x28 or 0x29. Change it to fit yours.\n[board]\n";
