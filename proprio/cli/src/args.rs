@@ -222,6 +222,9 @@ pub struct ReportArgs {
     /// Table of the arm
     #[arg(long, value_name = "TABLE.toml")]
     pub table: PathBuf,
+    /// Another table, which is compared with that of `--table` on the same sessions
+    #[arg(long, value_name = "TABLE.toml")]
+    pub compare: Option<PathBuf>,
     /// Page to write
     #[arg(short, long, value_name = "REPORT.html")]
     pub output: PathBuf,

@@ -103,7 +103,7 @@ impl Rows {
 
     fn marks(&mut self, place: Place, marks: &Marks) {
         match marks {
-            Marks::Line { x, y, points } => {
+            Marks::Line { x, y, points } | Marks::Strip { x, y, points, .. } => {
                 for (at, value) in points.iter().copied() {
                     if let Some(value) = value {
                         self.point(place, (x, at), (y, value));

@@ -95,7 +95,7 @@ fn replay_all<S: FusedOps>(
         if summary.not_comparable > 0 {
             terminal::warn(&format_args!("{}: {}", path.display(), NotComparable(&summary)));
         }
-        let SessionSummary { samples, seconds, recording, .. } = summary;
+        let SessionSummary { samples, seconds, recording, recorded_at, .. } = summary;
         let recorded = recording.filter(|_| compare.is_some()).map(|recording| {
             comparison.table_matches = recording.table_matches;
             let comparison = comparison.of(recording.recorded_by);
@@ -104,7 +104,14 @@ fn replay_all<S: FusedOps>(
         });
         all.append(&errors);
         let metrics = ByMethod::from(&errors);
-        each.push(SessionMetrics { path: path.display().to_string(), samples, seconds, metrics, recorded });
+        each.push(SessionMetrics {
+            path: path.display().to_string(),
+            samples,
+            seconds,
+            recorded_at,
+            metrics,
+            recorded,
+        });
     }
     Ok(AllMetrics { sessions: each, all: ByMethod::from(&all), length_mm })
 }
