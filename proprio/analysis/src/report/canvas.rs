@@ -27,7 +27,7 @@ impl Size {
     /// Width and height, px.
     pub const fn px(self) -> [i32; 2] {
         match self {
-            Self::Half => [560, 360],
+            Self::Half => [480, 320],
             Self::Third => [380, 300],
             Self::Quarter => [300, 420],
             Self::Square => [300, 330],

@@ -48,8 +48,15 @@ pub struct Difference {
 }
 
 impl<'t> OtherTable<'t> {
-    pub fn new(table: &'t LoadedTable) -> Self {
-        Self { table, sessions: Vec::new(), all: ErrorMetrics::new(table.file.length_mm()) }
+    /// No session yet. The table is one of the same arm as `reports`, that of the report.
+    pub fn new(table: &'t LoadedTable, reports: &ArmFile) -> Result<Self, Error> {
+        let lengths_mm = |file: &ArmFile| -> Vec<f64> {
+            file.segments.iter().flat_map(|segment| [segment.length_mm, segment.offset_mm]).collect()
+        };
+        if lengths_mm(&table.file) != lengths_mm(reports) {
+            return Err(Error::OtherArm(table.path.to_owned()));
+        }
+        Ok(Self { table, sessions: Vec::new(), all: ErrorMetrics::new(table.file.length_mm()) })
     }
 
     /// Replays a session.

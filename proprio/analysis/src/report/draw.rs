@@ -20,6 +20,8 @@ use super::plot::{Colour, Marks, Panel, Series, Size};
 
 /// Room for labels left of and below the axes, px.
 const LABELS_PX: [i32; 2] = [62, 44];
+/// Room right of the plot, for half of the last label, px.
+const RIGHT_PX: i32 = 18;
 /// Half the width of a box on an axis of names.
 const HALF_BOX: f64 = 0.27;
 /// Height of a strip in its row.
@@ -51,7 +53,7 @@ fn draw_plot(area: &Area, panel: &Panel) -> Drawn {
     let [left, bottom] = LABELS_PX.map(|px| px * PX);
     let (x, y) = ranges(area, panel);
     let mut builder = ChartBuilder::on(area);
-    builder.margin(MARGIN_PX * PX).x_label_area_size(bottom).y_label_area_size(left);
+    builder.margin(MARGIN_PX * PX).margin_right(RIGHT_PX * PX).x_label_area_size(bottom).y_label_area_size(left);
     if panel.y.is_log {
         draw_chart(builder.build_cartesian_2d(x[0]..x[1], (y[0]..y[1]).log_scale())?, panel)
     } else {
@@ -108,7 +110,7 @@ fn ranges(area: &Area, panel: &Panel) -> ([f64; 2], [f64; 2]) {
         return (x, y);
     }
     let (width, height) = area.dim_in_pixel();
-    let inside = [width as i32, height as i32].map(|units| units - 2 * MARGIN_PX * PX);
+    let inside = [width as i32 - (MARGIN_PX + RIGHT_PX) * PX, height as i32 - 2 * MARGIN_PX * PX];
     let [width, height] = [inside[0] - LABELS_PX[0] * PX, inside[1] - LABELS_PX[1] * PX].map(f64::from);
     let per_unit = ((x[1] - x[0]) / width).max((y[1] - y[0]) / height);
     let grown = |[from, to]: [f64; 2], units: f64| {

@@ -57,9 +57,9 @@ impl DriftErrors {
     fn panels(&self, session: &str) -> Vec<Panel> {
         let has_truth = self.segments.iter().any(|segment| segment.has(0..METHODS.len()));
         let (first, title) = if has_truth {
-            (0, "bend angle from the true one, deg")
+            (0, "angle from the true one, deg")
         } else {
-            (METHODS.len(), "bend angle from the bend sensors, deg")
+            (METHODS.len(), "angle from bend sensors, deg")
         };
         let all: Vec<Vec<Series>> = self.segments.iter().map(|segment| segment.series(first)).collect();
         let [x, y] = extent(all.iter().flatten());

@@ -155,10 +155,12 @@ impl<'t> ReportBuilder<'t> {
     }
 
     /// Compares the table with another one on the sessions that are added.
-    #[must_use]
-    pub fn compare_with(mut self, other: Option<&'t LoadedTable>) -> Self {
-        self.other = other.map(OtherTable::new);
-        self
+    ///
+    /// # Errors
+    /// [`Error::OtherArm`] where the arms have other segments.
+    pub fn compare_with(mut self, other: &'t LoadedTable) -> Result<Self, Error> {
+        self.other = Some(OtherTable::new(other, &self.table.file)?);
+        Ok(self)
     }
 
     /// The command that the page shows.

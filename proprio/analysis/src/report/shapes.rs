@@ -15,7 +15,7 @@ const MOMENTS: usize = 256;
 /// Points of a drawn segment.
 const SEGMENT_POINTS: u32 = 8;
 /// Side of a view of the tip over the largest distance in it from its middle.
-const ROOM: f64 = 1.25;
+const ROOM: f64 = 1.1;
 /// Least half side of a view of the tip, mm.
 const LEAST_HALF_MM: f64 = 2.0;
 /// Methods whose error circles are drawn.
@@ -157,7 +157,7 @@ impl Snapshot {
     /// Distance from the middle of its view that the leading estimate and fusion's ellipse need, mm.
     fn reach_mm(&self) -> f64 {
         let ellipse_mm = self.covariance_m2.map_or(0.0, |covariance| Ellipse::of(covariance).major_mm);
-        self.error_m.map_or(0.0, |m| m * 1e3).max(ellipse_mm)
+        self.error_m.map_or(0.0, |m| m * 1e3) + ellipse_mm
     }
 
     /// A moment's panel magnified about the tip, with fusion's ellipse.

@@ -62,7 +62,9 @@ impl Report {
     /// Errors by session and method, where there is truth.
     pub(super) fn errors(&self) -> Markup {
         let named = self.named();
-        let samples = self.numbers.sessions.iter().map(|session| session.samples).sum();
+        let is_shown = |path: &str| named.iter().any(|(name, _)| *name == path);
+        let shown = self.numbers.sessions.iter().filter(|session| is_shown(&session.path));
+        let samples = shown.map(|session| session.samples).sum();
         let is_stated = self.numbers.all.uncertainty.is_some();
         let is_smoothed = self.numbers.all.smoothed.is_some();
         html! {
@@ -75,9 +77,9 @@ impl Report {
                                 th scope="col" { "method" }
                                 th scope="col" { "tip RMSE, mm" }
                                 th scope="col" { "tip RMSE, % of " (self.table.length_mm) " mm" }
-                                th scope="col" { "tip 75th percentile, mm" }
+                                th scope="col" { "tip 75th percen\u{ad}tile, mm" }
                                 th scope="col" { "bend angle RMSE, deg" }
-                                @if is_stated { th scope="col" { "tips in 95 % ellipse" } th scope="col" { "NEES" } }
+                                @if is_stated { th scope="col" { "tips in 95 % ellipse, %" } th scope="col" { "NEES" } }
                             } }
                             @for (name, of) in &named { (block(name, of, is_stated)) }
                         }
@@ -133,10 +135,10 @@ fn block(name: &str, of: &ByMethod, is_stated: bool) -> Markup {
             @for row in &rows {
                 tr {
                     th.(row.name) scope="row" { (row.name) }
-                    @for (value, best) in row.cells().into_iter().zip(best) { td.best[value.is_some() && value == best] { (cell(value, 2, "")) } }
+                    @for (value, best) in row.cells().into_iter().zip(best) { td.best[value.is_some() && value == best] { (cell(value, 2)) } }
                     @if is_stated {
-                        td { (cell(row.consistency.and_then(|of| of.tip_inside_percent), 1, " %")) }
-                        td { (cell(row.consistency.and_then(|of| of.tip_nees), 2, "")) }
+                        td { (cell(row.consistency.and_then(|of| of.tip_inside_percent), 1)) }
+                        td { (cell(row.consistency.and_then(|of| of.tip_nees), 2)) }
                     }
                 }
             }
@@ -144,8 +146,8 @@ fn block(name: &str, of: &ByMethod, is_stated: bool) -> Markup {
     }
 }
 
-fn cell(value: Option<f64>, digits: usize, unit: &str) -> String {
-    value.map_or_else(String::new, |value| format!("{value:.digits$}{unit}"))
+fn cell(value: Option<f64>, digits: usize) -> String {
+    value.map_or_else(String::new, |value| format!("{value:.digits$}"))
 }
 
 /// Figures of fusion by both tables.
@@ -156,8 +158,8 @@ fn pair(name: &str, a: &ByMethod, b: &ByMethod) -> Markup {
         [tip_rmse_mm, tip_p75_mm, theta_rmse_deg]
     });
     let stated = [a, b].map(|of| of.uncertainty);
-    let [inside_a, inside_b] = stated.map(|of| cell(of.and_then(|of| of.tip_inside_percent), 1, " %"));
-    let [nees_a, nees_b] = stated.map(|of| cell(of.and_then(|of| of.tip_nees), 2, ""));
+    let [inside_a, inside_b] = stated.map(|of| cell(of.and_then(|of| of.tip_inside_percent), 1));
+    let [nees_a, nees_b] = stated.map(|of| cell(of.and_then(|of| of.tip_nees), 2));
     html! {
         tbody {
             tr.session { th scope="rowgroup" colspan="4" { (name) } }
@@ -166,13 +168,13 @@ fn pair(name: &str, a: &ByMethod, b: &ByMethod) -> Markup {
                 @if a.is_some() || b.is_some() {
                     tr {
                         th scope="row" { (name) }
-                        td.best[a < b] { (cell(a, 2, "")) } td.best[b < a] { (cell(b, 2, "")) }
+                        td.best[a < b] { (cell(a, 2)) } td.best[b < a] { (cell(b, 2)) }
                         td { (a.zip(b).map_or_else(String::new, |(a, b)| change(a, b))) }
                     }
                 }
             }
             @if stated.iter().any(Option::is_some) {
-                tr { th scope="row" { "tips in 95 % ellipse" } td { (inside_a) } td { (inside_b) } td {} }
+                tr { th scope="row" { "tips in 95 % ellipse, %" } td { (inside_a) } td { (inside_b) } td {} }
                 tr { th scope="row" { "NEES (1 is consistent)" } td { (nees_a) } td { (nees_b) } td {} }
             }
         }

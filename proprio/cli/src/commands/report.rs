@@ -35,7 +35,10 @@ pub fn run(args: &ReportArgs) -> Result<(), Error> {
     }
 
     let mut progress = Bar::new();
-    let mut builder = ReportBuilder::new(&table).compare_with(other.as_ref()).command(command_line());
+    let mut builder = ReportBuilder::new(&table).command(command_line());
+    if let Some(other) = &other {
+        builder = builder.compare_with(other)?;
+    }
     for path in &args.sessions {
         let summary = builder.add(path, &mut progress)?;
         if summary.not_comparable > 0 {

@@ -77,6 +77,7 @@ impl Help for proprio_analysis::Error {
             Self::NotSmoothed(_) => {
                 "calibrate a table with the bias filter, `[drift] kind = \"kalman\"`, or leave out --smooth".to_owned()
             }
+            Self::OtherArm(_) => "compare tables of one arm, or make a report with each".to_owned(),
         }
     }
 }

@@ -38,6 +38,7 @@ mod recording_live;
 mod recordings;
 mod remedies;
 mod report;
+mod report_contents;
 mod report_numbers;
 mod restarts;
 mod simulate;
