@@ -84,15 +84,30 @@ pub fn replay<S: FusedOps>(
     progress: &mut dyn Progress,
     mut visit: impl FnMut(&Row, &Outcome<S>) -> Result<(), Error>,
 ) -> Result<SessionSummary, Error> {
+    let visit = |row: &Row, outcome: &Outcome<S>| if row.is_recorded() { visit(row, outcome) } else { Ok(()) };
+    replay_with_history(session, table, progress, visit)
+}
+
+/// As [`replay`], but passes the rows from before the begin of a recording, too.
+///
+/// # Errors
+/// Those of [`replay`].
+///
+/// # Panics
+/// Never, as [`replay`].
+pub fn replay_with_history<S: FusedOps>(
+    session: &Path,
+    table: &LoadedTable,
+    progress: &mut dyn Progress,
+    mut visit: impl FnMut(&Row, &Outcome<S>) -> Result<(), Error>,
+) -> Result<SessionSummary, Error> {
     let mut rows = SessionRows::open(session, table, "replaying", progress)?;
     let compiled = table.compile::<S>(rows.rate_hz(table)?)?;
     let compiled = compiled.config();
     let mut estimator: Box<HostEstimator<S>> = Box::new(Estimator::new(&compiled).expect("the file was checked"));
     while let Some(row) = rows.next_row()? {
         let outcome = Outcome::of_row(&mut estimator, &row);
-        if row.is_recorded() {
-            visit(&row, &outcome)?;
-        }
+        visit(&row, &outcome)?;
     }
     rows.summary(table)
 }

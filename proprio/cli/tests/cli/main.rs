@@ -19,6 +19,7 @@ mod convert;
 mod damaged_recordings;
 mod drive;
 mod earlier_schema;
+mod estimate_recordings;
 mod estimates;
 mod figures;
 #[cfg(unix)]
