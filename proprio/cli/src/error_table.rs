@@ -5,7 +5,7 @@ use proprio_analysis::consistency::ConsistencyMetrics;
 use proprio_analysis::metrics::Metrics;
 use proprio_analysis::session_metrics::{AllMetrics, ByMethod, SessionMetrics};
 
-use crate::text_tables::{table, text};
+use crate::text_tables::{table, text_with_names};
 
 /// Explanation of the columns of consistency.
 const CONSISTENCY: &str = "\
@@ -62,7 +62,7 @@ fn lines(all: &AllMetrics, known: &[&SessionMetrics]) -> String {
             table.add_row(names.chain(errors).chain(stated));
         }
     }
-    text(&mut table) + "\n"
+    text_with_names(&mut table, if is_single { 1 } else { 2 }) + "\n"
 }
 
 /// The estimates that have errors: methods, and the smoothed one.

@@ -137,9 +137,14 @@ pub fn table(heads: &[&str]) -> Table {
     table
 }
 
-/// Its text: names to the left, numbers to the right, no trailing space.
+/// Its text: names in the first column to the left, numbers to the right, no trailing space.
 pub fn text(table: &mut Table) -> String {
-    for column in table.column_iter_mut().skip(1) {
+    text_with_names(table, 1)
+}
+
+/// The same of a table with names in its first `names` columns.
+pub fn text_with_names(table: &mut Table, names: usize) -> String {
+    for column in table.column_iter_mut().skip(names) {
         column.set_cell_alignment(CellAlignment::Right);
     }
     table.trim_fmt()

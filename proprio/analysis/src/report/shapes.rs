@@ -1,7 +1,7 @@
 //! Snapshots of the arm's shape, estimated and true.
 
 use calibration_tables::{ArmFile, MAX_SEGMENTS};
-use estimator_core::{Angle, FusedOps, Method, UnitArc};
+use estimator_core::{Angle, Covariance, FusedOps, Method, UnitArc};
 use proprio_session::{Ellipse, Row, Truth};
 
 use super::downsample::DecimatedItems;
@@ -118,8 +118,7 @@ impl Snapshot {
             };
             shape.iter().map(end).collect()
         });
-        let covariance_m2 =
-            outcome.uncertainties.last().and_then(|tip| tip.end).map(|covariance| covariance.square_metres());
+        let covariance_m2 = outcome.uncertainties.last().and_then(|tip| tip.end).map(Covariance::square_metres);
         Self { time_s: row.sample.time_us as f64 / 1e6, error_m, shapes, covariance_m2, truth: row.truth }
     }
 

@@ -55,7 +55,9 @@ impl EstimateOutput {
             Self::Recording(recorder) => {
                 let (file, notes) = recorder.finish()?;
                 let written = file.finish()?;
-                notes.iter().for_each(|note| terminal::warn(&format_args!("{}: {note}", written.path.display())));
+                for note in notes {
+                    terminal::warn(&format_args!("{}: {note}", written.path.display()));
+                }
                 Ok(written)
             }
         }
