@@ -8,9 +8,9 @@ use proprio_session::{LoadedTable, Progress};
 use serde::Serialize;
 use serde_json::Value;
 
-use super::TableName;
 use super::plot::{Axis, Colour, Figure, Panel, Series, Size, extent, share_y};
 use super::session::{Session, replayed};
+use super::table_name::TableName;
 use super::tip_error::TipErrors;
 use crate::error::Error;
 use crate::metrics::ErrorMetrics;

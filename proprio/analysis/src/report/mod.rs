@@ -5,7 +5,7 @@
 //! | `session.rs` | the data of one session |
 //! | `box_plot.rs`, `drift_error.rs`, `drift.rs`, `v_orient.rs`, `tip_error.rs`, `estimate.rs`, `coverage.rs`, `contact.rs`, `shapes.rs`, `tip_view.rs` | the figures |
 //! | `downsample.rs`, `average.rs` | long sessions in bounded memory |
-//! | `comparison.rs` | the same sessions with another table |
+//! | `table_name.rs`, `comparison.rs` | identity of the table; the same sessions with another one |
 //! | `plot.rs` | contents of a figure |
 //! | `draw.rs`, `legend.rs`, `canvas.rs`, `page.rs`, `tables.rs`, `style.css` | drawing as SVG, on a page |
 //! | `paper.rs` | the drawings as single files |
@@ -29,6 +29,7 @@ mod paper;
 mod plot;
 mod session;
 mod shapes;
+mod table_name;
 mod tables;
 mod tip_error;
 mod tip_view;
@@ -36,8 +37,6 @@ mod v_orient;
 
 use std::path::Path;
 
-use calibration_tables::{CalibrationToml, TuningToml};
-use estimator_core::Q;
 use proprio_check::Finding;
 use proprio_session::{LoadedTable, Progress};
 use serde::Serialize;
@@ -47,6 +46,7 @@ pub use self::paper::PaperFigure;
 use self::comparison::{Comparison, OtherTable};
 use self::plot::{Figure, SMOOTHED};
 use self::session::Session;
+use self::table_name::TableName;
 use self::v_orient::Readings;
 use crate::error::Error;
 use crate::metrics::ErrorMetrics;
@@ -89,53 +89,6 @@ struct SessionFinding {
     text: String,
     #[serde(flatten)]
     finding: Finding,
-}
-
-/// Identity of the table.
-#[derive(Debug, Serialize)]
-struct TableName {
-    path: String,
-    arm: String,
-    /// CRC-32 of its parameters at its `rate_hz`.
-    crc32: String,
-    rate_hz: f64,
-    segments: usize,
-    length_mm: f64,
-    /// Sessions and day of the calibration, where they are known.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    calibration: Option<CalibrationToml>,
-    /// Sessions and day of the tuning, where it was tuned.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    tuning: Option<TuningToml>,
-}
-
-impl TableName {
-    fn new(table: &LoadedTable) -> Result<Self, Error> {
-        let file = &table.file;
-        let crc32 = table.compile::<Q>(file.rate_hz)?.checksum();
-        Ok(Self {
-            path: table.path.display().to_string(),
-            arm: file.arm.clone(),
-            crc32: format!("{crc32:08x}"),
-            rate_hz: file.rate_hz,
-            segments: file.segments.len(),
-            length_mm: file.length_mm(),
-            calibration: file.calibration.clone(),
-            tuning: file.tuning.clone(),
-        })
-    }
-
-    /// Text about the sessions that it was made of, in front of which other text stands.
-    fn text_of_history(&self) -> String {
-        let part = |what: &str, sessions: &[String], date: Option<&String>| {
-            let date = date.map_or_else(String::new, |date| format!(" on {date}"));
-            format!("; {what} {}{date}", sessions.join(", "))
-        };
-        let calibration = self.calibration.as_ref().map(|of| part("calibrated from", &of.sessions, of.date.as_ref()));
-        let tuning = self.tuning.as_ref().map(|of| part("tuned on", &of.sessions, of.date.as_ref()));
-        let unknown = || "; without a record of its calibration".to_owned();
-        calibration.unwrap_or_else(unknown) + &tuning.unwrap_or_default()
-    }
 }
 
 impl Report {
