@@ -116,7 +116,7 @@ impl Report {
                             th scope="col" { "figure" }
                             th scope="col" { "A" } th scope="col" { "B" } th scope="col" { "B against A" }
                         } }
-                        @for ((name, a), (_, b)) in a.iter().zip(&b) { (pair(name, a, b)) }
+                        @for (name, a) in &a { @if let Some((_, b)) = b.iter().find(|(other, _)| other == name) { (pair(name, a, b)) } }
                     }
                 }
                 (differences(other))

@@ -6,7 +6,7 @@ use super::common::{Calibration, Csv, Folder, session, sweep, table};
 
 /// A report of these sessions: its page and its numbers.
 fn report(folder: &Folder, sessions: &[&str], options: &[&str]) -> (String, Value) {
-    let outputs = ["-o", "report.html", "--json", "report.json", "--force"];
+    let outputs = ["-o", "report.html", "--json", "report.json", "--csv", "report.csv", "--force"];
     folder.done(&[&["report"], sessions, options, &outputs].concat());
     let numbers = serde_json::from_str(&folder.read("report.json")).expect("the file is JSON");
     (folder.read("report.html"), numbers)
@@ -56,8 +56,10 @@ fn the_day_of_a_table_is_that_of_the_build_where_it_is_set() {
 fn the_page_shows_the_command_that_has_made_it() {
     let folder = Folder::with("my session.csv", session().to_string());
     let (page, numbers) = report(&folder, &["my session.csv"], &["--table", table()]);
-    let command =
-        format!("proprio report 'my session.csv' --table {} -o report.html --json report.json --force", table());
+    let command = format!(
+        "proprio report 'my session.csv' --table {} -o report.html --json report.json --csv report.csv --force",
+        table()
+    );
     assert_eq!(numbers["command"], command.as_str());
     assert!(page.contains(&command), "{page}");
 }
@@ -155,6 +157,7 @@ fn another_table_is_compared_on_the_same_sessions() {
     let folder = Folder::with("session.csv", session().to_string());
     folder.write("other.toml", other_table());
     let (page, numbers) = report(&folder, &["session.csv"], &["--table", table(), "--compare", "other.toml"]);
+    let compared = folder.read("report.csv");
     let (_, alone) = report(&folder, &["session.csv"], &["--table", "other.toml"]);
     assert_eq!(numbers["comparison"]["sessions"], alone["sessions"]);
     assert_eq!(numbers["comparison"]["table"]["crc32"], alone["table"]["crc32"]);
@@ -164,6 +167,9 @@ fn another_table_is_compared_on_the_same_sessions() {
         {"key": "uncertainty.bias_share", "table": 0.6, "other": 0.9},
     ]);
     assert_eq!(differences, expected.as_array().expect("a list"));
+    let rmse_mm = &numbers["comparison"]["all"]["methods"]["fusion"]["tip_rmse_mm"];
+    let row = format!("other_table,,,fusion,,,tip_rmse_mm,{rmse_mm}");
+    assert!(compared.contains(&row), "{row}");
     let [panel] = &panels(&numbers, "comparison")[..] else { panic!("one panel") };
     for name in ["fusion by table A", "fusion by table B"] {
         assert!(!series(panel, name).is_empty());
