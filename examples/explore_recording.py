@@ -1,14 +1,16 @@
 # %% [markdown]
 # # A recording, read in Python
 #
-# Loads what `proprio record` has written, and the CSV that `proprio convert` makes of it or `proprio simulate` writes, and
-# plots bend angles, the tip's trail, the board's health and the raw sensors. Open it as a notebook (VS Code, Spyder or
-# jupytext know the `# %%` cells) and change the two names below, or run it:
+# Loads what `proprio record`, `proprio replay --out est.mcap` or `proprio convert` has written, and the CSV that `proprio convert`
+# makes of a recording or `proprio simulate` writes: bend angles, the tip's trail, the board's health and the raw sensors, on one
+# time axis. It needs none of proprio's own software. Open it as a notebook (VS Code, Spyder or jupytext know the `# %%` cells) and
+# change the names below, or run it with a recording, a CSV or both:
 #
 #     pip install mcap mcap-ros2-support pandas matplotlib
 #     python examples/explore_recording.py session.mcap session.csv
 #
-# Run like that, it saves the figures in the folder where it is run. docs/reference/files.md has every topic and column.
+# Run like that, it saves the figures in the folder where it is run. docs/reference/files.md has every topic and column, and
+# docs/tutorials/python.md the Python package, which replays, calibrates and checks sessions, too.
 
 # %%
 import sys
@@ -20,37 +22,63 @@ from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
 
 recording, session = "session.mcap", "session.csv"
-is_notebook = "ipykernel" in sys.modules
-if not is_notebook:
-    recording, session = sys.argv[1:3]
+if "ipykernel" not in sys.modules:
+    names = sys.argv[1:]
+    recording = next((name for name in names if name.endswith(".mcap")), None)
+    session = next((name for name in names if name.endswith(".csv")), None)
+    if not names or len(names) != (recording is not None) + (session is not None):
+        sys.exit(
+            "usage: explore_recording.py [RECORDING.mcap] [SESSION.csv]\n"
+            "For a first session: proprio simulate --scenario 2 --seconds 60 --seed 1 -o session.csv\n"
+            "A recording of it with estimates: proprio convert session.csv session.mcap --table TABLE.toml"
+        )
+
+
+def frame(rows):
+    """A table by time, s; empty without rows."""
+    return pd.DataFrame(rows).set_index("time_s") if rows else pd.DataFrame()
+
 
 # %% [markdown]
 # ## The recording (MCAP)
 #
-# Messages are those of ROS 2; `publish_time` is the board's time of the tick on the host's clock, in ns.
+# Messages are those of ROS 2; `sequence` is the board's tick. Times are those of the samples on the board's clock, and 0 is the
+# first sample, as in a CSV; `publish_time` would be the same on the host's clock, ns since 1970. A recording of a board has estimates and health, one that `convert` has made of a CSV has estimates where it
+# was given a table.
 
 # %%
-theta, tip, health, sensors = [], [], [], []
-with open(recording, "rb") as file:
-    reader = make_reader(file, decoder_factories=[DecoderFactory()])
-    for _, channel, message, content in reader.iter_decoded_messages(
-        topics=["/joint_states", "/proprio/shape", "/diagnostics"]
-    ):
-        time = pd.Timestamp(message.publish_time, tz="UTC")
-        if channel.topic == "/joint_states":
-            # rad, clockwise positive; NaN where nothing is known, as before the tare.
-            theta.append({"time": time, **dict(zip(content.name, np.degrees(content.position)))})
-        elif channel.topic == "/proprio/shape":
-            # m, in the frame of the arm's base: x to the right, y along the base.
-            position = content.poses[-1].position
-            tip.append({"time": time, "x_mm": position.x * 1e3, "y_mm": position.y * 1e3})
-        else:
-            board, *others = content.status
-            values = {value.key: value.value for value in board.values}
-            health.append({"time": time, **{key: float(values[key]) for key in ("load_percent", "overruns")}})
-            sensors.append({"time": time, **{status.name: status.message for status in others}})
-
-theta, tip, health, sensors = (pd.DataFrame(rows).set_index("time") for rows in (theta, tip, health, sensors))
+theta, tip, health, sensors, times_s, board_s, start_s, count = [], [], [], [], {}, None, None, 0
+topics = ["/proprio/samples", "/joint_states", "/proprio/shape", "/diagnostics"]
+if recording:
+    with open(recording, "rb") as file:
+        reader = make_reader(file, decoder_factories=[DecoderFactory()])
+        for _, channel, message, content in reader.iter_decoded_messages(topics=topics):
+            if channel.topic == "/proprio/samples":
+                now_s, count = content.board_time_us / 1e6, count + 1
+                start_s = now_s if start_s is None else start_s
+                if board_s is not None and now_s < board_s:
+                    # The board has restarted.
+                    start_s += now_s - board_s
+                board_s = now_s
+                times_s[message.sequence] = now_s - start_s
+                continue
+            time_s = times_s.get(message.sequence)
+            if time_s is None:
+                # The sample of this tick was lost.
+                continue
+            if channel.topic == "/joint_states":
+                # rad, clockwise positive; NaN where nothing is known, as before the tare.
+                theta.append({"time_s": time_s, **dict(zip(content.name, np.degrees(content.position)))})
+            elif channel.topic == "/proprio/shape":
+                # m, in the frame of the arm's base: x to the right, y along the base.
+                position = content.poses[-1].position
+                tip.append({"time_s": time_s, "x_mm": position.x * 1e3, "y_mm": position.y * 1e3})
+            else:
+                board, *others = content.status
+                values = {value.key: value.value for value in board.values}
+                health.append({"time_s": time_s, **{key: float(values[key]) for key in ("load_percent", "overruns")}})
+                sensors.append({"time_s": time_s, **{status.name: status.message for status in others}})
+theta, tip, health, sensors = map(frame, (theta, tip, health, sensors))
 
 # %% [markdown]
 # ## The session (CSV)
@@ -58,11 +86,11 @@ theta, tip, health, sensors = (pd.DataFrame(rows).set_index("time") for rows in 
 # A row a sample; an empty cell is a missing reading, which pandas reads as NaN. An IMU is a heading in degrees or a quaternion.
 
 # %%
-samples = pd.read_csv(session, index_col="time_s")
+samples = pd.read_csv(session, index_col="time_s") if session else pd.DataFrame()
 counts = samples.filter(regex=r"^bend\d+[ab]_adc$")
 headings = samples.filter(regex=r"^imu\d+_deg$")
-if headings.empty:
-    imus = sorted({name.split("_")[0] for name in samples.columns if name.endswith("_qw")})
+imus = sorted({name.split("_")[0] for name in samples.columns if name.endswith("_qw")})
+if headings.empty and imus:
     part = {axis: samples[[f"{imu}_q{axis}" for imu in imus]].to_numpy() for axis in "wxyz"}
     # Clockwise positive, seen from above.
     turn = np.arctan2(
@@ -76,49 +104,63 @@ truth = samples.filter(regex=r"^truth\d+_[xy]_mm$")
 # ## In numbers
 
 # %%
-seconds = (theta.index[-1] - theta.index[0]).total_seconds()
-print(f"{recording}: {len(theta)} estimates in {seconds:.1f} s")
-print(theta.agg(["count", "min", "max"]).round(1).to_string())
-print(f"tip: x {tip.x_mm.min():.0f} to {tip.x_mm.max():.0f} mm, y {tip.y_mm.min():.0f} to {tip.y_mm.max():.0f} mm")
-print(f"board: load {health.load_percent.mean():.1f} %, {health.overruns.iloc[-1]:.0f} overruns")
-ok_percent = (sensors == "Ok").mean() * 100
-print(f"sensors that were not always ok: {ok_percent[ok_percent < 100].round(1).to_dict() or 'none'}")
-print(f"{session}: {len(samples)} samples, {counts.shape[1]} bend sensors, {headings.shape[1]} IMUs")
-missing_percent = samples[counts.columns].isna().mean().mean() * 100
-print(f"readings of bend sensors that are missing: {missing_percent:.2f} %")
+if recording:
+    print(f"{recording}: {count} samples, {len(theta)} estimates")
+if not theta.empty:
+    print(theta.agg(["count", "min", "max"]).round(1).to_string())
+    print(f"tip: x {tip.x_mm.min():.0f} to {tip.x_mm.max():.0f} mm, y {tip.y_mm.min():.0f} to {tip.y_mm.max():.0f} mm")
+elif recording:
+    print(f"no estimates: `proprio replay {recording} --table TABLE.toml --out est.mcap` makes them")
+if not health.empty:
+    print(f"board: load {health.load_percent.mean():.1f} %, {health.overruns.iloc[-1]:.0f} overruns")
+    ok_percent = (sensors == "Ok").mean() * 100
+    print(f"sensors that were not always ok: {ok_percent[ok_percent < 100].round(1).to_dict() or 'none'}")
+if session:
+    print(f"{session}: {len(samples)} samples, {counts.shape[1]} bend sensors, {headings.shape[1]} IMUs")
+if not counts.empty:
+    print(f"readings of bend sensors that are missing: {counts.isna().mean().mean() * 100:.2f} %")
 
 # %% [markdown]
-# ## In pictures
+# ## Over time
+#
+# One time axis for all; what the files do not have is left out. Legends stand beside the axes.
 
 # %%
-figure, (above, below) = plt.subplots(2, 1, sharex=True, figsize=(9, 6), layout="constrained")
-since = theta.index[0]
-above.plot((theta.index - since).total_seconds(), theta, label=list(theta.columns))
-above.set(ylabel="bend angle θ, °", title="Shape")
-above.legend(ncols=3, fontsize="small")
-below.plot((health.index - since).total_seconds(), health.load_percent, label="load, %")
-below.plot((sensors.index - since).total_seconds(), (sensors != "Ok").sum(axis=1), label="sensors that are not ok")
-below.set(xlabel="time, s", ylim=(0, None), title="Health")
-below.legend(fontsize="small")
-figure.savefig("theta_and_health.png")
+rows = []
+if not theta.empty:
+    rows.append(("bend angle θ, °", [(theta, "-")]))
+if not counts.empty:
+    rows.append(("bend sensors, counts", [(counts, "-")]))
+if not headings.empty:
+    rows.append(("IMU heading, °", [(headings, ".")]))
+if not health.empty:
+    not_ok = (sensors != "Ok").sum(axis=1).to_frame("sensors not ok")
+    load = health[["load_percent"]].rename(columns={"load_percent": "load, %"})
+    rows.append(("health of the board", [(load, "-"), (not_ok, "-")]))
+if rows:
+    figure, axes = plt.subplots(
+        len(rows), 1, sharex=True, squeeze=False, figsize=(10, 1 + 2.4 * len(rows)), layout="constrained"
+    )
+    for (title, tables), axis in zip(rows, axes[:, 0]):
+        for table, style in tables:
+            axis.plot(table.index, table, style, markersize=2, linewidth=1, label=list(table.columns))
+        axis.set_ylabel(title)
+        axis.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), ncols=1 + (len(axis.lines) > 8), fontsize="x-small")
+    axes[-1, 0].set_xlabel("time, s")
+    figure.savefig("over_time.png")
+
+# %% [markdown]
+# ## The tip's trail
 
 # %%
-figure, axes = plt.subplots(figsize=(6, 6), layout="constrained")
-axes.plot(tip.x_mm, tip.y_mm, label="estimated")
-if not truth.empty:
-    x_mm, y_mm = truth.columns[-2:]
-    axes.plot(truth[x_mm], truth[y_mm], "--", label="true")
-axes.set(xlabel="x, mm", ylabel="y, mm", title="The tip's trail", aspect="equal")
-axes.legend()
-figure.savefig("tip.png")
-
-# %%
-figure, (above, below) = plt.subplots(2, 1, sharex=True, figsize=(9, 6), layout="constrained")
-above.plot(counts, label=list(counts.columns))
-above.set(ylabel="counts", title="Bend sensors")
-below.plot(headings, ".", markersize=2, label=list(headings.columns))
-below.set(xlabel="time, s", ylabel="heading, °", title="IMUs")
-for axes in (above, below):
-    axes.legend(ncols=6, fontsize="x-small")
-figure.savefig("sensors.png")
+if not tip.empty or not truth.empty:
+    figure, axes = plt.subplots(figsize=(6, 6), layout="constrained")
+    if not truth.empty:
+        x_mm, y_mm = truth.columns[-2:]
+        axes.plot(truth[x_mm], truth[y_mm], color="0.7", linewidth=4, label="true")
+    if not tip.empty:
+        axes.plot(tip.x_mm, tip.y_mm, linewidth=1, label="estimated")
+    axes.set(xlabel="x, mm", ylabel="y, mm", aspect="equal")
+    figure.legend(loc="outside upper center", ncols=2)
+    figure.savefig("tip.png")
 plt.show()

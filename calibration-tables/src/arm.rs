@@ -4,6 +4,7 @@ use board_table::{MAX_SEGMENTS as MAX_BOARD_SEGMENTS, Wiring};
 use serde::{Deserialize, Serialize};
 
 use crate::board::BoardToml;
+use crate::calibration::CalibrationToml;
 use crate::contact::ContactToml;
 use crate::drift::{DriftKind, DriftToml};
 use crate::error::{FileError, ensure, within};
@@ -41,6 +42,9 @@ pub struct ArmFile {
     /// Error sources of the estimates; `None`: no covariance is computed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub uncertainty: Option<UncertaintyToml>,
+    /// Record of the calibration, if there was one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub calibration: Option<CalibrationToml>,
     /// Record of the tuning, if the filters were tuned.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub tuning: Option<TuningToml>,
@@ -150,6 +154,7 @@ impl ArmFile {
         self.drift.as_ref().map_or(Ok(()), DriftToml::check)?;
         self.contact.as_ref().map_or(Ok(()), ContactToml::check)?;
         self.uncertainty.as_ref().map_or(Ok(()), UncertaintyToml::check)?;
+        self.calibration.as_ref().map_or(Ok(()), CalibrationToml::check)?;
         self.tuning.as_ref().map_or(Ok(()), TuningToml::check)?;
         for (i, segment) in self.segments.iter().enumerate() {
             segment.check(&format!("segment[{}]", i + 1))?;

@@ -3,6 +3,7 @@
 use serde::de::IgnoredAny;
 use serde::{Deserialize, Serialize};
 
+use crate::calibration::check_date;
 use crate::error::{FileError, ensure, within};
 
 /// Largest RMSE that a table may record, mm or degrees.
@@ -14,6 +15,9 @@ const MAX_RMSE: f64 = 1e9;
 pub struct TuningToml {
     /// The training sessions, as they were named.
     pub sessions: Vec<String>,
+    /// Day of the tuning, UTC: `2026-11-30`; `None` where it is not known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub date: Option<String>,
     /// Iterations of the descent.
     pub iterations: u64,
     /// The iteration whose parameters the table has; 0: those from before the tuning.
@@ -87,6 +91,7 @@ pub enum StopReason {
 impl TuningToml {
     pub(crate) fn check(&self) -> Result<(), FileError> {
         ensure(!self.sessions.is_empty(), "tuning.sessions", &"[]", "at least one session")?;
+        check_date("tuning.date", self.date.as_deref())?;
         let (best, iterations) = (self.best_iteration, self.iterations);
         let expected = format!("at most the {iterations} of tuning.iterations");
         ensure(best <= iterations, "tuning.best_iteration", &best, &expected)?;

@@ -8,7 +8,7 @@ use proprio_calibration::JudgedTruth;
 use proprio_calibration::calibrate::{
     Calibration, CalibrationOptions, HeldOut, HysteresisMode, MapKind, MapMode, calibrate as make_table,
 };
-use proprio_session::NoProgress;
+use proprio_session::{NoProgress, today};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use serde_json::{Map, Value, json};
@@ -27,7 +27,10 @@ pub fn calibrate(
 ) -> PyResult<(String, String, Vec<String>)> {
     let options = CalibrationOptions { maps: map_mode(maps)?, hysteresis: hysteresis_mode(hysteresis)? };
     let run = || make_table(&sessions, &arm.load()?, options, &mut NoProgress);
-    let made = py.detach(run).map_err(|error| exception(py, error))?;
+    let mut made = py.detach(run).map_err(|error| exception(py, error))?;
+    if let Some(record) = &mut made.table.calibration {
+        record.date = Some(today());
+    }
     let names: Vec<String> = sessions.iter().map(|session| session.display().to_string()).collect();
     let mut warnings = Vec::new();
     for (name, defects) in names.iter().zip(&made.defects) {

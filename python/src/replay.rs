@@ -81,11 +81,12 @@ fn run<S: FusedOps>(
     if summary.not_comparable > 0 {
         warnings.push(format!("{name}: {}", NotComparable(&summary)));
     }
-    let SessionSummary { samples, seconds, recording, .. } = summary;
+    let SessionSummary { samples, seconds, recorded_at, recording, .. } = summary;
     let recorded = recording.filter(|_| compare.is_some()).map(|recording| {
         comparison.table_matches = recording.table_matches;
         comparison.of(recording.recorded_by)
     });
-    let metrics = SessionMetrics { path: name, samples, seconds, metrics: ByMethod::from(&errors), recorded };
+    let metrics = ByMethod::from(&errors);
+    let metrics = SessionMetrics { path: name, samples, seconds, recorded_at, metrics, recorded };
     Ok(Replayed { estimates, truths, metrics, warnings })
 }

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use proprio_calibration::Error;
 use proprio_calibration::tune::{Tuner, Tuning};
-use proprio_session::NoProgress;
+use proprio_session::{NoProgress, today};
 use pyo3::prelude::*;
 use serde_json::json;
 
@@ -25,7 +25,10 @@ pub fn tune(py: Python<'_>, sessions: Vec<PathBuf>, table: TableText) -> PyResul
         warnings.extend(tuner.truth().flat_map(truth_warnings));
         let truth = truth_report(tuner.truth());
         let is_interrupted = || Python::attach(|py| py.check_signals().is_err());
-        let Tuning { table, record, .. } = tuner.tune(&mut NoProgress, is_interrupted)?;
+        let Tuning { mut table, record, .. } = tuner.tune(&mut NoProgress, is_interrupted)?;
+        if let Some(record) = &mut table.tuning {
+            record.date = Some(today());
+        }
         let report = json!({ "tuning": record, "truth": truth });
         Ok::<_, Error>((table.to_toml(), report.to_string(), warnings))
     };

@@ -1,8 +1,9 @@
 //! A file is written and read without loss: every number to its last bit, every name to its last character.
 
 use calibration_tables::{
-    AnchorToml, ArmFile, BendToml, ChangeToml, ContactToml, CoupledToml, DriftKind, DriftToml, DriftTuningToml,
-    NoiseToml, PlayToml, RmseToml, SegmentToml, Side, StopReason, TareToml, TuningToml, UncertaintyToml,
+    AnchorToml, ArmFile, BendToml, CalibrationToml, ChangeToml, ContactToml, CoupledToml, DriftKind, DriftToml,
+    DriftTuningToml, NoiseToml, PlayToml, RmseToml, SegmentToml, Side, StopReason, TareToml, TuningToml,
+    UncertaintyToml,
 };
 use proptest::option;
 use proptest::prelude::*;
@@ -151,11 +152,20 @@ fn drift_tuning() -> impl Strategy<Value = DriftTuningToml> {
     )
 }
 
+fn date() -> impl Strategy<Value = Option<String>> {
+    option::of("[0-9]{4}-[0-9]{2}-[0-9]{2}")
+}
+
+fn calibration() -> impl Strategy<Value = CalibrationToml> {
+    let sessions = prop::collection::vec(any::<String>(), 1..4);
+    (sessions, date()).prop_map(|(sessions, date)| CalibrationToml { sessions, date })
+}
+
 fn tuning() -> impl Strategy<Value = TuningToml> {
     let sessions = prop::collection::vec(any::<String>(), 1..4);
     let stop_reason = prop_oneof![Just(StopReason::Converged), Just(StopReason::Interrupted)];
     let iterations = (0..=300_u64, 0..=300_u64);
-    let extended = (option::of(1.0..1e9_f64), option::of(drift_tuning()));
+    let extended = (option::of(1.0..1e9_f64), option::of(drift_tuning()), date());
     (sessions, iterations, stop_reason, extended, [rmse(), rmse(), rmse(), rmse()]).prop_map(
         |(
             sessions,
@@ -166,6 +176,7 @@ fn tuning() -> impl Strategy<Value = TuningToml> {
         )| {
             TuningToml {
                 sessions,
+                date: extended.2,
                 iterations: iterations.max(best_iteration),
                 best_iteration,
                 stop_reason,
@@ -184,7 +195,13 @@ fn tuning() -> impl Strategy<Value = TuningToml> {
 fn file() -> impl Strategy<Value = ArmFile> {
     let tare = (0.0..3600.0_f64, prop_oneof![Just(None), Just(Some(-0.0)), (-3600.0..3600.0_f64).prop_map(Some)]);
     let anchor = (1..=1000_u16, 0.0..360.0_f64, magnitude(-2.0..4.0));
-    let records = (option::of(drift()), option::of(contact()), option::of(uncertainty()), option::of(tuning()));
+    let records = (
+        option::of(drift()),
+        option::of(contact()),
+        option::of(uncertainty()),
+        option::of(tuning()),
+        option::of(calibration()),
+    );
     (any::<String>(), magnitude(-2.0..4.0), tare, anchor, records, segments()).prop_map(
         |(arm, rate_hz, (seconds, heading), (window, threshold_deg, anchor_hz), records, segments)| ArmFile {
             format: 1,
@@ -195,6 +212,7 @@ fn file() -> impl Strategy<Value = ArmFile> {
             drift: records.0,
             contact: records.1,
             uncertainty: records.2,
+            calibration: records.4,
             tuning: records.3,
             // In board.rs.
             board: None,

@@ -122,6 +122,7 @@ fn a_key_that_is_missing_or_unknown_is_named() {
 fn values_that_no_tuning_has_are_refused_with_their_key_and_line() {
     for (from, to, key) in [
         ("sessions = [\"a.csv\", \"b.csv\"]", "sessions = []", "tuning.sessions"),
+        ("iterations = 12", "date = \"30.11.2026\"\niterations = 12", "tuning.date"),
         ("best_iteration = 9", "best_iteration = 13", "tuning.best_iteration"),
         ("tip_rmse_mm = 8.0", "tip_rmse_mm = -8.0", "tuning.before.tip_rmse_mm"),
         ("position_rmse_mm = 3.0", "position_rmse_mm = nan", "tuning.after.position_rmse_mm"),
@@ -130,8 +131,25 @@ fn values_that_no_tuning_has_are_refused_with_their_key_and_line() {
         ("tip_rmse_mm = 7.0", "tip_rmse_mm = 1e10", "tuning.validation_after.tip_rmse_mm"),
     ] {
         let text = tuned().replacen(from, to, 1);
-        let line = 1 + text.lines().position(|line| line.contains(to)).expect("the edited line");
+        let to_line = to.lines().next().unwrap_or(to);
+        let line = 1 + text.lines().position(|line| line.contains(to_line)).expect("the edited line");
         let error = error(from, to).to_string();
         assert!(error.starts_with(&format!("line {line}: {key} = ")) && error.contains("expected"), "{to}: {error}");
+    }
+}
+
+#[test]
+fn the_record_of_a_calibration_is_read_and_no_part_of_the_parameters() {
+    let text = format!("{TABLE}\n[calibration]\nsessions = [\"sweep.csv\"]\ndate = \"2026-11-30\"\n");
+    let file = parse(&text);
+    let record = file.calibration.clone().expect("it is in the file");
+    assert_eq!((record.sessions, record.date.as_deref()), (vec!["sweep.csv".to_owned()], Some("2026-11-30")));
+    let checksum = |file: &ArmFile| file.compile::<Q>(10.0).expect("a table").checksum();
+    assert_eq!(checksum(&file), checksum(&parse(TABLE)));
+    for (from, to, key) in
+        [("[\"sweep.csv\"]", "[]", "calibration.sessions"), ("2026-11-30", "yesterday", "calibration.date")]
+    {
+        let error = ArmFile::parse(&text.replace(from, to)).expect_err("it must be refused").to_string();
+        assert!(error.contains(&format!("{key} = ")), "{error}");
     }
 }

@@ -1,7 +1,7 @@
 //! Consistency of the estimates' covariances with their errors against truth (NEES).
 
 use calibration_tables::MAX_SEGMENTS;
-use estimator_core::{FusedOps, Method, Shape, Uncertainties, VARIANCE_SCALE};
+use estimator_core::{FusedOps, Method, SegmentShape, Shape, Uncertainties, Uncertainty, VARIANCE_SCALE};
 use proprio_session::{CHI2_2_95, Row};
 use serde::Serialize;
 
@@ -32,6 +32,26 @@ impl Normalised {
     fn of_count(&self, sum: f64) -> Option<f64> {
         (self.count > 0).then(|| sum / self.count as f64)
     }
+}
+
+/// Squared error of the tip over its covariance, where truth and covariance are known: χ² of two degrees of freedom where they are
+/// consistent.
+#[must_use]
+pub fn tip_square<S: FusedOps>(
+    row: &Row,
+    shape: &Shape<S, MAX_SEGMENTS>,
+    uncertainties: &Uncertainties<MAX_SEGMENTS>,
+) -> Option<f64> {
+    let tip = shape.len().checked_sub(1)?;
+    end_square(row, tip, &shape[tip], uncertainties.get(tip)?)
+}
+
+/// The same of the end of segment `i`, from 0.
+fn end_square<S: FusedOps>(row: &Row, i: usize, segment: &SegmentShape<S>, uncertainty: &Uncertainty) -> Option<f64> {
+    let (end, truth, covariance) = (segment.end?, row.truth[i]?, uncertainty.end?);
+    let [xx, xy, yy] = covariance.square_metres();
+    let (dx, dy) = (end.x.to_f64() - truth.x_m, end.y.to_f64() - truth.y_m);
+    Some((yy * dx * dx - 2.0 * xy * dx * dy + xx * dy * dy) / (xx * yy - xy * xy))
 }
 
 /// Normalised errors of the fused or smoothed shape, gathered over one or more sessions.
@@ -77,11 +97,7 @@ impl FilterConsistency {
             if let Some(((theta, truth), variance)) = theta {
                 self.thetas.add((theta.rad() - truth).powi(2) * VARIANCE_SCALE / variance.to_f64());
             }
-            let end = segment.end.zip(row.truth[i]).zip(uncertainty.end);
-            if let Some(((end, truth), covariance)) = end {
-                let [xx, xy, yy] = covariance.square_metres();
-                let (dx, dy) = (end.x.to_f64() - truth.x_m, end.y.to_f64() - truth.y_m);
-                let square = (yy * dx * dx - 2.0 * xy * dx * dy + xx * dy * dy) / (xx * yy - xy * xy);
+            if let Some(square) = end_square(row, i, segment, uncertainty) {
                 self.ends.add(square);
                 if i + 1 == count {
                     self.tips.add(square);

@@ -11,6 +11,9 @@ pub enum Error {
     /// A table whose estimates cannot be smoothed.
     #[error("{}: corrects the drift by the anchor, whose estimates cannot be smoothed", .0.display())]
     NotSmoothed(PathBuf),
+    /// Tables of two arms, which are to be compared.
+    #[error("{}: is a table of another arm: its segments have other lengths", .0.display())]
+    OtherArm(PathBuf),
 }
 
 impl From<proprio_session::SessionError> for Error {

@@ -24,7 +24,7 @@
 //! | `smooth/` | smoothed estimates, which use the later samples too |
 //! | `metrics.rs`, `consistency.rs`, `error_histogram.rs` | errors against truth, and against the estimates' covariances |
 //! | `agreement.rs` | a board's estimates compared with a replay |
-//! | `session_metrics.rs`, `estimates.rs` | results for people and programs: metrics, and estimates as CSV |
+//! | `session_metrics.rs`, `estimates.rs`, `estimate_recording.rs` | results for people and programs: metrics, and estimates as CSV or as a recording |
 //! | `decimal.rs` | decimal numbers as text |
 //! | `report/` | a page of plots |
 
@@ -33,6 +33,7 @@ pub mod consistency;
 mod decimal;
 mod error;
 pub mod error_histogram;
+pub mod estimate_recording;
 pub mod estimates;
 pub mod metrics;
 mod outcome;

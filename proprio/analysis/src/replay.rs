@@ -4,7 +4,7 @@ use std::fmt;
 use std::path::Path;
 
 use estimator_core::{Estimator, FusedOps, Q};
-use proprio_session::{FileDefects, FileFormat, LoadedTable, Progress, Row, SessionReader, is_version_0_1};
+use proprio_session::{FileDefects, FileFormat, LoadedTable, Progress, Row, SessionReader, is_version_0_1, utc_minute};
 use telemetry::{Hello, TICK_HZ};
 
 use crate::agreement::RecordedBy;
@@ -21,6 +21,8 @@ pub struct SessionSummary {
     /// Number of rows before which the board's estimator had samples that are not in the recording: a replay has another
     /// tare than the board, or lacks some of its samples.
     pub not_comparable: u64,
+    /// Time of the first sample's arrival, UTC: `2026-11-30 14:05 UTC`; `None` where it is not known.
+    pub recorded_at: Option<String>,
     /// The file's defects, past which it was read.
     pub defects: FileDefects,
     /// Facts about a board's recording; `None` for a CSV.
@@ -82,15 +84,30 @@ pub fn replay<S: FusedOps>(
     progress: &mut dyn Progress,
     mut visit: impl FnMut(&Row, &Outcome<S>) -> Result<(), Error>,
 ) -> Result<SessionSummary, Error> {
+    let visit = |row: &Row, outcome: &Outcome<S>| if row.is_recorded() { visit(row, outcome) } else { Ok(()) };
+    replay_with_history(session, table, progress, visit)
+}
+
+/// As [`replay`], but passes the rows from before the begin of a recording, too.
+///
+/// # Errors
+/// Those of [`replay`].
+///
+/// # Panics
+/// Never, as [`replay`].
+pub fn replay_with_history<S: FusedOps>(
+    session: &Path,
+    table: &LoadedTable,
+    progress: &mut dyn Progress,
+    mut visit: impl FnMut(&Row, &Outcome<S>) -> Result<(), Error>,
+) -> Result<SessionSummary, Error> {
     let mut rows = SessionRows::open(session, table, "replaying", progress)?;
     let compiled = table.compile::<S>(rows.rate_hz(table)?)?;
     let compiled = compiled.config();
     let mut estimator: Box<HostEstimator<S>> = Box::new(Estimator::new(&compiled).expect("the file was checked"));
     while let Some(row) = rows.next_row()? {
         let outcome = Outcome::of_row(&mut estimator, &row);
-        if row.is_recorded() {
-            visit(&row, &outcome)?;
-        }
+        visit(&row, &outcome)?;
     }
     rows.summary(table)
 }
@@ -103,6 +120,7 @@ pub(crate) struct SessionRows<'p> {
     samples: u64,
     not_comparable: u64,
     first_us: Option<u64>,
+    recorded_at: Option<String>,
     last_us: u64,
 }
 
@@ -116,7 +134,16 @@ impl<'p> SessionRows<'p> {
     ) -> Result<Self, Error> {
         let reader = SessionReader::open(session, &table.required_columns()?)?;
         let work = format!("{work} {}", session.display());
-        Ok(Self { reader, progress, work, samples: 0, not_comparable: 0, first_us: None, last_us: 0 })
+        Ok(Self {
+            reader,
+            progress,
+            work,
+            samples: 0,
+            not_comparable: 0,
+            first_us: None,
+            recorded_at: None,
+            last_us: 0,
+        })
     }
 
     /// Rate of the rows; that of the table where there are too few.
@@ -129,7 +156,10 @@ impl<'p> SessionRows<'p> {
         let row = self.reader.next_row()?;
         if let Some(row) = row.as_ref().filter(|row| row.is_recorded()) {
             self.last_us = row.sample.time_us;
-            self.first_us.get_or_insert(self.last_us);
+            if self.first_us.is_none() {
+                self.first_us = Some(self.last_us);
+                self.recorded_at = row.board.as_ref().and_then(|board| utc_minute(board.at));
+            }
             self.samples += 1;
             self.not_comparable += u64::from(!row.is_comparable());
             self.progress.advance(&self.work, self.reader.progress());
@@ -139,10 +169,10 @@ impl<'p> SessionRows<'p> {
 
     /// The summary, after the last row.
     pub fn summary(self, table: &LoadedTable) -> Result<SessionSummary, Error> {
-        let Self { reader, samples, not_comparable, first_us, last_us, .. } = self;
+        let Self { reader, samples, not_comparable, first_us, recorded_at, last_us, .. } = self;
         let recording =
             if reader.kind() == FileFormat::Csv { None } else { Some(RecordingFacts::new(reader.hello(), table)?) };
         let seconds = (last_us - first_us.unwrap_or(last_us)) as f64 / 1e6;
-        Ok(SessionSummary { samples, seconds, not_comparable, defects: reader.defects(), recording })
+        Ok(SessionSummary { samples, seconds, not_comparable, recorded_at, defects: reader.defects(), recording })
     }
 }

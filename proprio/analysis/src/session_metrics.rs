@@ -29,6 +29,9 @@ pub struct SessionMetrics {
     pub samples: u64,
     /// Time from the first sample to the last, s.
     pub seconds: f64,
+    /// Time at which a board's recording begins, UTC; `None` where it is not known.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub recorded_at: Option<String>,
     /// Its metrics.
     #[serde(flatten)]
     pub metrics: ByMethod,

@@ -194,14 +194,15 @@ pub struct CheckArgs {
 
 #[derive(Debug, Args)]
 pub struct ReplayArgs {
-    /// Sessions to replay, one after the other
+    /// Sessions to replay, several at a time
     #[arg(required = true, value_name = "SESSION")]
     pub sessions: Vec<PathBuf>,
     /// Table of the arm
     #[arg(long, value_name = "TABLE.toml")]
     pub table: PathBuf,
-    /// Write the estimates of the session: bend angles and world points of all methods
-    #[arg(long, value_name = "EST.csv")]
+    /// Write the estimates of the session: bend angles and world points of all methods as .csv; or samples and fusion's
+    /// estimates on the channels of a recording as .mcap
+    #[arg(long, value_name = "EST.csv|EST.mcap")]
     pub out: Option<PathBuf>,
     #[command(flatten)]
     pub force: ForceArgs,
@@ -224,6 +225,9 @@ pub struct ReportArgs {
     /// Table of the arm
     #[arg(long, value_name = "TABLE.toml")]
     pub table: PathBuf,
+    /// Another table, which is compared with that of `--table` on the same sessions
+    #[arg(long, value_name = "TABLE.toml")]
+    pub compare: Option<PathBuf>,
     /// Page to write
     #[arg(short, long, value_name = "REPORT.html")]
     pub output: PathBuf,

@@ -87,6 +87,22 @@ pub enum Error {
     /// `--out` with several sessions.
     #[error("--out takes the estimates of one session, found {0} sessions")]
     OneSession(usize),
+    /// Estimates that a recording has no channel for.
+    #[error("{}: a recording has no channel for the estimates of {option}", path.display())]
+    NoChannel {
+        /// The output.
+        path: PathBuf,
+        /// The option that makes them.
+        option: &'static str,
+    },
+    /// `convert --table` of other formats.
+    #[error("--table adds estimates to a recording (.mcap) that is made of a CSV, found {} to {}", input.display(), output.display())]
+    EstimatesOfConversion {
+        /// The session.
+        input: PathBuf,
+        /// The file to write.
+        output: PathBuf,
+    },
     /// A duration that cannot be recorded or driven.
     #[error(transparent)]
     Seconds(#[from] DurationError),

@@ -7,7 +7,7 @@
 //! | `commands/` | one file for each command |
 //! | `flash/` | flashing of the firmware |
 //! | `error.rs`, `help/` | errors that stop a command, and their remedies |
-//! | `terminal.rs`, `text_tables.rs`, `status_line.rs`, `progress_bar.rs` | output for people |
+//! | `terminal.rs`, `text_tables.rs`, `error_table.rs`, `status_line.rs`, `progress_bar.rs` | output for people |
 //! | `interrupt.rs` | Ctrl-C |
 
 mod args;
@@ -16,6 +16,7 @@ mod commands;
 #[cfg(test)]
 mod commands_page;
 mod error;
+mod error_table;
 pub mod flash;
 mod help;
 mod interrupt;

@@ -1,5 +1,6 @@
 //! Progress of long work: a bar on standard error, on a terminal only, for work that takes over a second.
 
+use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -53,6 +54,61 @@ impl Progress for Bar {
 
     fn complete(&mut self, work: &str, done_of_all: (u64, u64)) {
         self.set(work, done_of_all);
+    }
+}
+
+/// A bar for pieces of work that run at the same time.
+pub struct JoinedBar {
+    bar: Bar,
+    work: String,
+    /// Parts of each that are done, and all.
+    pieces: Vec<(u64, u64)>,
+}
+
+impl JoinedBar {
+    /// A bar that is hidden, for `work` on so many pieces.
+    pub fn new(work: &str, pieces: usize) -> Self {
+        Self { bar: Bar::new(), work: format!("{work} {pieces} sessions"), pieces: vec![(0, 1); pieces] }
+    }
+
+    /// The progress of one piece.
+    pub fn part(bar: &Mutex<Self>, piece: usize) -> impl Progress {
+        Part { bar, piece, calls: 0 }
+    }
+
+    /// Runs `print`, whose lines the bar does not disturb.
+    pub fn hidden(&self, print: impl FnOnce()) {
+        self.bar.shown.suspend(print);
+    }
+
+    fn set(&mut self, piece: usize, (done, total): (u64, u64)) {
+        self.pieces[piece] = (done.min(total), total.max(1));
+        let share = |(done, total): &(u64, u64)| done * PIECE / total;
+        let done = self.pieces.iter().map(share).sum();
+        self.bar.set(&self.work, (done, PIECE * self.pieces.len() as u64));
+    }
+}
+
+/// Parts of a piece of joined work.
+const PIECE: u64 = 1000;
+
+/// One piece of joined work.
+struct Part<'b> {
+    bar: &'b Mutex<JoinedBar>,
+    piece: usize,
+    calls: u64,
+}
+
+impl Progress for Part<'_> {
+    fn advance(&mut self, work: &str, done_of_all: (u64, u64)) {
+        self.calls += 1;
+        if self.calls.is_multiple_of(CALLS) {
+            self.complete(work, done_of_all);
+        }
+    }
+
+    fn complete(&mut self, _: &str, done_of_all: (u64, u64)) {
+        self.bar.lock().unwrap_or_else(PoisonError::into_inner).set(self.piece, done_of_all);
     }
 }
 

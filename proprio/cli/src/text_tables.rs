@@ -6,9 +6,6 @@ use calibration_tables::{DriftTuningToml, RmseToml, StopReason, TuningToml};
 use comfy_table::presets::NOTHING;
 use comfy_table::{CellAlignment, Table};
 use estimator_core::Method;
-use proprio_analysis::consistency::ConsistencyMetrics;
-use proprio_analysis::metrics::Metrics;
-use proprio_analysis::session_metrics::{AllMetrics, ByMethod};
 use proprio_calibration::calibrate::{HeldOut, MapKind, SegmentReport, SensorReport};
 use proprio_link::Port;
 
@@ -115,71 +112,6 @@ fn variances(record: &TuningToml) -> String {
     }
 }
 
-/// Selects one metric of a method.
-type Pick = fn(&Metrics) -> Option<f64>;
-
-/// A table for each metric: one line per session, one column per method, and one of the smoothed estimates where there are any.
-pub fn replay(all: &AllMetrics) -> String {
-    let length = all.length_mm;
-    let parts: [(String, Pick); 4] = [
-        ("Tip error, RMSE in mm".to_owned(), |metrics| metrics.tip_rmse_mm),
-        (format!("Tip error, RMSE in % of {length} mm"), |metrics| metrics.tip_rmse_percent),
-        ("Tip error, 75th percentile in mm".to_owned(), |metrics| metrics.tip_p75_mm),
-        ("Bend angles, RMSE in deg".to_owned(), |metrics| metrics.theta_rmse_deg),
-    ];
-    let metrics = parts.map(|(title, figure)| format!("{title}\n{}\n", metrics(all, figure))).join("\n");
-    metrics
-        + &consistency(all, "fusion", |metrics| metrics.uncertainty)
-        + &consistency(all, "the smoothed estimates", |metrics| {
-            metrics.smoothed.and_then(|smoothed| smoothed.uncertainty)
-        })
-}
-
-/// Consistency of the covariances: one line per session; empty without covariances.
-fn consistency(all: &AllMetrics, of_what: &str, pick: fn(&ByMethod) -> Option<ConsistencyMetrics>) -> String {
-    if pick(&all.all).is_none() {
-        return String::new();
-    }
-    let mut table =
-        table(&["session", "tip, NEES", "in 95 % ellipse", "all ends, NEES", "in 95 % ellipse", "angles, NEES"]);
-    let sessions = all.sessions.iter().map(|session| (session.path.as_str(), &session.metrics));
-    for (name, metrics) in sessions.chain([("all", &all.all)]) {
-        let Some(of) = pick(metrics) else { continue };
-        let nees = |value: Option<f64>| value.map_or("–".to_owned(), |value| format!("{value:.2}"));
-        let inside = |value: Option<f64>| value.map_or("–".to_owned(), |value| format!("{value:.1} %"));
-        table.add_row([
-            name.to_owned(),
-            nees(of.tip_nees),
-            inside(of.tip_inside_percent),
-            nees(of.end_nees),
-            inside(of.end_inside_percent),
-            nees(of.theta_nees),
-        ]);
-    }
-    format!("\nErrors of {of_what} over what the covariances expect\n{}\n", text(&mut table))
-}
-
-fn metrics(all: &AllMetrics, figure: Pick) -> String {
-    let mut heads = vec!["session", "samples", "seconds"];
-    heads.extend(Method::ALL.map(Method::name));
-    let is_smoothed = all.all.smoothed.is_some();
-    heads.extend(is_smoothed.then_some("smoothed"));
-    let mut table = table(&heads);
-    let mut add = |name: String, samples: u64, seconds: f64, of: &ByMethod| {
-        let smoothed = is_smoothed.then(|| of.smoothed.and_then(|of| figure(&of.metrics)));
-        let cells = of.methods.iter().map(figure).chain(smoothed);
-        let cells = cells.map(|value| value.map_or("–".to_owned(), |value| format!("{value:.2}")));
-        table.add_row([name, samples.to_string(), format!("{seconds:.1}")].into_iter().chain(cells));
-    };
-    for session in &all.sessions {
-        add(session.path.clone(), session.samples, session.seconds, &session.metrics);
-    }
-    let samples = all.sessions.iter().map(|session| session.samples).sum();
-    let seconds = all.sessions.iter().map(|session| session.seconds).sum();
-    add("all".to_owned(), samples, seconds, &all.all);
-    text(&mut table)
-}
-
 /// One line for each port.
 pub fn ports(ports: &[Port]) -> String {
     if ports.is_empty() {
@@ -205,9 +137,14 @@ pub fn table(heads: &[&str]) -> Table {
     table
 }
 
-/// Its text: names to the left, numbers to the right, no trailing space.
+/// Its text: names in the first column to the left, numbers to the right, no trailing space.
 pub fn text(table: &mut Table) -> String {
-    for column in table.column_iter_mut().skip(1) {
+    text_with_names(table, 1)
+}
+
+/// The same of a table with names in its first `names` columns.
+pub fn text_with_names(table: &mut Table, names: usize) -> String {
+    for column in table.column_iter_mut().skip(names) {
         column.set_cell_alignment(CellAlignment::Right);
     }
     table.trim_fmt()

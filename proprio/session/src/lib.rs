@@ -12,7 +12,7 @@
 //! | `recording/` | MCAP: written, read, recovered |
 //! | `convert/` | conversion from one kind to another |
 //! | `clock.rs`, `clock_sync.rs`, `boot_tracker.rs` | time of arrival; the board's time on the host's clock; restarts of a board |
-//! | `duration.rs`, `output.rs`, `progress.rs`, `ellipse.rs` | range of durations; files that are complete or absent; progress of long work; the 95 % ellipse |
+//! | `duration.rs`, `utc.rs`, `output.rs`, `progress.rs`, `ellipse.rs` | range of durations; days and times of day; files that are complete or absent; progress of long work; the 95 % ellipse |
 
 mod boot_tracker;
 mod camera;
@@ -50,6 +50,7 @@ mod shown;
 mod source;
 mod table;
 mod time_unit;
+mod utc;
 mod version;
 
 pub use boot_tracker::{BootTracker, Continuity};
@@ -80,4 +81,5 @@ pub use session_error::{SessionError, SessionProblem};
 pub use source::FileFormat;
 pub use table::LoadedTable;
 pub use time_unit::{time_factor, time_unit_of};
+pub use utc::{today, utc_minute};
 pub use version::is_version_0_1;

@@ -7,6 +7,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use crate::foreign_file::ForeignFile;
+use crate::output::is_stdout;
 use crate::recording::{ReadError, Summary, is_damaged_begin, is_recording};
 use crate::{SessionError, SessionProblem};
 
@@ -33,6 +34,20 @@ impl FileFormat {
             Self::Raw
         } else {
             Self::Csv
+        }
+    }
+
+    /// The format that the name of an output selects: that of its ending, CSV on standard output.
+    #[must_use]
+    pub fn of_output(path: &Path) -> Option<Self> {
+        if is_stdout(path) {
+            return Some(Self::Csv);
+        }
+        match path.extension().unwrap_or_default().to_ascii_lowercase().to_str() {
+            Some("csv") => Some(Self::Csv),
+            Some("mcap") => Some(Self::Recording),
+            Some("bin") => Some(Self::Raw),
+            _ => None,
         }
     }
 }

@@ -30,7 +30,7 @@ pub fn figure<'s>(sessions: impl Iterator<Item = (&'s str, &'s ErrorMetrics)>, a
              truth, all together: {}.",
             samples.join(", ")
         ),
-        is_drawn: true,
+        is_drawn: !panels.is_empty(),
         panels,
     }
 }

@@ -27,9 +27,10 @@ impl Size {
     /// Width and height, px.
     pub const fn px(self) -> [i32; 2] {
         match self {
-            Self::Half => [560, 360],
+            Self::Half => [480, 320],
             Self::Third => [380, 300],
             Self::Quarter => [300, 420],
+            Self::Square => [300, 330],
             Self::Column => [391, 300],
             Self::Page => [820, 330],
         }
@@ -39,7 +40,7 @@ impl Size {
     pub const fn legend_rows(self) -> i32 {
         match self {
             Self::Half | Self::Third | Self::Column | Self::Page => 1,
-            Self::Quarter => 3,
+            Self::Quarter | Self::Square => 3,
         }
     }
 }

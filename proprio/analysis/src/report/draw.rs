@@ -20,8 +20,13 @@ use super::plot::{Colour, Marks, Panel, Series, Size};
 
 /// Room for labels left of and below the axes, px.
 const LABELS_PX: [i32; 2] = [62, 44];
+/// Room right of the plot, for half of the last label, px.
+const RIGHT_PX: i32 = 18;
 /// Half the width of a box on an axis of names.
 const HALF_BOX: f64 = 0.27;
+/// Height of a strip in its row.
+const STRIP: f64 = 0.8;
+
 type Chart<'c, 's, Y> = ChartContext<'c, SVGBackend<'s>, Cartesian2d<RangedCoordf64, Y>>;
 /// Draws a panel.
 ///
@@ -48,7 +53,7 @@ fn draw_plot(area: &Area, panel: &Panel) -> Drawn {
     let [left, bottom] = LABELS_PX.map(|px| px * PX);
     let (x, y) = ranges(area, panel);
     let mut builder = ChartBuilder::on(area);
-    builder.margin(MARGIN_PX * PX).x_label_area_size(bottom).y_label_area_size(left);
+    builder.margin(MARGIN_PX * PX).margin_right(RIGHT_PX * PX).x_label_area_size(bottom).y_label_area_size(left);
     if panel.y.is_log {
         draw_chart(builder.build_cartesian_2d(x[0]..x[1], (y[0]..y[1]).log_scale())?, panel)
     } else {
@@ -62,7 +67,8 @@ where
 {
     let (names, text) = (panel.x.names, text(HPos::Center, VPos::Center));
     let number = |value: &f64| number(*value);
-    let name = |value: &f64| names.get(value.round() as usize).map_or_else(String::new, |name| (*name).to_owned());
+    let name = |value: &f64| name(names, *value);
+    let row = |value: &f64| self::name(panel.y.names, *value);
     let mut mesh = chart.configure_mesh();
     mesh.axis_style(Colour::Ink.stroke(10))
         .bold_line_style(Colour::Grid.stroke(8))
@@ -74,8 +80,8 @@ where
         .x_desc(panel.x.title)
         .y_desc(panel.y.title)
         .x_labels(if matches!(panel.size, Size::Half | Size::Page) { 8 } else { 5 })
-        .y_labels(if matches!(panel.size, Size::Third | Size::Column) { 6 } else { 8 })
-        .y_label_formatter(&number);
+        .y_labels(if matches!(panel.size, Size::Third | Size::Column | Size::Square) { 6 } else { 8 })
+        .y_label_formatter(if panel.y.names.is_empty() { &number } else { &row });
     if names.is_empty() {
         mesh.x_label_formatter(&number).draw()?;
     } else {
@@ -90,7 +96,7 @@ where
 /// Layer of the marks: areas below, then lines, broad ones first.
 fn layer(series: &Series) -> (u8, Reverse<u32>) {
     match series.marks {
-        Marks::Band { .. } | Marks::Box { .. } => (0, Reverse(0)),
+        Marks::Band { .. } | Marks::Strip { .. } | Marks::Box { .. } => (0, Reverse(0)),
         Marks::Dots { .. } => (1, Reverse(0)),
         Marks::Line { .. } => (2, Reverse(series.colour.line().stroke_width)),
         Marks::Circle { .. } => (3, Reverse(0)),
@@ -100,11 +106,11 @@ fn layer(series: &Series) -> (u8, Reverse<u32>) {
 /// Ranges of both axes; of a shape, grown so that a millimetre is as long on both.
 fn ranges(area: &Area, panel: &Panel) -> ([f64; 2], [f64; 2]) {
     let (x, y) = (panel.x.range, panel.y.range);
-    if panel.size != Size::Quarter {
+    if !matches!(panel.size, Size::Quarter | Size::Square) {
         return (x, y);
     }
     let (width, height) = area.dim_in_pixel();
-    let inside = [width as i32, height as i32].map(|units| units - 2 * MARGIN_PX * PX);
+    let inside = [width as i32 - (MARGIN_PX + RIGHT_PX) * PX, height as i32 - 2 * MARGIN_PX * PX];
     let [width, height] = [inside[0] - LABELS_PX[0] * PX, inside[1] - LABELS_PX[1] * PX].map(f64::from);
     let per_unit = ((x[1] - x[0]) / width).max((y[1] - y[0]) / height);
     let grown = |[from, to]: [f64; 2], units: f64| {
@@ -130,6 +136,15 @@ fn draw_series<Y: Ranged<ValueType = f64>>(chart: &mut Chart<'_, '_, Y>, series:
                 let low = run.iter().map(|(x, [low, _])| (*x, low.max(floor)));
                 let high = run.iter().rev().map(|(x, [_, high])| (*x, high.max(floor)));
                 chart.draw_series([Polygon::new(low.chain(high).collect::<Vec<_>>(), colour.drawn().mix(0.22))])?;
+            }
+        }
+        Marks::Strip { row, points, .. } => {
+            let colour = colour.drawn().mix(0.7).filled();
+            for run in runs(points).filter(|run| run.len() > 1) {
+                let (first, last) = (run[0].0, run[run.len() - 1].0);
+                let top = run.into_iter().map(|(x, percent)| (x, row + percent / 100.0 * STRIP));
+                let outline = [(first, *row)].into_iter().chain(top).chain([(last, *row)]);
+                chart.draw_series([Polygon::new(outline.collect::<Vec<_>>(), colour)])?;
             }
         }
         Marks::Dots { points, .. } => {
@@ -169,6 +184,13 @@ fn draw_series<Y: Ranged<ValueType = f64>>(chart: &mut Chart<'_, '_, Y>, series:
 fn runs<T: Copy>(points: &[(f64, Option<T>)]) -> impl Iterator<Item = Vec<(f64, T)>> {
     let stretches = points.split(|(_, value)| value.is_none()).filter(|run| !run.is_empty());
     stretches.map(|run| run.iter().filter_map(|(x, value)| Some((*x, (*value)?))).collect())
+}
+
+/// The name at a whole number.
+fn name(names: &[&str], value: f64) -> String {
+    let place = value.round();
+    let name = names.get(place as usize).filter(|_| (value - place).abs() < 1e-6);
+    name.map_or_else(String::new, |name| (*name).to_owned())
 }
 
 /// A tick's number without trailing zeros.

@@ -1,13 +1,15 @@
 //! Deviation of the IMUs' bend angles from the truth, or from the bend sensors in a session without truth: drift without the arm's
 //! motion.
 
+use std::collections::BTreeSet;
+
 use calibration_tables::{AnchorToml, ArmFile};
 use estimator_core::{FusedOps, Method};
 use proprio_session::Row;
 
 use super::average::MovingAverage;
 use super::downsample::Timeline;
-use super::plot::{Axis, Colour, Figure, Marks, Panel, Series, Size, extent, padded, rounded};
+use super::plot::{Axis, Colour, Figure, Marks, Panel, Series, Size, extent, padded, rounded, share_y};
 use crate::Outcome;
 
 /// Methods whose deviations are shown.
@@ -55,9 +57,9 @@ impl DriftErrors {
     fn panels(&self, session: &str) -> Vec<Panel> {
         let has_truth = self.segments.iter().any(|segment| segment.has(0..METHODS.len()));
         let (first, title) = if has_truth {
-            (0, "bend angle from the true one, deg")
+            (0, "angle from the true one, deg")
         } else {
-            (METHODS.len(), "bend angle from the bend sensors, deg")
+            (METHODS.len(), "angle from bend sensors, deg")
         };
         let all: Vec<Vec<Series>> = self.segments.iter().map(|segment| segment.series(first)).collect();
         let [x, y] = extent(all.iter().flatten());
@@ -103,13 +105,17 @@ pub fn figure<'s>(sessions: impl Iterator<Item = (&'s str, u64, &'s DriftErrors)
         samples += count;
         window_s = errors.window_s;
     }
+    let references: BTreeSet<&str> = panels.iter().map(|panel| panel.y.title).collect();
+    for reference in references {
+        share_y(panels.iter_mut().filter(|panel| panel.y.title == reference));
+    }
     Figure {
         name: "drift_error",
         title: "Drift of the IMUs and its correction",
         caption: format!(
             "Bend angles less the true ones, or less those of the bend sensors in a session without truth: raw IMUs (imu_o), IMUs \
              whose drift bend sensors correct (imu_c), and bend sensors. Moving averages over the anchor's window, {window_s} s, \
-             {samples} samples in bins of equally many. All panels of a session have one scale."
+             {samples} samples in bins of equally many. All panels with one reference have one scale."
         ),
         is_drawn: true,
         panels,

@@ -33,9 +33,15 @@ impl Report {
         let mut rows = Rows(Writer::from_writer(Vec::new()));
         rows.write(COLUMNS);
         for session in &self.numbers.sessions {
-            rows.figures(&session.path, &session.metrics);
+            rows.figures("table", &session.path, &session.metrics);
         }
-        rows.figures("", &self.numbers.all);
+        rows.figures("table", "", &self.numbers.all);
+        if let Some(other) = &self.comparison {
+            for session in &other.sessions {
+                rows.figures("other_table", &session.path, &session.metrics);
+            }
+            rows.figures("other_table", "", &other.all);
+        }
         for figure in &self.figures {
             figure.panels.iter().for_each(|panel| rows.panel(figure, panel));
         }
@@ -61,19 +67,19 @@ impl Rows {
         self.write([figure, session, panel, series, "", "", name, &value.to_string()]);
     }
 
-    fn figures(&mut self, session: &str, figures: &ByMethod) {
+    fn figures(&mut self, figure: &str, session: &str, figures: &ByMethod) {
         for (method, of) in Method::ALL.iter().zip(&figures.methods) {
-            self.errors(["table", session, "", method.name()], of);
+            self.errors([figure, session, "", method.name()], of);
         }
         if let Some(smoothed) = &figures.smoothed {
-            let place = ["table", session, "", SMOOTHED];
+            let place = [figure, session, "", SMOOTHED];
             self.errors(place, &smoothed.metrics);
             if let Some(inside_percent) = smoothed.uncertainty.and_then(|uncertainty| uncertainty.tip_inside_percent) {
                 self.number(place, "tip_inside_percent", inside_percent);
             }
         }
         if let Some(inside_percent) = figures.uncertainty.and_then(|uncertainty| uncertainty.tip_inside_percent) {
-            self.number(["table", session, "", Method::Fusion.name()], "tip_inside_percent", inside_percent);
+            self.number([figure, session, "", Method::Fusion.name()], "tip_inside_percent", inside_percent);
         }
     }
 
@@ -103,7 +109,7 @@ impl Rows {
 
     fn marks(&mut self, place: Place, marks: &Marks) {
         match marks {
-            Marks::Line { x, y, points } => {
+            Marks::Line { x, y, points } | Marks::Strip { x, y, points, .. } => {
                 for (at, value) in points.iter().copied() {
                     if let Some(value) = value {
                         self.point(place, (x, at), (y, value));

@@ -38,7 +38,9 @@ pub fn legend(panel: &Panel) -> Vec<Key<'_>> {
     let first_px = MARGIN_PX;
     let mut keys: Vec<Key> = Vec::new();
     let mut next = (first_px, 0);
-    let signs = panel.series.iter().map(|series| (series.name.as_str(), series.colour, sign(&series.marks)));
+    // Rows have their names on the axis.
+    let named = panel.series.iter().filter(|series| !matches!(series.marks, Marks::Strip { .. }));
+    let signs = named.map(|series| (series.name.as_str(), series.colour, sign(&series.marks)));
     let star = panel.series.iter().any(|series| sign(&series.marks) == Sign::Box);
     for (name, colour, sign) in signs.chain(star.then_some(("RMSE", Colour::Ink, Sign::Star))) {
         if keys.iter().any(|key| key.name == name) {
@@ -56,7 +58,7 @@ pub fn legend(panel: &Panel) -> Vec<Key<'_>> {
 
 const fn sign(marks: &Marks) -> Sign {
     match marks {
-        Marks::Line { .. } | Marks::Band { .. } => Sign::Line,
+        Marks::Line { .. } | Marks::Band { .. } | Marks::Strip { .. } => Sign::Line,
         Marks::Dots { .. } => Sign::Dot,
         Marks::Circle { .. } => Sign::Ring,
         Marks::Box { .. } => Sign::Box,

@@ -2,50 +2,56 @@
 //!
 //! | file | purpose |
 //! |---|---|
-//! | `box_plot.rs`, `drift_error.rs`, `drift.rs`, `v_orient.rs`, `tip_error.rs`, `shapes.rs` | the figures |
+//! | `session.rs` | the data of one session |
+//! | `box_plot.rs`, `drift_error.rs`, `drift.rs`, `v_orient.rs`, `tip_error.rs`, `estimate.rs`, `coverage.rs`, `contact.rs`, `shapes.rs`, `tip_view.rs` | the figures |
 //! | `downsample.rs`, `average.rs` | long sessions in bounded memory |
+//! | `table_name.rs`, `comparison.rs` | identity of the table; the same sessions with another one |
 //! | `plot.rs` | contents of a figure |
-//! | `draw.rs`, `legend.rs`, `canvas.rs`, `page.rs`, `style.css` | drawing as SVG, on a page |
+//! | `draw.rs`, `legend.rs`, `canvas.rs`, `page.rs`, `tables.rs`, `style.css` | drawing as SVG, on a page |
 //! | `paper.rs` | the drawings as single files |
 //! | `export.rs` | export as JSON and CSV |
 
 mod average;
 mod box_plot;
 mod canvas;
+mod comparison;
+mod contact;
+mod coverage;
 mod downsample;
 mod draw;
 mod drift;
 mod drift_error;
+mod estimate;
 mod export;
 mod legend;
 mod page;
 mod paper;
 mod plot;
+mod session;
 mod shapes;
+mod table_name;
+mod tables;
 mod tip_error;
+mod tip_view;
 mod v_orient;
 
 use std::path::Path;
 
-use estimator_core::{Method, Q};
-use proprio_session::{LoadedTable, Progress, Row};
+use proprio_check::Finding;
+use proprio_session::{LoadedTable, Progress};
 use serde::Serialize;
 
 pub use self::paper::PaperFigure;
 
-use self::drift::Drift;
-use self::drift_error::DriftErrors;
-use self::plot::Figure;
-use self::shapes::Shapes;
-use self::tip_error::TipErrors;
+use self::comparison::{Comparison, OtherTable};
+use self::plot::{Figure, SMOOTHED};
+use self::session::Session;
+use self::table_name::TableName;
 use self::v_orient::Readings;
 use crate::error::Error;
 use crate::metrics::ErrorMetrics;
-use crate::outcome::Outcome;
-use crate::replay::{NotComparable, SessionSummary, replay};
-use crate::session_metrics::{AllMetrics, ByMethod, SessionMetrics};
-use crate::smooth;
-use proprio_check::{Finding, SessionCheck};
+use crate::replay::{NotComparable, SessionSummary};
+use crate::session_metrics::{AllMetrics, ByMethod};
 
 /// Builder of a report, session by session. Its memory grows with their number and not with their length.
 pub struct ReportBuilder<'t> {
@@ -53,18 +59,8 @@ pub struct ReportBuilder<'t> {
     sessions: Vec<Session>,
     all: ErrorMetrics,
     readings: Readings,
-}
-
-/// Data of one session.
-struct Session {
-    name: String,
-    summary: SessionSummary,
-    errors: ErrorMetrics,
-    drift: Drift,
-    drift_errors: DriftErrors,
-    tip_errors: TipErrors,
-    shapes: Shapes,
-    findings: Vec<Finding>,
+    other: Option<OtherTable<'t>>,
+    command: Option<String>,
 }
 
 /// A finished report, for [`Report::html`], [`Report::json`] and [`Report::csv`].
@@ -72,11 +68,17 @@ struct Session {
 pub struct Report {
     format: u32,
     proprio: &'static str,
+    /// The command that has made it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    command: Option<String>,
     table: TableName,
     #[serde(flatten)]
     numbers: AllMetrics,
     missing: Vec<String>,
     findings: Vec<SessionFinding>,
+    /// The same sessions with another table.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    comparison: Option<Comparison>,
     figures: Vec<Figure>,
 }
 
@@ -87,18 +89,6 @@ struct SessionFinding {
     text: String,
     #[serde(flatten)]
     finding: Finding,
-}
-
-/// Identity of the table.
-#[derive(Debug, Serialize)]
-struct TableName {
-    path: String,
-    arm: String,
-    /// CRC-32 of its parameters at its `rate_hz`.
-    crc32: String,
-    rate_hz: f64,
-    segments: usize,
-    length_mm: f64,
 }
 
 impl Report {
@@ -114,49 +104,37 @@ impl<'t> ReportBuilder<'t> {
     #[must_use]
     pub fn new(table: &'t LoadedTable) -> Self {
         let (all, readings) = (ErrorMetrics::new(table.file.length_mm()), Readings::new(&table.file));
-        Self { table, sessions: Vec::new(), all, readings }
+        Self { table, sessions: Vec::new(), all, readings, other: None, command: None }
+    }
+
+    /// Compares the table with another one on the sessions that are added.
+    ///
+    /// # Errors
+    /// [`Error::OtherArm`] where the arms have other segments.
+    pub fn compare_with(mut self, other: &'t LoadedTable) -> Result<Self, Error> {
+        self.other = Some(OtherTable::new(other, &self.table.file)?);
+        Ok(self)
+    }
+
+    /// The command that the page shows.
+    #[must_use]
+    pub fn command(mut self, command: String) -> Self {
+        self.command = Some(command);
+        self
     }
 
     /// Replays a session in fixed point, and smooths it where the table has the bias filter.
     ///
     /// # Errors
-    /// Errors of [`replay`].
+    /// Errors of [`replay`](crate::replay::replay).
     pub fn add(&mut self, path: &Path, progress: &mut dyn Progress) -> Result<SessionSummary, Error> {
-        let table = &self.table.file;
-        let mut errors = ErrorMetrics::new(table.length_mm());
-        let (mut drift, mut drift_errors) = (Drift::new(table), DriftErrors::new(table));
-        let (mut tip_errors, mut shapes) = (TipErrors::new(), Shapes::new(table));
-        let readings = &mut self.readings;
-        let mut check = SessionCheck::new(self.table)?;
-        let visit = |row: &Row, outcome: &Outcome<Q>| {
-            check.update(row);
-            errors.add(row, outcome);
-            if row.is_comparable() {
-                drift.add(row, outcome);
-                drift_errors.add(row, outcome);
-            }
-            tip_errors.add(row, outcome);
-            shapes.add(row, outcome);
-            readings.add(row);
-            Ok(())
-        };
-        let summary = if self.table.has_bias_filter() {
-            smooth::replay(path, self.table, progress, visit)?
-        } else {
-            replay(path, self.table, progress, visit)?
-        };
-        self.all.append(&errors);
-        let name = path.display().to_string();
-        self.sessions.push(Session {
-            name,
-            summary: summary.clone(),
-            errors,
-            drift,
-            drift_errors,
-            tip_errors,
-            shapes,
-            findings: check.findings(),
-        });
+        if let Some(other) = &mut self.other {
+            other.add(path, progress)?;
+        }
+        let session = Session::read(path, self.table, &mut self.readings, progress)?;
+        self.all.append(&session.data.errors);
+        let summary = session.summary.clone();
+        self.sessions.push(session);
         Ok(summary)
     }
 
@@ -165,42 +143,40 @@ impl<'t> ReportBuilder<'t> {
     /// # Errors
     /// [`Error::File`] on an arm description.
     pub fn finish(self) -> Result<Report, Error> {
-        let Self { table: LoadedTable { file, path }, sessions, all, readings } = &self;
-        let of_session = |session: &Session| SessionMetrics {
-            path: session.name.clone(),
-            samples: session.summary.samples,
-            seconds: session.summary.seconds,
-            metrics: ByMethod::from(&session.errors),
-            recorded: None,
-        };
-        let crc32 = self.table.compile::<Q>(file.rate_hz)?.checksum();
+        let file = &self.table.file;
         Ok(Report {
             format: 1,
             proprio: env!("CARGO_PKG_VERSION"),
-            table: TableName {
-                path: path.display().to_string(),
-                arm: file.arm.clone(),
-                crc32: format!("{crc32:08x}"),
-                rate_hz: file.rate_hz,
-                segments: file.segments.len(),
-                length_mm: file.length_mm(),
-            },
+            command: self.command.clone(),
+            table: TableName::new(self.table)?,
             numbers: AllMetrics {
-                sessions: sessions.iter().map(of_session).collect(),
-                all: ByMethod::from(all),
+                sessions: self.sessions.iter().map(Session::metrics).collect(),
+                all: ByMethod::from(&self.all),
                 length_mm: file.length_mm(),
             },
             missing: self.missing(),
             findings: self.findings(),
-            figures: vec![
-                box_plot::figure(sessions.iter().map(|s| (s.name.as_str(), &s.errors)), all),
-                drift_error::figure(sessions.iter().map(|s| (s.name.as_str(), s.summary.samples, &s.drift_errors))),
-                drift::figure(sessions.iter().map(|s| (s.name.as_str(), s.summary.samples, &s.drift))),
-                readings.figure(),
-                tip_error::figure(sessions.iter().map(|s| (s.name.as_str(), s.summary.samples, &s.tip_errors))),
-                shapes::figure(sessions.iter().map(|s| (s.name.as_str(), &s.shapes, &s.errors))),
-            ],
+            figures: self.figures(),
+            comparison: self.other.map(|other| other.comparison(file)).transpose()?,
         })
+    }
+
+    fn figures(&self) -> Vec<Figure> {
+        let all = || self.sessions.iter().map(|s| (s.name.as_str(), s.summary.samples, &s.data));
+        let blind = self.sessions.iter().filter(|session| !session.has_tip_errors());
+        let compared = self.other.iter().map(|other| other.figure(self.sessions.iter()));
+        let own = vec![
+            box_plot::figure(all().map(|(name, _, data)| (name, &data.errors)), &self.all),
+            tip_error::figure(all().map(|(name, samples, data)| (name, samples, &data.tip_errors))),
+            estimate::figure(blind.map(|session| (session.name.as_str(), &session.data.places))),
+            drift_error::figure(all().map(|(name, samples, data)| (name, samples, &data.drift_errors))),
+            drift::figure(all().map(|(name, samples, data)| (name, samples, &data.drift))),
+            coverage::figure(all().map(|(name, _, data)| (name, &data.coverage))),
+            contact::figure(all().map(|(name, _, data)| (name, &data.contacts))),
+            self.readings.figure(),
+            shapes::figure(all().map(|(name, _, data)| (name, &data.shapes, &data.errors))),
+        ];
+        compared.chain(own).collect()
     }
 
     /// Findings of all sessions.
@@ -222,12 +198,13 @@ impl<'t> ReportBuilder<'t> {
                     .to_owned(),
             );
         }
-        for Session { name, errors, summary, .. } in &self.sessions {
+        for session in &self.sessions {
+            let Session { name, data, summary, .. } = session;
             if summary.not_comparable > 0 {
                 missing.push(format!("{name}: {}; their drift is not shown.", NotComparable(summary)));
             }
-            let has_tips = Method::ALL.iter().any(|method| errors.tips(*method).count() > 0);
-            let has_angles = errors.metrics().iter().any(|figures| figures.theta_rmse_deg.is_some());
+            let has_tips = session.has_tip_errors();
+            let has_angles = data.errors.metrics().iter().any(|figures| figures.theta_rmse_deg.is_some());
             match (has_tips, has_angles) {
                 (true, true) => {}
                 (false, false) => missing.push(format!("{name} has no truth: its errors are not known.")),

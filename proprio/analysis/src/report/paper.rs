@@ -37,7 +37,7 @@ pub fn figures(figures: &[Figure]) -> Vec<PaperFigure> {
 fn svg(panel: &Panel) -> String {
     let size = match panel.size {
         Size::Half if panel.x.names.is_empty() => Size::Page,
-        Size::Quarter => Size::Quarter,
+        size @ (Size::Quarter | Size::Square) => size,
         _ => Size::Column,
     };
     let drawing = draw::svg(&Panel { size, ..panel.clone() });

@@ -48,6 +48,8 @@ pub enum Size {
     Third,
     /// Four in a row, tall, with equal scales of both axes.
     Quarter,
+    /// Four in a row, square, with equal scales of both axes.
+    Square,
     /// A column of a paper.
     Column,
     /// Both columns of a paper.
@@ -60,7 +62,7 @@ pub struct Axis {
     /// Title with the unit.
     pub title: &'static str,
     pub range: [f64; 2],
-    /// Names instead of numbers, at 0, 1, ….
+    /// Names instead of numbers, at 0, 1, …
     pub names: &'static [&'static str],
     /// Logarithmic; marks below the range are drawn at its begin.
     pub is_log: bool,
@@ -85,6 +87,14 @@ pub enum Marks {
     Line { x: &'static str, y: &'static str, points: Vec<(f64, Option<f64>)> },
     /// An area between two values.
     Band { x: &'static str, low: &'static str, high: &'static str, points: Vec<(f64, Option<[f64; 2]>)> },
+    /// A share of time in a row of its own, % of the row's height.
+    Strip {
+        #[serde(skip)]
+        row: f64,
+        x: &'static str,
+        y: &'static str,
+        points: Vec<(f64, Option<f64>)>,
+    },
     /// Single points.
     Dots { x: &'static str, y: &'static str, points: Vec<(f64, f64)> },
     /// A circle about a point, mm.
@@ -151,6 +161,7 @@ impl Marks {
                 .filter_map(|(x, range)| Some((*x, (*range)?)))
                 .flat_map(|(x, [a, b])| [(x, a), (x, b)])
                 .collect(),
+            Self::Strip { row, points, .. } => points.iter().flat_map(|(x, _)| [(*x, *row), (*x, row + 1.0)]).collect(),
             Self::Dots { points, .. } => points.clone(),
             Self::Circle { center_x_mm: x, center_y_mm: y, radius_mm: r } => vec![(x - r, y - r), (x + r, y + r)],
             Self::Box { place, low_mm, high_mm, rmse_mm, .. } => {
@@ -189,6 +200,16 @@ impl Extent {
             Self(least, _) if least.is_finite() => [least - 1.0, least + 1.0],
             _ => [0.0, 1.0],
         }
+    }
+}
+
+/// Gives panels that are compared one scale of y: the extent of all of theirs.
+pub fn share_y<'p>(panels: impl Iterator<Item = &'p mut Panel>) {
+    let panels: Vec<&mut Panel> = panels.collect();
+    let mut extent = Extent::new();
+    panels.iter().flat_map(|panel| panel.y.range).for_each(|value| extent.add(value));
+    for panel in panels {
+        panel.y.range = extent.range();
     }
 }
 

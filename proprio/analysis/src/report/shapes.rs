@@ -1,11 +1,12 @@
 //! Snapshots of the arm's shape, estimated and true.
 
 use calibration_tables::{ArmFile, MAX_SEGMENTS};
-use estimator_core::{Angle, FusedOps, Method, UnitArc};
-use proprio_session::{Row, Truth};
+use estimator_core::{Angle, Covariance, FusedOps, Method, UnitArc};
+use proprio_session::{Ellipse, Row, Truth};
 
 use super::downsample::DecimatedItems;
 use super::plot::{Axis, Colour, Figure, Marks, Panel, Series, Size, extent, padded, rounded};
+use super::tip_view::{View, ellipse};
 use crate::Outcome;
 use crate::metrics::{ErrorMetrics, tip_errors_m};
 
@@ -13,6 +14,10 @@ use crate::metrics::{ErrorMetrics, tip_errors_m};
 const MOMENTS: usize = 256;
 /// Points of a drawn segment.
 const SEGMENT_POINTS: u32 = 8;
+/// Side of a view of the tip over the largest distance in it from its middle.
+const ROOM: f64 = 1.1;
+/// Least half side of a view of the tip, mm.
+const LEAST_HALF_MM: f64 = 2.0;
 /// Methods whose error circles are drawn.
 const CIRCLES: [Method; 2] = [Method::Fusion, Method::ImuC];
 
@@ -32,6 +37,8 @@ struct Snapshot {
     /// Tip error of the leading method, m.
     error_m: Option<f64>,
     shapes: [Vec<Option<End>>; Method::ALL.len()],
+    /// Covariance of fusion's tip, m².
+    covariance_m2: Option<[f64; 3]>,
     truth: [Option<Truth>; MAX_SEGMENTS],
 }
 
@@ -81,16 +88,22 @@ impl Shapes {
         nearest.chain([("largest error", worst)]).map(|(name, moment)| (name.to_owned(), moment)).collect()
     }
 
-    /// The moments' panels, all to one scale.
+    /// The moments' panels, all to one scale, and the same magnified about the tip.
     fn panels(&self, session: &str, errors: &ErrorMetrics) -> Vec<Panel> {
-        let moments = self.moments(errors).into_iter();
-        let mut panels: Vec<Panel> =
-            moments.map(|(name, moment)| moment.panel(session, name, &self.lengths_m, errors)).collect();
+        let moments = self.moments(errors);
+        let half_mm = moments.iter().map(|(_, moment)| moment.reach_mm()).fold(LEAST_HALF_MM, f64::max) * ROOM;
+        let whole = moments.iter().map(|(name, moment)| moment.panel(session, name, &self.lengths_m, errors));
+        let mut panels: Vec<Panel> = whole.collect();
         let [x, y] = extent(panels.iter().flat_map(|panel| &panel.series)).map(padded);
+        let tips = moments
+            .iter()
+            .zip(&panels)
+            .filter_map(|((_, moment), panel)| moment.tip_panel(panel, self.leading, half_mm));
+        let tips: Vec<Panel> = tips.collect();
         for panel in &mut panels {
             (panel.x.range, panel.y.range) = (x, y);
         }
-        panels
+        panels.into_iter().chain(tips).collect()
     }
 }
 
@@ -105,10 +118,11 @@ impl Snapshot {
             };
             shape.iter().map(end).collect()
         });
-        Self { time_s: row.sample.time_us as f64 / 1e6, error_m, shapes, truth: row.truth }
+        let covariance_m2 = outcome.uncertainties.last().and_then(|tip| tip.end).map(Covariance::square_metres);
+        Self { time_s: row.sample.time_us as f64 / 1e6, error_m, shapes, covariance_m2, truth: row.truth }
     }
 
-    fn panel(&self, session: &str, name: String, lengths_m: &[f64], errors: &ErrorMetrics) -> Panel {
+    fn panel(&self, session: &str, name: &str, lengths_m: &[f64], errors: &ErrorMetrics) -> Panel {
         let (time_s, error_mm) = (self.time_s, self.error_m.map(|m| m * 1e3));
         let title = match error_mm {
             Some(mm) => format!("{name}: {mm:.1} mm at {time_s:.1} s"),
@@ -117,7 +131,7 @@ impl Snapshot {
         let facts = [("time_s", Some(time_s)), ("tip_error_mm", error_mm)];
         Panel {
             session: Some(session.to_owned()),
-            name,
+            name: name.to_owned(),
             title,
             facts: facts.into_iter().filter_map(|(name, value)| Some((name, rounded(value?)))).collect(),
             size: Size::Quarter,
@@ -125,6 +139,39 @@ impl Snapshot {
             y: Axis::new("y, mm", [0.0, 1.0]),
             series: self.series(lengths_m, errors),
         }
+    }
+
+    /// Place of the true tip, or else of the leading estimate's, mm.
+    fn middle_mm(&self, leading: Method) -> Option<(f64, f64)> {
+        let segments = self.shapes[leading as usize].len();
+        let truth = self.truth[..segments].last().copied().flatten().map(|pose| (pose.x_m * 1e3, pose.y_m * 1e3));
+        truth.or_else(|| self.tip_mm(leading))
+    }
+
+    fn tip_mm(&self, method: Method) -> Option<(f64, f64)> {
+        let tip = (*self.shapes[method as usize].last()?)?;
+        Some((tip.x_m * 1e3, tip.y_m * 1e3))
+    }
+
+    /// Distance from the middle of its view that the leading estimate and fusion's ellipse need, mm.
+    fn reach_mm(&self) -> f64 {
+        let ellipse_mm = self.covariance_m2.map_or(0.0, |covariance| Ellipse::of(covariance).major_mm);
+        self.error_m.map_or(0.0, |m| m * 1e3) + ellipse_mm
+    }
+
+    /// A moment's panel magnified about the tip, with fusion's ellipse.
+    fn tip_panel(&self, whole: &Panel, leading: Method, half_mm: f64) -> Option<Panel> {
+        let view = View { center_mm: self.middle_mm(leading)?, half_mm };
+        let mut series: Vec<Series> = whole.series.iter().filter_map(|series| view.cut(series)).collect();
+        if let Some((tip, covariance)) = self.tip_mm(Method::Fusion).zip(self.covariance_m2) {
+            let line = named("fusion 95 %", Colour::Of(Method::Fusion), ellipse(tip, covariance));
+            series.extend(view.cut(&line));
+        }
+        let [x, y] = view.ranges();
+        let name = format!("{} tip", whole.name);
+        let title = format!("{}: the tip", whole.name);
+        let (x, y) = (Axis { range: x, ..whole.x.clone() }, Axis { range: y, ..whole.y.clone() });
+        Some(Panel { name, title, facts: Vec::new(), size: Size::Square, x, y, series, session: whole.session.clone() })
     }
 
     fn series(&self, lengths_m: &[f64], errors: &ErrorMetrics) -> Vec<Series> {
@@ -221,9 +268,10 @@ pub fn figure<'s>(sessions: impl Iterator<Item = (&'s str, &'s Shapes, &'s Error
         name: "shapes",
         title: "Shapes of the arm",
         caption: format!(
-            "The arm in the world frame, base at the origin; a millimetre is as long on both axes. {moments}"
+            "The arm in the world frame, base at the origin, and below it the same moments magnified about the tip, with the 95 % \
+             ellipse that fusion states. A millimetre is as long on both axes. {moments}"
         ),
-        is_drawn: true,
+        is_drawn: !panels.is_empty(),
         panels,
     }
 }

@@ -1,10 +1,10 @@
 //! Error of the tip over time.
 
-use estimator_core::FusedOps;
+use estimator_core::{FusedOps, Method};
 use proprio_session::Row;
 
 use super::downsample::Timeline;
-use super::plot::{Axis, ESTIMATES, Figure, Marks, Panel, Series, Size, extent, rounded};
+use super::plot::{Axis, ESTIMATES, Figure, Marks, Panel, Series, Size, extent, rounded, share_y};
 use crate::Outcome;
 use crate::metrics::{smoothed_tip_error_m, tip_errors_m};
 
@@ -45,6 +45,11 @@ impl TipErrors {
         (!all.is_empty()).then_some(Panel { session, name, title, facts, size: Size::Half, x, y, series: all })
     }
 
+    /// True where this method has errors.
+    pub fn has(&self, method: Method) -> bool {
+        self.0.bins().iter().any(|bin| bin.mean(method as usize).is_some())
+    }
+
     /// Range of the axis: half the least mean of a bin, at least 0.1 mm and a tenth of the largest error, to that.
     fn range_mm(&self, channels: &[usize], largest_mm: f64) -> [f64; 2] {
         let means = channels.iter().flat_map(|channel| self.0.bins().iter().filter_map(|bin| bin.mean(*channel)));
@@ -59,7 +64,8 @@ impl TipErrors {
         Marks::Band { x: "time_s", low: "tip_error_least_mm", high: "tip_error_largest_mm", points: points.collect() }
     }
 
-    fn mean(&self, channel: usize) -> Marks {
+    /// The means of the bins.
+    pub fn mean(&self, channel: usize) -> Marks {
         let points = self.0.bins().iter().map(|bin| (rounded(bin.time_s()), bin.mean(channel).map(rounded)));
         Marks::Line { x: "time_s", y: "tip_error_mean_mm", points: points.collect() }
     }
@@ -74,14 +80,16 @@ pub fn figure<'s>(sessions: impl Iterator<Item = (&'s str, u64, &'s TipErrors)>)
             samples += count;
         }
     }
+    share_y(panels.iter_mut());
     Figure {
         name: "tip_error",
         title: "Tip error against time",
         caption: format!(
             "Distance of the tip from its true place, {samples} samples in bins of equally many: line, mean of a bin; \
-             area, from its least to its largest error, so that every peak is seen. The scale is logarithmic."
+             area, from its least to its largest error, so that every peak is seen. The scale is logarithmic, and the same in \
+             all panels."
         ),
-        is_drawn: true,
+        is_drawn: !panels.is_empty(),
         panels,
     }
 }

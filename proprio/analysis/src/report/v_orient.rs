@@ -5,7 +5,7 @@ use estimator_core::{Method, VOLTS_PER_COUNT};
 use proprio_session::{Row, SENSOR_NAMES};
 
 use super::downsample::DecimatedItems;
-use super::plot::{Axis, Colour, Figure, Marks, Panel, Series, Size, extent, padded, rounded};
+use super::plot::{Axis, Colour, Figure, Marks, Panel, Series, Size, extent, padded, rounded, share_y};
 
 /// Fewest readings of a sensor that are shown.
 const READINGS: usize = 256;
@@ -54,12 +54,17 @@ impl Readings {
                  spaced in time. The RMSE is over all of them."
             )
         };
+        let mut panels: Vec<Panel> = self.0.iter().map(SensorReadings::panel).collect();
+        share_y(panels.iter_mut());
         Figure {
             name: "v_orient",
             title: "V–Orient maps",
-            caption: format!("Line: the table's map from a sensor's voltage to its segment's bend angle. {data}"),
-            is_drawn: true,
-            panels: self.0.iter().map(SensorReadings::panel).collect(),
+            caption: format!(
+                "Line: the table's map from a sensor's voltage to its segment's bend angle. {data} All panels have one scale of the \
+                 angle."
+            ),
+            is_drawn: !panels.is_empty(),
+            panels,
         }
     }
 }

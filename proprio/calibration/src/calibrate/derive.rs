@@ -31,7 +31,7 @@ pub(super) fn table(
     progress: &mut dyn Progress,
 ) -> Result<Derived, Error> {
     let refuse = |source| Error::Calibration { path: sessions.first().cloned().unwrap_or_default(), source };
-    let mut table = ArmFile { tuning: None, ..arm.file.clone() };
+    let mut table = ArmFile { calibration: None, tuning: None, ..arm.file.clone() };
     // The parameters of version 0.1's observer are those of another filter.
     table.drift = table.drift.filter(|drift| drift.kind != DriftKind::Observer).or_else(|| Some(DriftToml::kalman()));
     let is_paper = table.bias_filter().is_none() && options.maps != MapMode::Curve;

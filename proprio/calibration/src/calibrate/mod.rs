@@ -38,7 +38,7 @@ mod sweep;
 
 use std::path::PathBuf;
 
-use calibration_tables::ArmFile;
+use calibration_tables::{ArmFile, CalibrationToml};
 use proprio_session::{FileDefects, LoadedTable, Progress};
 
 pub(crate) use curvature::{MISFIT_PERCENT, constant_curvature_error};
@@ -92,8 +92,10 @@ pub fn calibrate(
     let held_out = held_out::evaluate(&sweep, sessions, arm, options, progress)?;
     warnings.extend(held_out.as_ref().and_then(HeldOut::warning));
     let sensors = derived.sensors.into_iter().map(|sensor| sensor.report).collect();
+    let sessions = sessions.iter().map(|session| session.display().to_string()).collect();
+    let record = CalibrationToml { sessions, date: None };
     Ok(Calibration {
-        table: derived.table,
+        table: ArmFile { calibration: Some(record), ..derived.table },
         sensors,
         segments,
         held_out,

@@ -107,6 +107,7 @@ impl<'t> Tuner<'t> {
         let after = self.objective.of_table(&table);
         let record = TuningToml {
             sessions: self.objective.sessions().iter().map(|session| session.path.display().to_string()).collect(),
+            date: None,
             iterations,
             best_iteration: kept,
             stop_reason: stopped,

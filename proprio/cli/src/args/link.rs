@@ -218,6 +218,9 @@ pub struct ConvertArgs {
     pub input: PathBuf,
     /// File to write: .csv, .mcap or .bin; - writes CSV to standard output
     pub output: PathBuf,
+    /// Table of the arm: adds the estimates of a replay to the recording (.mcap) that is made of a CSV
+    #[arg(long, value_name = "TABLE.toml")]
+    pub table: Option<PathBuf>,
     #[command(flatten)]
     pub force: ForceArgs,
 }

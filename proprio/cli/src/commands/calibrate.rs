@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use proprio_calibration::calibrate::{Calibration, CalibrationOptions, HysteresisMode, MapMode, calibrate};
 use proprio_check::{Finding, Kind};
-use proprio_session::{LoadedTable, OutputFile};
+use proprio_session::{LoadedTable, OutputFile, today};
 
 use super::truth;
 use super::warnings::{checked, warn_of_defects};
@@ -25,7 +25,7 @@ pub fn run(args: &CalibrateArgs) -> Result<(), Error> {
         Some(Calibration { table, .. }) => LoadedTable { file: table.clone(), path: &args.output },
         None => arm,
     };
-    let calibration = checked(calibration, &args.sessions, table, |finding| !is_later_tare(finding))?;
+    let mut calibration = checked(calibration, &args.sessions, table, |finding| !is_later_tare(finding))?;
     for (path, defects) in args.sessions.iter().zip(&calibration.defects) {
         warn_of_defects(path, defects);
     }
@@ -33,6 +33,9 @@ pub fn run(args: &CalibrateArgs) -> Result<(), Error> {
     calibration.truth.iter().for_each(truth::warn);
     for warning in &calibration.warnings {
         terminal::warn(&format_args!("{}: {warning}", names.join(", ")));
+    }
+    if let Some(record) = &mut calibration.table.calibration {
+        record.date = Some(today());
     }
     file.write_all(calibration.table.to_toml().as_bytes()).map_err(|error| file.error(error))?;
     // Last, so that a command that fails leaves no file.

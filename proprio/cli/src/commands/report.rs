@@ -17,7 +17,9 @@ use crate::terminal;
 
 pub fn run(args: &ReportArgs) -> Result<(), Error> {
     let table = LoadedTable::load(&args.table)?;
-    let inputs: Vec<&Path> = args.sessions.iter().map(PathBuf::as_path).chain([table.path]).collect();
+    let other = args.compare.as_deref().map(LoadedTable::load).transpose()?;
+    let tables = [&args.table].into_iter().chain(&args.compare);
+    let inputs: Vec<&Path> = args.sessions.iter().chain(tables).map(PathBuf::as_path).collect();
     let outputs = [Some(&args.output), args.json.as_ref(), args.csv.as_ref()].into_iter().flatten();
     let outputs: Vec<PathBuf> =
         outputs.map(|path| std::path::absolute(path).unwrap_or_else(|_| path.clone())).collect();
@@ -33,7 +35,10 @@ pub fn run(args: &ReportArgs) -> Result<(), Error> {
     }
 
     let mut progress = Bar::new();
-    let mut builder = ReportBuilder::new(&table);
+    let mut builder = ReportBuilder::new(&table).command(command_line());
+    if let Some(other) = &other {
+        builder = builder.compare_with(other)?;
+    }
     for path in &args.sessions {
         let summary = builder.add(path, &mut progress)?;
         if summary.not_comparable > 0 {
@@ -67,6 +72,17 @@ pub fn run(args: &ReportArgs) -> Result<(), Error> {
         terminal::eprint_line(&file.finish()?);
     }
     Ok(())
+}
+
+/// The command as it was typed, with the arguments in quotes that a shell would divide.
+fn command_line() -> String {
+    let is_plain = |letter: char| letter.is_alphanumeric() || "-_./:=,+@%".contains(letter);
+    let quoted = |argument: std::borrow::Cow<str>| match argument {
+        plain if !plain.is_empty() && plain.chars().all(is_plain) => plain.into_owned(),
+        other => format!("'{}'", other.replace('\'', "'\\''")),
+    };
+    let arguments = std::env::args_os().skip(1).map(|argument| quoted(argument.to_string_lossy()));
+    ["proprio".to_owned()].into_iter().chain(arguments).collect::<Vec<_>>().join(" ")
 }
 
 /// Refuses a folder that has files already, unless they may be replaced.

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use calibration_tables::{StopReason, TuningToml};
 use proprio_calibration::tune::{Tuner, Tuning};
-use proprio_session::{LoadedTable, OutputFile};
+use proprio_session::{LoadedTable, OutputFile, today};
 
 use super::truth;
 use super::warnings::{checked, warn_of_defects};
@@ -27,9 +27,12 @@ pub fn run(args: &TuneArgs) -> Result<(), Error> {
     tuner.truth().for_each(truth::warn);
     let lines: String = tuner.truth().map(truth::line).collect();
     let shutdown = ShutdownGuard::new();
-    let Tuning { table, record, iteration_time } = tuner.tune(&mut progress, || shutdown.is_requested())?;
+    let Tuning { mut table, record, iteration_time } = tuner.tune(&mut progress, || shutdown.is_requested())?;
     drop((shutdown, progress));
     warnings(&record).for_each(|warning| terminal::warn(&warning));
+    if let Some(record) = &mut table.tuning {
+        record.date = Some(today());
+    }
     file.write_all(table.to_toml().as_bytes()).map_err(|error| file.error(error))?;
     // Last, so that a command that fails leaves no file.
     terminal::print_beside(Some(&args.output), &lines)?;

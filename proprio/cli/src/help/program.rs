@@ -30,6 +30,10 @@ impl Help for Error {
             Self::OutputTwice(_) => "give the output another name",
             Self::Stdout(_) => "write to a disk with free space, or use --out",
             Self::SessionWithoutTable | Self::CheckWithoutTable(_) => "give the arm's table with --table",
+            Self::NoChannel { .. } => "give --out a name that ends with .csv",
+            Self::EstimatesOfConversion { .. } => {
+                "leave out --table; `proprio replay --out EST.mcap` writes the estimates of any session"
+            }
             Self::OneSession(_) => "replay the sessions one by one",
             Self::Simulation(SimulationError::Fault(_)) => {
                 "give faults of sensors that the arm has; docs/reference/faults.md lists them"
@@ -77,6 +81,7 @@ impl Help for proprio_analysis::Error {
             Self::NotSmoothed(_) => {
                 "calibrate a table with the bias filter, `[drift] kind = \"kalman\"`, or leave out --smooth".to_owned()
             }
+            Self::OtherArm(_) => "compare tables of one arm, or make a report with each".to_owned(),
         }
     }
 }

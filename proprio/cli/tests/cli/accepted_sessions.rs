@@ -188,18 +188,6 @@ fn figures_without_truth_are_null_in_json() {
 }
 
 #[test]
-fn figures_without_truth_are_dashes_in_the_table() {
-    let mut blind = session();
-    blind.remove("truth");
-    let run = replay(blind.to_string(), &[]);
-    let rows: Vec<&str> = run.stdout.lines().filter(|line| line.contains("session.csv")).collect();
-    assert_eq!(rows.len(), 4, "one for each figure: {}", run.stdout);
-    for row in rows {
-        assert_eq!(row.matches('–').count(), 4, "one for each method: {row}");
-    }
-}
-
-#[test]
 fn a_session_without_truth_gives_the_same_estimates() {
     let mut blind = session();
     blind.remove("truth");

@@ -152,22 +152,62 @@ fn the_figures_of_all_are_over_all_samples() {
 fn the_table_for_people_has_the_figures_of_the_json() {
     let folder = Folder::with("session.csv", session().to_string());
     let run = folder.done(&["replay", "session.csv", "--table", table()]);
+    assert!(run.stdout.starts_with("session.csv: 150 samples, 14.9 s\n\n"), "{}", run.stdout);
     let report = report(session());
-    let rows: Vec<Vec<&str>> = run
-        .stdout
-        .lines()
-        .map(|line| line.split_whitespace().collect::<Vec<_>>())
-        .filter(|cells| cells.first() == Some(&"session.csv"))
-        .collect();
-    let figures = ["tip_rmse_mm", "tip_rmse_percent", "tip_p75_mm", "theta_rmse_deg"];
-    let (consistency, rows) = rows.split_last().expect("there are tables");
-    assert_eq!(rows.len(), figures.len(), "{}", run.stdout);
-    let nees = report["all"]["uncertainty"]["tip_nees"].as_f64().expect("a number");
-    assert_eq!(consistency[1], format!("{nees:.2}"));
-    for (row, name) in rows.iter().zip(figures) {
-        assert_eq!(row[1..3], ["150", "14.9"]);
-        for (cell, method) in row[3..].iter().zip(["bend", "imu_o", "imu_c", "fusion"]) {
+    for method in ["bend", "imu_o", "imu_c", "fusion"] {
+        let rows: Vec<Vec<&str>> = run
+            .stdout
+            .lines()
+            .map(|line| line.split_whitespace().collect::<Vec<_>>())
+            .filter(|cells| cells.first() == Some(&method))
+            .collect();
+        let [row] = &rows[..] else { panic!("one row of {method}: {}", run.stdout) };
+        let errors = ["tip_rmse_mm", "tip_rmse_percent", "tip_p75_mm", "theta_rmse_deg"];
+        for (cell, name) in row[1..].iter().zip(errors) {
             assert_eq!(*cell, format!("{:.2}", figure(&report, method, name)), "{method} {name}");
         }
+        if method == "fusion" {
+            let nees = report["all"]["uncertainty"]["tip_nees"].as_f64().expect("a number");
+            assert_eq!(row.last(), Some(&format!("{nees:.2}").as_str()));
+        }
     }
+    assert!(run.stdout.contains("NEES: mean squared error"), "{}", run.stdout);
+}
+
+#[test]
+fn a_session_without_truth_is_named_in_a_sentence_and_has_no_row() {
+    let mut blind = session();
+    blind.remove("truth");
+    let folder = Folder::with("blind.csv", blind.to_string());
+    folder.write("seen.csv", session().to_string());
+    let alone = folder.done(&["replay", "blind.csv", "--table", table()]).stdout;
+    assert_eq!(alone, "blind.csv: 150 samples, 14.9 s; without truth, so that the errors are not known\n");
+    let both = folder.done(&["replay", "blind.csv", "seen.csv", "--table", table()]).stdout;
+    assert!(both.starts_with(&alone) && both.matches("blind.csv").count() == 1 && !both.contains('–'), "{both}");
+}
+
+#[test]
+fn sessions_side_by_side_give_the_output_of_one_by_one() {
+    let folder = Folder::new();
+    let names: Vec<String> = (1..=6).map(|i| format!("{i}.csv")).collect();
+    for (i, name) in (1..).zip(&names) {
+        let mut session = session();
+        session.rows.truncate(170 - 20 * i);
+        // A bend sensor that stands still is a finding, which is a warning.
+        (0..session.rows.len()).for_each(|row| session.set(row, "bend3a_adc", "2000"));
+        folder.write(name, session.to_string());
+    }
+    let replay = |names: &[String]| {
+        let names: Vec<&str> = names.iter().map(String::as_str).collect();
+        folder.done(&[&["replay", "--table", table(), "--json"], &names[..]].concat())
+    };
+    let all = replay(&names);
+    let singles: Vec<_> = names.iter().map(|name| replay(std::slice::from_ref(name))).collect();
+    assert!(all.stderr.contains("1.csv: bend3a"), "{}", all.stderr);
+    // The count of saturated operations is that of the command.
+    let lines =
+        |text: &str| text.lines().filter(|line| !line.contains("saturated")).map(str::to_owned).collect::<Vec<_>>();
+    assert_eq!(lines(&all.stderr), singles.iter().flat_map(|run| lines(&run.stderr)).collect::<Vec<_>>());
+    let sessions: Vec<Value> = singles.iter().map(|run| json(run)["sessions"][0].clone()).collect();
+    assert_eq!(json(&all)["sessions"], Value::Array(sessions));
 }

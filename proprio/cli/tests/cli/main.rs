@@ -19,6 +19,7 @@ mod convert;
 mod damaged_recordings;
 mod drive;
 mod earlier_schema;
+mod estimate_recordings;
 mod estimates;
 mod figures;
 #[cfg(unix)]
@@ -38,6 +39,7 @@ mod recording_live;
 mod recordings;
 mod remedies;
 mod report;
+mod report_contents;
 mod report_numbers;
 mod restarts;
 mod simulate;

@@ -3,20 +3,22 @@
 //! Values that the new format can hold are exact to the bit; the others are reported.
 
 mod samples;
+mod session_recorder;
 mod to_csv;
 mod to_recording;
 
 use std::io::Write;
 use std::path::Path;
 
-use samples::Samples;
+use samples::{SampleEncoder, WORK};
+pub use session_recorder::SessionRecorder;
 use telemetry::{Encoder, MAX_FRAME, MAX_SEGMENTS, Message};
 
 use crate::recording::{Item, Reader};
 use crate::source::SessionFile;
 use crate::{
     Error, Existing, FileFormat, Header, OutputFile, Progress, RequiredColumns, SessionError, SessionProblem,
-    SessionReader, WrittenFile, is_stdout,
+    SessionReader, WrittenFile,
 };
 
 /// A complete conversion.
@@ -38,7 +40,7 @@ pub fn convert(
     existing: Existing,
     progress: &mut dyn Progress,
 ) -> Result<Converted, Error> {
-    let kind = output_kind(output)?;
+    let kind = FileFormat::of_output(output).ok_or_else(|| Error::OutputKind(output.to_owned()))?;
     let header = Header::of(input)?;
     if header.kind == kind {
         return Err(Error::SameKind(input.to_owned()));
@@ -85,18 +87,6 @@ fn any_columns(input: &Path, header: &Header) -> Result<SessionReader, SessionEr
     SessionReader::open(input, &RequiredColumns { bend: vec![None; header.segments], truth: false })
 }
 
-fn output_kind(output: &Path) -> Result<FileFormat, Error> {
-    if is_stdout(output) {
-        return Ok(FileFormat::Csv);
-    }
-    match output.extension().unwrap_or_default().to_ascii_lowercase().to_str() {
-        Some("csv") => Ok(FileFormat::Csv),
-        Some("mcap") => Ok(FileFormat::Recording),
-        Some("bin") => Ok(FileFormat::Raw),
-        _ => Err(Error::OutputKind(output.to_owned())),
-    }
-}
-
 /// The bytes of a recording, one after the other.
 fn extract(input: &Path, mut file: OutputFile, has_truth: bool) -> Result<(OutputFile, Vec<String>), Error> {
     let fail = |problem| SessionError { path: input.to_owned(), line: None, column: None, problem };
@@ -127,13 +117,15 @@ fn extract(input: &Path, mut file: OutputFile, has_truth: bool) -> Result<(Outpu
 
 /// A CSV's samples as a board would send them.
 fn frames(
-    reader: SessionReader,
+    mut reader: SessionReader,
     mut file: OutputFile,
     progress: &mut dyn Progress,
 ) -> Result<(OutputFile, Vec<String>), Error> {
-    let has_truth = reader.has_truth();
-    let mut samples = Samples::new(reader, progress);
-    while let Some((frame, ..)) = samples.next()? {
+    let (has_truth, segments) = (reader.has_truth(), reader.segments());
+    let mut samples = SampleEncoder::new(segments);
+    while let Some(row) = reader.next_row()? {
+        progress.advance(WORK, reader.progress());
+        let (frame, _) = samples.encode(&row);
         file.write_all(&frame).map_err(|error| file.error(error))?;
     }
     let truth = has_truth.then(|| "the truth is left out".to_owned());

@@ -1,9 +1,9 @@
-//! The rows of a CSV as a board's samples.
+//! Rows as a board's samples.
 
 use estimator_core::ImuReading;
 use telemetry::{Encoder, MAX_FRAME, Message, Sample};
 
-use crate::{Error, Progress, Row, SessionReader};
+use crate::Row;
 
 /// Name of the work in its progress.
 pub const WORK: &str = "converting";
@@ -11,39 +11,38 @@ pub const WORK: &str = "converting";
 /// Units of 2⁻³⁰ in one of a BNO055.
 const UNIT: i32 = 1 << 16;
 
-/// Samples, numbered as ticks, and their frames.
-pub struct Samples<'p> {
-    reader: SessionReader,
+/// Encoder of samples, numbered as ticks, and their frames.
+pub struct SampleEncoder {
+    segments: usize,
     encoder: Encoder,
     tick: u32,
     tare: u8,
     headings: u64,
     rounded: u64,
-    progress: &'p mut dyn Progress,
 }
 
-impl<'p> Samples<'p> {
-    pub fn new(reader: SessionReader, progress: &'p mut dyn Progress) -> Self {
-        Self { reader, encoder: Encoder::new(), tick: 0, tare: 0, headings: 0, rounded: 0, progress }
+impl SampleEncoder {
+    /// For an arm of so many segments.
+    pub fn new(segments: usize) -> Self {
+        Self { segments, encoder: Encoder::new(), tick: 0, tare: 0, headings: 0, rounded: 0 }
     }
 
-    /// The next row with its sample and the frame that holds it.
-    pub fn next(&mut self) -> Result<Option<(Vec<u8>, Sample, Row)>, Error> {
-        let Some(row) = self.reader.next_row()? else { return Ok(None) };
-        self.progress.advance(WORK, self.reader.progress());
+    /// The frame of a row's sample, and the sample. A board's sample keeps its number and time.
+    pub fn encode(&mut self, row: &Row) -> (Vec<u8>, Sample) {
         if row.starts && self.tick > 0 {
             self.tare = self.tare.wrapping_add(1);
         }
-        let segments = self.reader.bend_sensors().count();
-        let bend = row.sample.bend.iter().take(segments).flatten().copied().collect();
-        let readings = row.sample.imu.iter().take(segments);
+        let bend = row.sample.bend.iter().take(self.segments).flatten().copied().collect();
+        let readings = row.sample.imu.iter().take(self.segments);
         let imu = readings.map(|reading| reading.map(|reading| self.quaternion(reading))).collect();
-        let sample = Sample { tick: self.tick, time_us: row.sample.time_us, tare_epoch: self.tare, bend, imu };
+        let (tick, time_us) =
+            row.board.as_ref().map_or((self.tick, row.sample.time_us), |board| (board.tick, board.time_us));
+        let sample = Sample { tick, time_us, tare_epoch: self.tare, bend, imu };
         self.tick += 1;
         let mut buffer = [0; MAX_FRAME];
         let frame =
             self.encoder.encode(&Message::Sample(sample.clone()), &mut buffer).expect("every sample fits a frame");
-        Ok(Some((frame.to_vec(), sample, row)))
+        (frame.to_vec(), sample)
     }
 
     /// A reading in the units of a BNO055.

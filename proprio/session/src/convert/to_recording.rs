@@ -6,34 +6,27 @@ use std::path::Path;
 
 use telemetry::{Decoder, Message};
 
-use super::samples::Samples;
+use super::samples::WORK;
+use super::session_recorder::{NO_ARRIVAL, SessionRecorder};
 use crate::recording::Recorder;
 use crate::{Error, HostNs, OutputFile, Progress, SessionError, SessionProblem, SessionReader};
 
-const NO_ARRIVAL: &str = "there are no times of arrival; those of the samples, from 1970 on, stand for them";
-
 /// The samples of a CSV, as a board would have sent them.
 pub fn of_samples(
-    reader: SessionReader,
+    mut reader: SessionReader,
     file: OutputFile,
     path: &Path,
     progress: &mut dyn Progress,
 ) -> Result<(OutputFile, Vec<String>), Error> {
     let failed = |source| Error::Output { path: path.to_owned(), source };
+    // Both are those of the first rows, which are read ahead.
     let (has_truth, segments) = (reader.has_truth(), reader.segments());
-    let mut samples = Samples::new(reader, progress);
-    let mut recorder = Recorder::new(file, HostNs(0), "CSV").map_err(failed)?;
-    while let Some((frame, sample, row)) = samples.next()? {
-        let at = HostNs(sample.time_us.saturating_mul(1000));
-        recorder.bytes(at, &frame).map_err(failed)?;
-        let tick = sample.tick;
-        recorder.message(at, &Message::Sample(sample)).map_err(failed)?;
-        if has_truth {
-            recorder.truth(at, tick, &row.truth[..segments]).map_err(failed)?;
-        }
+    let mut recorder = SessionRecorder::new(file, segments, "CSV").map_err(failed)?;
+    while let Some(row) = reader.next_row()? {
+        progress.advance(WORK, reader.progress());
+        recorder.row(&row, has_truth).map_err(failed)?;
     }
-    let file = recorder.finish().map_err(failed)?;
-    Ok((file, [NO_ARRIVAL.to_owned()].into_iter().chain(samples.rounded()).collect()))
+    recorder.finish().map_err(failed)
 }
 
 /// Raw bytes, frame by frame.
