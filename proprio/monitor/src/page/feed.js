@@ -4,8 +4,8 @@
 const RETRY = 1000;
 
 /**
- * Keeps a WebSocket to the server and calls these `handlers`: `arm(message)`, `history(buffer)`, `rows(message)`,
- * `status(message)`, `skipped(count)`, `gone()`.
+ * Keeps a WebSocket to the server and calls these `handlers`: `arm(message)`, `history(buffer)`, `arrived(newest_us)`,
+ * `rows(message)`, `status(message)`, `delivery(message)`, `gone()`.
  */
 export class Feed {
   constructor(handlers) {
@@ -31,13 +31,16 @@ export class Feed {
         this.catchUp();
         break;
       case 'rows':
+        // The server holds back a page that does not confirm.
+        this.send({ taken_us: message.newest_us });
+        this.handlers.arrived(message.newest_us);
         if (this.waiting) this.waiting.push(message); else this.handlers.rows(message);
         break;
       case 'status':
         this.handlers.status(message);
         break;
-      case 'skipped':
-        this.handlers.skipped(message.messages);
+      case 'delivery':
+        this.handlers.delivery(message);
         break;
     }
   }
@@ -57,8 +60,10 @@ export class Feed {
   }
 
   /** Reports the batch that is on the screen. */
-  shown(newest_us) {
-    if (this.socket.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify({ shown_us: newest_us }));
+  shown(newest_us) { this.send({ shown_us: newest_us }); }
+
+  send(report) {
+    if (this.socket.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify(report));
   }
 }
 
