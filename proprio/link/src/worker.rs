@@ -5,7 +5,7 @@ use std::sync::mpsc::{Receiver, TryRecvError};
 use std::time::{Duration, Instant};
 
 use proprio_session::{HostClock, HostNs};
-use telemetry::Message;
+use telemetry::{Command, Message, SetPressures};
 
 use crate::event::{EventKind, LinkEvent};
 use crate::requests::Requests;
@@ -99,7 +99,12 @@ impl Worker {
     fn take_requests(&mut self) -> Result<(), LinkDropped> {
         loop {
             match self.received.try_recv() {
-                Ok(LinkRequest::Command(command, answer)) => self.requests.push(*command, answer),
+                Ok(LinkRequest::Command(command, answer)) => {
+                    if let Some(asked) = set_points(&command) {
+                        self.publish(EventKind::SetPoints(asked));
+                    }
+                    self.requests.push(*command, answer);
+                }
                 Ok(LinkRequest::Stop) | Err(TryRecvError::Disconnected) => return Err(LinkDropped),
                 Err(TryRecvError::Empty) => return Ok(()),
             }
@@ -138,6 +143,15 @@ impl Worker {
 
     fn publish_at(&self, at: HostNs, kind: EventKind) {
         self.shared.publish(&LinkEvent { at, gaps: self.decoder.gaps(), kind });
+    }
+}
+
+/// The pressures that a command requests; none of one that vents the arm.
+fn set_points(command: &Command) -> Option<SetPressures> {
+    match command {
+        Command::SetPressures(asked) => Some(asked.clone()),
+        Command::Disarm => Some(SetPressures { pressures_pa: [].into_iter().collect(), valid_ms: 0 }),
+        _ => None,
     }
 }
 

@@ -171,17 +171,10 @@ pub(super) async fn control(State(state): State<AppState>, headers: HeaderMap, b
     // This handler is dropped with its connection: nothing is sent for a page that has gone, except what vents.
     let page = Arc::new(());
     let asker = Arc::downgrade(&page);
-    let asked_pa = match &command {
-        Command::SetPressures(asked) => asked.pressures_pa.to_vec(),
-        _ => Vec::new(),
-    };
     let kept = (command == Command::Disarm).then(|| Arc::clone(&page));
     let requested = run_blocking(move || {
         let done = shared.link.as_ref().map(|link| link.request_of(&asker, command));
         drop(kept);
-        if matches!(done, Some(Ok(()))) {
-            *shared.asked_pa() = asked_pa;
-        }
         done
     });
     match requested.await? {

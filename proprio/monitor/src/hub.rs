@@ -78,6 +78,7 @@ impl<'t> Hub<'t> {
                 history.push(&row);
             }
         }
+        self.live.restart_rates();
         self.shared.replace(size, history);
     }
 
@@ -136,7 +137,6 @@ impl<'t> Hub<'t> {
     }
 
     fn send_rows(&mut self) {
-        self.live.asked_pa.clone_from(&self.shared.asked_pa());
         let batch = std::mem::take(&mut self.batch);
         if !batch.rows.is_empty() {
             self.shared.publish(&Feed::Rows(batch));

@@ -46,7 +46,7 @@ pub(super) struct Live<'t> {
     /// Regulators of the board's arm.
     regulators: usize,
     /// Pressures that the host has requested last, Pa.
-    pub asked_pa: Vec<u32>,
+    asked_pa: Vec<u32>,
     totals: Totals,
     totals_before: VecDeque<Totals>,
 }
@@ -83,7 +83,9 @@ impl<'t> Live<'t> {
             EventKind::Opened(_) => self.assembler.line_opened(),
             EventKind::Restarted | EventKind::Lost(_) | EventKind::Ended(_) => {
                 (self.health, self.uncertainty) = (None, None);
+                self.asked_pa.clear();
             }
+            EventKind::SetPoints(asked) => self.asked_pa = asked.pressures_pa.to_vec(),
             EventKind::Undecoded(_) | EventKind::Mismatch(_) => {}
         }
         None
@@ -192,6 +194,11 @@ impl<'t> Live<'t> {
     /// All sensors, bend sensors first, then IMUs.
     pub fn sensors(&self) -> Vec<SensorHealth> {
         self.health.iter().flat_map(|health| health.bend.iter().chain(&health.imu).copied()).collect()
+    }
+
+    /// Begins to count messages from now on, behind those of a history.
+    pub fn restart_rates(&mut self) {
+        self.totals = Totals::default();
     }
 
     /// Rates over the last two seconds; called a few times per second.

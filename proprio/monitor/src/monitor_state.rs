@@ -44,8 +44,6 @@ pub(super) struct MonitorState {
     history: Mutex<History>,
     status: Mutex<Utf8Bytes>,
     recording: Mutex<Option<Recording>>,
-    /// Pressures that a page has requested last, Pa; empty before the first, and after the arm was vented.
-    asked_pa: Mutex<Vec<u32>>,
     /// Number of tables that were taken from the board.
     board_tables: AtomicU32,
 }
@@ -60,7 +58,7 @@ impl MonitorState {
         help: fn(&Error) -> String,
     ) -> Self {
         let history = Mutex::new(History::new(arm.columns.len()));
-        let (status, recording, asked_pa, board_tables) = Default::default();
+        let (status, recording, board_tables) = Default::default();
         let (feed, _) = broadcast::channel(CAPACITY);
         let arm = Mutex::new(arm);
         Self {
@@ -75,7 +73,6 @@ impl MonitorState {
             history,
             status,
             recording,
-            asked_pa,
             board_tables,
         }
     }
@@ -117,11 +114,6 @@ impl MonitorState {
 
     pub fn board_tables(&self) -> u32 {
         self.board_tables.load(Ordering::Relaxed)
-    }
-
-    /// Pressures that a page has requested last, Pa.
-    pub fn asked_pa(&self) -> MutexGuard<'_, Vec<u32>> {
-        lock(&self.asked_pa)
     }
 
     pub fn history(&self) -> MutexGuard<'_, History> {

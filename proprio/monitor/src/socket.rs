@@ -1,7 +1,8 @@
 //! The feed to one page, over a WebSocket.
 //!
 //! A page confirms each batch of rows. While it has many unconfirmed ones, only the newest batch waits for it: a slow page loses
-//! batches, and does not fall behind.
+//! batches, and does not fall behind. The limit is halved with each late confirmation and grows by one with any other, as the
+//! window of TCP does.
 
 use std::collections::VecDeque;
 
@@ -19,14 +20,14 @@ use super::monitor_state::Published;
 /// Longest message of a page, bytes.
 const LONGEST: usize = 4096;
 
-/// Most batches that a page has not confirmed: those of 0.16 s.
-const WINDOW: usize = 16;
+/// Largest number of batches that a page has not confirmed: those of a second.
+const LARGEST: usize = 100;
 
-/// Unconfirmed batches of a page that is slower than [`SLOW_US`].
-const SLOW_WINDOW: usize = 2;
+/// Smallest limit of a slow page.
+const SMALLEST: usize = 2;
 
-/// Time from a batch's sample to its confirmation from which a page is slow, µs.
-const SLOW_US: u64 = 300_000;
+/// Time from a batch's sample to its confirmation from which it is late, µs.
+const LATE_US: u64 = 300_000;
 
 /// Report of a page. Times are the [`newest_us`](super::feed::Batch::newest_us) of a batch.
 #[derive(Debug, Deserialize)]
@@ -39,10 +40,11 @@ enum Report {
 }
 
 /// Messages that wait for one page, and those that it has not confirmed.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 struct Outbox {
-    /// Times of the batches that are not confirmed.
+    /// Times of the batches that are not confirmed, and their largest number.
     unconfirmed_us: VecDeque<u64>,
+    limit: usize,
     rows: Option<(Utf8Bytes, u64)>,
     status: Option<Utf8Bytes>,
     /// Batches that were dropped for newer ones.
@@ -50,6 +52,10 @@ struct Outbox {
 }
 
 impl Outbox {
+    fn new() -> Self {
+        Self { unconfirmed_us: VecDeque::new(), limit: LARGEST, rows: None, status: None, skipped: 0 }
+    }
+
     /// Takes a message of the monitor, in place of an older one that waits.
     fn push(&mut self, message: Published) -> Option<Utf8Bytes> {
         match message {
@@ -69,16 +75,17 @@ impl Outbox {
         }
     }
 
-    fn confirm(&mut self, taken_us: u64) {
-        while self.unconfirmed_us.front().is_some_and(|newest_us| *newest_us <= taken_us) {
-            self.unconfirmed_us.pop_front();
+    /// Takes the confirmation of the batches up to this time.
+    fn confirm(&mut self, taken_us: u64, now_us: u64) {
+        while let Some(newest_us) = self.unconfirmed_us.pop_front_if(|newest_us| *newest_us <= taken_us) {
+            let is_late = now_us.saturating_sub(newest_us) > LATE_US;
+            self.limit = if is_late { (self.limit / 2).max(SMALLEST) } else { (self.limit + 1).min(LARGEST) };
         }
     }
 
     /// The messages that the page can take now.
-    fn take(&mut self, now_us: u64) -> impl Iterator<Item = Utf8Bytes> {
-        let is_slow = self.unconfirmed_us.front().is_some_and(|newest_us| now_us.saturating_sub(*newest_us) > SLOW_US);
-        let has_room = self.unconfirmed_us.len() < if is_slow { SLOW_WINDOW } else { WINDOW };
+    fn take(&mut self) -> impl Iterator<Item = Utf8Bytes> {
+        let has_room = self.unconfirmed_us.len() < self.limit;
         let rows = self.rows.take_if(|_| has_room);
         self.unconfirmed_us.extend(rows.as_ref().map(|(_, newest_us)| *newest_us));
         rows.map(|(json, _)| json).into_iter().chain(self.status.take_if(|_| has_room))
@@ -95,7 +102,7 @@ pub(super) async fn feed(State(state): State<AppState>, upgrade: WebSocketUpgrad
 
 async fn serve(AppState { monitor, .. }: AppState, mut socket: WebSocket) -> Result<(), axum::Error> {
     let mut feed = monitor.feed.subscribe();
-    let (mut outbox, mut latency) = (Outbox::default(), Latency::default());
+    let (mut outbox, mut latency) = (Outbox::new(), Latency::default());
     let arm = text(&Feed::Arm(&monitor.arm()));
     socket.send(arm).await?;
     loop {
@@ -116,16 +123,15 @@ async fn serve(AppState { monitor, .. }: AppState, mut socket: WebSocket) -> Res
             report = socket.recv() => {
                 let Some(report) = report.transpose()? else { return Ok(()) };
                 let Message::Text(report) = report else { continue };
+                let now_us = monitor.clock.now().0 / 1000;
                 match serde_json::from_str(&report) {
-                    Ok(Report::TakenUs(taken_us)) => outbox.confirm(taken_us),
-                    Ok(Report::ShownUs(shown_us)) => {
-                        latency.push((monitor.clock.now().0 / 1000).saturating_sub(shown_us));
-                    }
+                    Ok(Report::TakenUs(taken_us)) => outbox.confirm(taken_us, now_us),
+                    Ok(Report::ShownUs(shown_us)) => latency.push(now_us.saturating_sub(shown_us)),
                     Err(_) => {}
                 }
             }
         }
-        for json in outbox.take(monitor.clock.now().0 / 1000) {
+        for json in outbox.take() {
             socket.send(Message::Text(json)).await?;
         }
     }
@@ -137,49 +143,51 @@ fn text(message: &Feed) -> Message {
 
 #[cfg(test)]
 mod tests {
-    use super::{Outbox, Published, SLOW_US, WINDOW};
+    use super::{LARGEST, LATE_US, Outbox, Published};
 
-    fn batch(newest_us: u64) -> Published {
-        Published::Rows(newest_us.to_string().into(), newest_us)
-    }
+    /// Time from one batch to the next, µs.
+    const BATCH_US: u64 = 10_000;
 
-    /// Takes batches at 10 ms each; returns the times of those that are sent.
-    fn send(outbox: &mut Outbox, times_us: impl Iterator<Item = u64>) -> Vec<u64> {
-        let mut sent = Vec::new();
-        for newest_us in times_us {
-            outbox.push(batch(newest_us));
-            sent.extend(outbox.take(newest_us).map(|json| json.parse::<u64>().expect("a time")));
-        }
-        sent
+    /// Pushes the batch of this time; returns the times of the batches that are sent.
+    fn send(outbox: &mut Outbox, newest_us: u64) -> Vec<u64> {
+        outbox.push(Published::Rows(newest_us.to_string().into(), newest_us));
+        outbox.take().map(|json| json.parse().expect("a time")).collect()
     }
 
     #[test]
     fn a_page_that_confirms_nothing_gets_the_newest_batch_once_it_does() {
-        let mut outbox = Outbox::default();
-        let second = (0..100).map(|i| i * 10_000);
-        assert_eq!(send(&mut outbox, second).len(), WINDOW);
-        assert_eq!(outbox.skipped, 100 - WINDOW as u64 - 1);
-        outbox.confirm(150_000);
-        assert_eq!(outbox.take(1_000_000).collect::<Vec<_>>(), ["990000"]);
+        let mut outbox = Outbox::new();
+        let sent: Vec<u64> = (0..300).flat_map(|i| send(&mut outbox, i * BATCH_US)).collect();
+        assert_eq!((sent.len(), outbox.skipped), (LARGEST, 300 - LARGEST as u64 - 1));
+        outbox.confirm(sent[LARGEST - 1], 300 * BATCH_US);
+        assert_eq!(outbox.take().collect::<Vec<_>>(), [(299 * BATCH_US).to_string()]);
     }
 
     #[test]
     fn a_page_that_confirms_at_once_gets_every_batch() {
-        let mut outbox = Outbox::default();
+        let mut outbox = Outbox::new();
         for i in 0..1000 {
-            assert_eq!(send(&mut outbox, std::iter::once(i * 10_000)).len(), 1);
-            outbox.confirm(i * 10_000);
+            assert_eq!(send(&mut outbox, i * BATCH_US).len(), 1);
+            outbox.confirm(i * BATCH_US, i * BATCH_US + LATE_US);
         }
         assert_eq!(outbox.skipped, 0);
     }
 
+    /// A page that takes one batch in the time of ten.
     #[test]
-    fn a_slow_page_has_few_batches_on_their_way() {
-        let mut outbox = Outbox::default();
-        send(&mut outbox, [0, 10_000, 20_000].into_iter());
-        outbox.confirm(0);
-        assert!(send(&mut outbox, std::iter::once(20_000 + SLOW_US)).is_empty());
-        outbox.confirm(20_000);
-        assert_eq!(outbox.take(30_000 + SLOW_US).count(), 1);
+    fn a_page_that_stays_slow_is_soon_less_than_a_second_behind() {
+        let (mut outbox, mut on_their_way) = (Outbox::new(), std::collections::VecDeque::new());
+        let mut behind_us = 0;
+        for i in 0..3000 {
+            let now_us = i * BATCH_US;
+            on_their_way.extend(send(&mut outbox, now_us));
+            if i % 10 == 0
+                && let Some(taken_us) = on_their_way.pop_front()
+            {
+                outbox.confirm(taken_us, now_us);
+                behind_us = now_us - taken_us;
+            }
+            assert!(i < 1500 || behind_us < 1_000_000, "{behind_us} at {now_us}");
+        }
     }
 }

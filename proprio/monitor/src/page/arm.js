@@ -48,15 +48,12 @@ function line(x, y, heading, theta, end, geometry) {
 /** Semi-axis of a 95 % ellipse in standard deviations: the root of χ² with two degrees of freedom. */
 const SIGMAS = Math.sqrt(5.991);
 
-/** Semi-axes of the 95 % ellipse of a covariance xx, xy, yy in mm², mm. */
-export function semiAxes([xx, xy, yy]) {
+/** Semi-axes, mm, and angle of the longer one from x to y, rad, of the 95 % ellipse of a covariance xx, xy, yy in mm². */
+export function ellipse([xx, xy, yy]) {
   const mean = (xx + yy) / 2, spread = Math.hypot((xx - yy) / 2, xy);
   const axis = (variance) => SIGMAS * Math.sqrt(Math.max(0, variance));
-  return { major: axis(mean + spread), minor: axis(mean - spread) };
+  return { major: axis(mean + spread), minor: axis(mean - spread), turn: Math.atan2(2 * xy, xx - yy) / 2 };
 }
-
-/** Angle of the longer axis from x to y, rad. */
-const turnOf = ([xx, xy, yy]) => Math.atan2(2 * xy, xx - yy) / 2;
 
 /** Covariance xx, xy, yy of each segment's end in one row, mm²; NaN where it is not known. */
 export function covariances(store, row) {
@@ -87,9 +84,9 @@ export function drawArm(c, width, height, { store, row, geometry, colours }) {
   segments.forEach(({ end, heading }, i) => {
     joint(c, to(end), heading, thick, colours);
     if (!covariance[i]?.every(Number.isFinite)) return;
-    const { major, minor } = semiAxes(covariance[i]);
+    const { major, minor, turn } = ellipse(covariance[i]);
     c.beginPath();
-    c.ellipse(...to(end), major * scale, minor * scale, -turnOf(covariance[i]), 0, 2 * Math.PI);
+    c.ellipse(...to(end), major * scale, minor * scale, -turn, 0, 2 * Math.PI);
     c.strokeStyle = colours.ink;
     c.lineWidth = 1.5;
     c.stroke();

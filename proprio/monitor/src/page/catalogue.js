@@ -1,6 +1,6 @@
 // Kinds of plots, and the curves of each, from the columns of the rows.
 
-import { semiAxes } from './arm.js';
+import { ellipse } from './arm.js';
 
 /** Voltage of one count of the board's converter, V. */
 const VOLT = 3.3 / 4095;
@@ -8,7 +8,7 @@ const VOLT = 3.3 / 4095;
 /**
  * Kinds of plots, in the order of the menu: `least` is the smallest range of values, `digits` those behind the point. A curve has
  * a name, the name of its column, and the number of its colour; the `segment` that shows and hides it, if it is of one; and
- * `isSecond` where another curve has the same colour.
+ * `isSecond` where another curve has the same colour, and `isOptional` where its values are shown only if there are any.
  */
 export const KINDS = [
   { id: 'theta', title: 'Bend angle θ', unit: '°', least: 20, digits: 2, curves: segments('theta', '_deg') },
@@ -73,7 +73,7 @@ function tip(store) {
   if (!n) return [];
   return [
     { name: 'tip x', short: 'x', column: `x${n}_mm`, colour: 0 }, { name: 'tip y', short: 'y', column: `y${n}_mm`, colour: 1 },
-    { name: 'true x', short: 'true x', column: `truth${n}_x_mm`, colour: 0, isSecond: true }, { name: 'true y', short: 'true y', column: `truth${n}_y_mm`, colour: 1, isSecond: true },
+    { name: 'true x', short: 'true x', column: `truth${n}_x_mm`, colour: 0, isSecond: true, isOptional: true }, { name: 'true y', short: 'true y', column: `truth${n}_y_mm`, colour: 1, isSecond: true, isOptional: true },
   ];
 }
 
@@ -83,11 +83,11 @@ function tipError(store) {
   const [x, y, trueX, trueY] = [`x${n}_mm`, `y${n}_mm`, `truth${n}_x_mm`, `truth${n}_y_mm`].map((name) => store.column(name));
   store.derive('tip_error_mm', (row) => Math.hypot(x[row] - trueX[row], y[row] - trueY[row]));
   const covariance = ['xx', 'xy', 'yy'].map((part) => store.column(`end${n}_${part}_mm2`));
-  const axes = (row) => semiAxes(covariance.map((part) => part[row]));
+  const axes = (row) => ellipse(covariance.map((part) => part[row]));
   store.derive('tip_major_mm', (row) => axes(row).major);
   store.derive('tip_minor_mm', (row) => axes(row).minor);
   return [
-    { name: 'tip error', short: 'error', column: 'tip_error_mm', colour: 0 },
+    { name: 'tip error', short: 'error', column: 'tip_error_mm', colour: 0, isOptional: true },
     { name: 'longer semi-axis', short: 'longer semi-axis', column: 'tip_major_mm', colour: 1 },
     { name: 'shorter semi-axis', short: 'shorter semi-axis', column: 'tip_minor_mm', colour: 2 },
   ];
@@ -97,7 +97,7 @@ function pressures(store) {
   return store.numbers('pressure', '_set_kpa').flatMap((i) => {
     const module = `${(i + 1) >> 1} ${i % 2 ? 'right' : 'left'}`;
     return [['set', ''], ['asked', 'requested ']].map(([what, before]) => ({
-      name: `${before}module ${module}`, short: `${before}${module}`, column: `pressure${i}_${what}_kpa`, colour: i - 1, isSecond: what === 'asked',
+      name: `${before}module ${module}`, short: `${before}${module}`, column: `pressure${i}_${what}_kpa`, colour: i - 1, isSecond: what === 'asked', isOptional: what === 'asked',
     }));
   });
 }

@@ -145,16 +145,16 @@ export class Figures {
 
   read(figure, readings, row, at) {
     text(readings.firstElementChild, at);
-    figure.curves.forEach(({ column, segment }, i) => {
+    figure.curves.forEach(({ column, segment, isOptional }, i) => {
       const value = readings.children[i + 1];
-      value.hidden = this.app.hidden.has(segment);
+      value.hidden = this.app.hidden.has(segment) || (isOptional && !Number.isFinite(column[row]));
       text(value.lastElementChild, shownValue(column[row], figure.kind.digits));
     });
   }
 
   /** Names and values of the curves that are seen, at one row. */
   legend(figure, row) {
-    return this.seen(figure).map(({ name, column, colour, isSecond }) => ({ name, colour, isSecond, value: shownValue(column[row], figure.kind.digits) }));
+    return this.seen(figure).filter(({ column, isOptional }) => !isOptional || Number.isFinite(column[row])).map(({ name, column, colour, isSecond }) => ({ name, colour, isSecond, value: shownValue(column[row], figure.kind.digits) }));
   }
 }
 

@@ -257,7 +257,7 @@ function draw(isAll) {
 function showMoment() {
   const { store, view } = app;
   if (!store?.count) return;
-  const isNow = view.cursor === null, time = view.cursor ?? view.last(store);
+  const isNow = view.cursor === null, time = store.times[store.rowAt(view.cursor ?? view.last(store))];
   const before = !app.session && !isNow ? `, ${clock(store.last - time, 0.1)} ago` : '';
   text($('moment'), isNow ? `now, ${clock(time)}` : `at ${clock(time)}${app.isPlaying ? ', playing' : `, picked${before}`}`);
   $('moment').dataset.state = isNow ? 'ok' : 'wait';

@@ -113,7 +113,7 @@ const SECONDS = [1, 2, 5, 10, 15, 30, 60, 120, 300, 600, 900, 1800, 3600];
 
 /** Ticks of time, at most about this number. */
 export function timeTicks(from, to, about) {
-  const rough = (to - from) / about;
+  const rough = (to - from) / about - 1e-9;
   if (rough <= 0.5) return ticks(from, to, about);
   const step = SECONDS.find((candidate) => candidate >= rough) ?? Math.ceil(rough / 3600) * 3600;
   const found = [];
