@@ -4,7 +4,7 @@ use std::net::SocketAddr;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use proprio_link::Link;
 use proprio_session::NoProgress;
@@ -18,8 +18,8 @@ use crate::error::Error;
 /// Time between two looks at the link.
 const PERIOD: Duration = Duration::from_millis(100);
 
-/// Number of attempts to read a board's table.
-const ATTEMPTS: u32 = 5;
+/// Time after a failed attempt to read a board's table.
+const RETRY: Duration = Duration::from_secs(2);
 
 /// State of the thread.
 pub(super) struct BoardAccess {
@@ -35,7 +35,7 @@ impl BoardAccess {
     /// Works until `stop` is set.
     pub fn run(self, link: &Link, stop: &AtomicBool) {
         let mut announcement = None;
-        let (mut taken, mut failures) = (0, 0);
+        let (mut taken, mut due) = (0, Instant::now());
         while !stop.load(Ordering::Relaxed) {
             std::thread::sleep(PERIOD);
             let state = link.state();
@@ -43,16 +43,16 @@ impl BoardAccess {
                 announcement = self.announce(line);
             }
             let Some(hello) = state.hello.filter(|_| state.is_connected) else { continue };
-            if self.shared.sessions.is_table_given() || hello.table == taken || failures == ATTEMPTS {
+            if self.shared.sessions.is_table_given() || hello.table == taken || Instant::now() < due {
                 continue;
             }
             match board_table(link, hello.table) {
                 Ok(table) => {
                     self.shared.set_board_table(table);
-                    (taken, failures) = (hello.table, 0);
+                    taken = hello.table;
                 }
-                // The line may have lost it.
-                Err(_) => failures += 1,
+                // The line may have lost it, or the board is busy.
+                Err(_) => due = Instant::now() + RETRY,
             }
         }
     }

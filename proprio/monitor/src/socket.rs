@@ -2,7 +2,7 @@
 //!
 //! A page confirms each batch of rows. While it has many unconfirmed ones, only the newest batch waits for it: a slow page loses
 //! batches, and does not fall behind. The limit is halved with each late confirmation and grows by one with any other, as the
-//! window of TCP does.
+//! window of TCP does. A client that confirms nothing, such as the Python package, gets all that its line takes.
 
 use std::collections::VecDeque;
 
@@ -45,6 +45,8 @@ struct Outbox {
     /// Times of the batches that are not confirmed, and their largest number.
     unconfirmed_us: VecDeque<u64>,
     limit: usize,
+    /// The page has confirmed a batch, and will confirm others.
+    confirms: bool,
     rows: Option<(Utf8Bytes, u64)>,
     status: Option<Utf8Bytes>,
     /// Batches that were dropped for newer ones.
@@ -53,7 +55,7 @@ struct Outbox {
 
 impl Outbox {
     fn new() -> Self {
-        Self { unconfirmed_us: VecDeque::new(), limit: LARGEST, rows: None, status: None, skipped: 0 }
+        Self { unconfirmed_us: VecDeque::new(), limit: LARGEST, confirms: false, rows: None, status: None, skipped: 0 }
     }
 
     /// Takes a message of the monitor, in place of an older one that waits.
@@ -77,6 +79,7 @@ impl Outbox {
 
     /// Takes the confirmation of the batches up to this time.
     fn confirm(&mut self, taken_us: u64, now_us: u64) {
+        self.confirms = true;
         while let Some(newest_us) = self.unconfirmed_us.pop_front_if(|newest_us| *newest_us <= taken_us) {
             let is_late = now_us.saturating_sub(newest_us) > LATE_US;
             self.limit = if is_late { (self.limit / 2).max(SMALLEST) } else { (self.limit + 1).min(LARGEST) };
@@ -85,9 +88,11 @@ impl Outbox {
 
     /// The messages that the page can take now.
     fn take(&mut self) -> impl Iterator<Item = Utf8Bytes> {
-        let has_room = self.unconfirmed_us.len() < self.limit;
+        let has_room = !self.confirms || self.unconfirmed_us.len() < self.limit;
         let rows = self.rows.take_if(|_| has_room);
-        self.unconfirmed_us.extend(rows.as_ref().map(|(_, newest_us)| *newest_us));
+        if self.confirms {
+            self.unconfirmed_us.extend(rows.as_ref().map(|(_, newest_us)| *newest_us));
+        }
         rows.map(|(json, _)| json).into_iter().chain(self.status.take_if(|_| has_room))
     }
 }
@@ -155,8 +160,16 @@ mod tests {
     }
 
     #[test]
-    fn a_page_that_confirms_nothing_gets_the_newest_batch_once_it_does() {
+    fn a_client_that_confirms_nothing_gets_every_batch() {
         let mut outbox = Outbox::new();
+        assert_eq!((0..300).flat_map(|i| send(&mut outbox, i * BATCH_US)).count(), 300);
+        assert!(outbox.unconfirmed_us.is_empty());
+    }
+
+    #[test]
+    fn a_page_that_confirms_no_more_gets_the_newest_batch_once_it_does() {
+        let mut outbox = Outbox::new();
+        outbox.confirm(0, 0);
         let sent: Vec<u64> = (0..300).flat_map(|i| send(&mut outbox, i * BATCH_US)).collect();
         assert_eq!((sent.len(), outbox.skipped), (LARGEST, 300 - LARGEST as u64 - 1));
         outbox.confirm(sent[LARGEST - 1], 300 * BATCH_US);
@@ -177,6 +190,7 @@ mod tests {
     #[test]
     fn a_page_that_stays_slow_is_soon_less_than_a_second_behind() {
         let (mut outbox, mut on_their_way) = (Outbox::new(), std::collections::VecDeque::new());
+        outbox.confirm(0, 0);
         let mut behind_us = 0;
         for i in 0..3000 {
             let now_us = i * BATCH_US;

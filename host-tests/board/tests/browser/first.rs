@@ -21,8 +21,7 @@ fn the_board_s_own_table_gives_drift_from_its_first_tare_on_to_a_page_that_is_op
     browser.open("about:blank");
 
     browser.open(&run.address);
-    browser.wait_for(DRIFT);
-    assert!(browser.value("parseFloat(document.getElementById('time').textContent)").as_f64() > Some(6.0));
+    browser.wait_for(&format!("{DRIFT} && parseFloat(document.getElementById('time').textContent) > 6"));
     // The moment is before this page was opened.
     browser.value(
         "{ const scrub = document.getElementById('scrub'); scrub.value = 4; scrub.dispatchEvent(new Event('input')) }",

@@ -48,7 +48,7 @@ export class BoardPanel {
   }
 
   showPage(frames, rows, skipped) {
-    text(this.page, `${frames} frames/s, ${rows} rows${skipped ? `, ${skipped} batches skipped` : ''}`);
+    text(this.page, `${frames} frames/s, ${rows} rows${skipped ? `, ${skipped} ${skipped === 1 ? 'batch' : 'batches'} skipped` : ''}`);
   }
 }
 

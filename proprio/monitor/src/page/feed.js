@@ -1,5 +1,7 @@
 // The connection to the server.
 
+/** Time without a dropped batch after which the missing rows are fetched, ms. */
+const CALM = 10_000;
 /** Time between two attempts to connect, ms. */
 const RETRY = 1000;
 
@@ -40,6 +42,7 @@ export class Feed {
         this.handlers.status(message);
         break;
       case 'delivery':
+        this.fill(message.skipped);
         this.handlers.delivery(message);
         break;
     }
@@ -57,6 +60,15 @@ export class Feed {
     const waiting = this.waiting ?? [];
     this.waiting = null;
     waiting.forEach((message) => this.handlers.rows(message));
+  }
+
+  /** Fetches the rows of batches that the server has dropped, once this page keeps up again. */
+  fill(skipped) {
+    const now = performance.now();
+    if (skipped !== this.skipped) Object.assign(this, { skipped, skippedAt: now, hasGap: skipped > 0 });
+    if (!this.hasGap || this.waiting || now - this.skippedAt < CALM) return;
+    this.hasGap = false;
+    this.catchUp();
   }
 
   /** Reports the batch that is on the screen. */

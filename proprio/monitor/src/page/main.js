@@ -85,7 +85,7 @@ const feed = new Feed({
     else linkState('ok', 'live');
     const load = status.health ? `, load ${status.health.load_percent.toFixed(1)} %` : '';
     text($('glance'), status.waiting ? '' : `${status.samples_hz.toFixed(0)} samples/s, ${status.lost} lost${load}`);
-    recordState(Boolean(status.recording && !status.recording.failed), true);
+    recordState(Boolean(status.recording && !status.recording.failed), !status.waiting);
     control.status(app.arm, status.health, status.offers_table);
   },
   delivery(delivery) { app.delivery = delivery; },
