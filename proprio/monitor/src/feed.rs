@@ -103,6 +103,8 @@ pub(super) struct Batch {
     pub rows: Vec<(f64, Vec<f32>)>,
     /// Time of the last sample, µs by this program's clock: the page sends it back once it has drawn the row.
     pub newest_us: u64,
+    /// Time of the batch by the same clock, µs: the page sends it back when it has received it.
+    pub sent_us: u64,
 }
 
 /// Status of board and link.

@@ -137,8 +137,9 @@ impl<'t> Hub<'t> {
     }
 
     fn send_rows(&mut self) {
-        let batch = std::mem::take(&mut self.batch);
+        let mut batch = std::mem::take(&mut self.batch);
         if !batch.rows.is_empty() {
+            batch.sent_us = self.shared.clock.now().0 / 1000;
             self.shared.publish(&Feed::Rows(batch));
         }
     }

@@ -23,7 +23,7 @@ const CAPACITY: usize = 128;
 /// A message to every page.
 #[derive(Debug, Clone)]
 pub(super) enum Published {
-    /// A batch of rows, with the time of its last sample, µs by this program's clock.
+    /// A batch of rows, with its time, µs by this program's clock.
     Rows(Utf8Bytes, u64),
     Status(Utf8Bytes),
     Arm(Utf8Bytes),
@@ -124,7 +124,7 @@ impl MonitorState {
     pub fn publish(&self, message: &Feed) {
         let json = Utf8Bytes::from(message.json());
         let published = match message {
-            Feed::Rows(batch) => Published::Rows(json, batch.newest_us),
+            Feed::Rows(batch) => Published::Rows(json, batch.sent_us),
             Feed::Arm(_) => Published::Arm(json),
             Feed::Status(_) | Feed::Delivery(_) => {
                 lock(&self.status).clone_from(&json);

@@ -26,16 +26,16 @@ const LARGEST: usize = 100;
 /// Smallest limit of a slow page.
 const SMALLEST: usize = 2;
 
-/// Time from a batch's sample to its confirmation from which it is late, µs.
+/// Time from a batch to its confirmation from which that is late, µs.
 const LATE_US: u64 = 300_000;
 
-/// Report of a page. Times are the [`newest_us`](super::feed::Batch::newest_us) of a batch.
+/// Report of a page.
 #[derive(Debug, Deserialize)]
 #[serde(rename_all = "snake_case")]
 enum Report {
-    /// The batch was received.
+    /// The batch with this [`sent_us`](super::feed::Batch::sent_us) was received.
     TakenUs(u64),
-    /// The batch is on the screen.
+    /// The batch with this [`newest_us`](super::feed::Batch::newest_us) is on the screen.
     ShownUs(u64),
 }
 
@@ -61,8 +61,8 @@ impl Outbox {
     /// Takes a message of the monitor, in place of an older one that waits.
     fn push(&mut self, message: Published) -> Option<Utf8Bytes> {
         match message {
-            Published::Rows(json, newest_us) => {
-                self.skipped += u64::from(self.rows.replace((json, newest_us)).is_some());
+            Published::Rows(json, sent_us) => {
+                self.skipped += u64::from(self.rows.replace((json, sent_us)).is_some());
                 None
             }
             Published::Status(json) => {
@@ -80,8 +80,8 @@ impl Outbox {
     /// Takes the confirmation of the batches up to this time.
     fn confirm(&mut self, taken_us: u64, now_us: u64) {
         self.confirms = true;
-        while let Some(newest_us) = self.unconfirmed_us.pop_front_if(|newest_us| *newest_us <= taken_us) {
-            let is_late = now_us.saturating_sub(newest_us) > LATE_US;
+        while let Some(sent_us) = self.unconfirmed_us.pop_front_if(|sent_us| *sent_us <= taken_us) {
+            let is_late = now_us.saturating_sub(sent_us) > LATE_US;
             self.limit = if is_late { (self.limit / 2).max(SMALLEST) } else { (self.limit + 1).min(LARGEST) };
         }
     }
@@ -91,7 +91,7 @@ impl Outbox {
         let has_room = !self.confirms || self.unconfirmed_us.len() < self.limit;
         let rows = self.rows.take_if(|_| has_room);
         if self.confirms {
-            self.unconfirmed_us.extend(rows.as_ref().map(|(_, newest_us)| *newest_us));
+            self.unconfirmed_us.extend(rows.as_ref().map(|(_, sent_us)| *sent_us));
         }
         rows.map(|(json, _)| json).into_iter().chain(self.status.take_if(|_| has_room))
     }
@@ -154,8 +154,8 @@ mod tests {
     const BATCH_US: u64 = 10_000;
 
     /// Pushes the batch of this time; returns the times of the batches that are sent.
-    fn send(outbox: &mut Outbox, newest_us: u64) -> Vec<u64> {
-        outbox.push(Published::Rows(newest_us.to_string().into(), newest_us));
+    fn send(outbox: &mut Outbox, sent_us: u64) -> Vec<u64> {
+        outbox.push(Published::Rows(sent_us.to_string().into(), sent_us));
         outbox.take().map(|json| json.parse().expect("a time")).collect()
     }
 

@@ -19,25 +19,16 @@ fn a_slow_browser_shows_by_how_much_it_is_behind_catches_up_and_slows_no_other()
     slow.wait_for("/^behind by [2-9] s$/.test(document.getElementById('link').textContent)");
     slow.picture("behind.png");
     assert_eq!(other.text("link"), "live");
-    slow.wait_for("/[1-9]\\d* batch(es)? skipped/.test(document.getElementById('fact-page').textContent)");
+    slow.wait_for("/([4-9]\\d\\d|\\d{4,}) batches skipped/.test(document.getElementById('fact-page').textContent)");
     slow.value("clearInterval(window.busy)");
     slow.wait_for("document.getElementById('link').textContent === 'live'");
-
-    let latency_ms = |browser: &mut Browser, which: &str| {
-        let text = browser.text("fact-latency");
-        let parts = text.split([',', ';']).map(str::trim);
-        let found = parts.filter_map(|part| part.strip_suffix(which)?.strip_suffix(" ms ")?.parse::<u32>().ok()).next();
-        found.unwrap_or_else(|| panic!("{text}"))
-    };
-    assert!(latency_ms(&mut slow, "largest") > 1500, "{}", slow.text("fact-latency"));
-    assert!(latency_ms(&mut other, "at 95 %") < 1000, "{}", other.text("fact-latency"));
-    // The rows of the batches that it has missed are fetched.
+    // The number of rows is as much as a second old. The rows of the batches that it has missed are fetched.
     let rows = "Number(document.getElementById('fact-page').textContent.match(/(\\d+) rows/)?.[1])";
     let missing = format!(
         "(async () => {{ const history = await (await fetch('/history')).arrayBuffer(); \
          return (await import('/store.js')).headOf(history).about.rows - {rows} }})()"
     );
-    assert!(slow.value(&missing).as_f64() > Some(150.0));
+    assert!(slow.value(&missing).as_f64() > Some(250.0));
     slow.wait_for(&format!("{missing}.then((missing) => missing < 150)"));
     assert!(slow.errors.is_empty() && other.errors.is_empty(), "{:?} {:?}", slow.errors, other.errors);
 }

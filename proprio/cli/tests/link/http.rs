@@ -155,8 +155,8 @@ impl Socket {
     pub fn next(&mut self, kind: &str) -> Value {
         loop {
             let message = self.read();
-            if let Some(newest_us) = message["newest_us"].as_u64() {
-                self.send(&format!(r#"{{"taken_us":{newest_us}}}"#));
+            if let Some(sent_us) = message["sent_us"].as_u64() {
+                self.send(&format!(r#"{{"taken_us":{sent_us}}}"#));
             }
             if message["type"] == kind {
                 return message;

@@ -1,38 +1,33 @@
-// The time by which the picture is behind the board.
+// The time by which rows come late to this page.
 
-/** Time over which the least delay of the arrivals is kept, ms. */
+/** Time over which the least delay of the batches is kept, ms. */
 const PERIOD = 30_000;
 /** Time for which a delay is shown, ms. */
 const HOLD = 1500;
 /** Least delay that is shown, s. */
 const LEAST = 1;
 
-/** Times of samples are by the server's clock, µs; the others by the page's, ms. */
 export class Delay {
   constructor() { this.reset(); }
 
   reset() {
-    /** Least difference of the two clocks in this period and the one before: the delay is counted from it. */
+    /** Least difference of the page's clock and the server's, in this period and the one before: delays are counted from it. */
     this.least = [Infinity, Infinity];
-    this.begun = 0;
+    this.begun = this.until = 0;
     this.largest = 0;
-    this.until = 0;
   }
 
-  /** A batch has arrived. */
-  arrived(newest_us, now) {
+  /** A batch has arrived: its time by the server's clock, µs, and that by the page's, ms. */
+  arrived(sent_us, now) {
     if (now - this.begun > PERIOD) {
       this.begun = now;
       this.least = [Infinity, this.least[0]];
     }
-    this.least[0] = Math.min(this.least[0], now - newest_us / 1000);
-  }
-
-  /** The newest sample on the screen, when the next picture is drawn. */
-  shown(newest_us, now) {
-    const behind = (now - newest_us / 1000 - Math.min(...this.least)) / 1000;
-    if (behind < LEAST || !Number.isFinite(behind)) return;
-    if (behind > this.largest || now > this.until) this.largest = behind;
+    const difference = now - sent_us / 1000;
+    this.least[0] = Math.min(this.least[0], difference);
+    const late = (difference - Math.min(...this.least)) / 1000;
+    if (late < LEAST) return;
+    this.largest = now > this.until ? late : Math.max(late, this.largest);
     this.until = now + HOLD;
   }
 

@@ -6,7 +6,7 @@ const CALM = 10_000;
 const RETRY = 1000;
 
 /**
- * Keeps a WebSocket to the server and calls these `handlers`: `arm(message)`, `history(buffer)`, `arrived(newest_us)`,
+ * Keeps a WebSocket to the server and calls these `handlers`: `arm(message)`, `history(buffer)`, `arrived(sent_us)`,
  * `rows(message)`, `status(message)`, `delivery(message)`, `gone()`.
  */
 export class Feed {
@@ -34,8 +34,8 @@ export class Feed {
         break;
       case 'rows':
         // The server holds back a page that does not confirm.
-        this.send({ taken_us: message.newest_us });
-        this.handlers.arrived(message.newest_us);
+        this.send({ taken_us: message.sent_us });
+        this.handlers.arrived(message.sent_us);
         if (this.waiting) this.waiting.push(message); else this.handlers.rows(message);
         break;
       case 'status':

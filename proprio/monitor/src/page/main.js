@@ -64,7 +64,7 @@ const feed = new Feed({
     app.live.load(buffer);
     app.changed();
   },
-  arrived(newest_us) { delay.arrived(newest_us, performance.now()); },
+  arrived(sent_us) { delay.arrived(sent_us, performance.now()); },
   rows({ rows, newest_us }) {
     for (const [time, values] of rows) {
       // The history may contain it.
@@ -299,7 +299,6 @@ function frame(now) {
   requestAnimationFrame(frame);
   // The picture of the last frame is on the screen now.
   if (shown_us) feed.shown(shown_us);
-  if (!app.session && app.view.isFollowing && app.newest_us && app.status?.samples_hz > 0) delay.shown(app.newest_us, performance.now());
   shown_us = 0;
   if (app.isPlaying && app.session) {
     const { store } = app;
