@@ -100,8 +100,8 @@ impl Worker {
         loop {
             match self.received.try_recv() {
                 Ok(LinkRequest::Command(command, answer)) => {
-                    if let Some(asked) = set_points(&command) {
-                        self.publish(EventKind::SetPoints(asked));
+                    if let Some(requested) = set_points(&command) {
+                        self.publish(EventKind::SetPoints(requested));
                     }
                     self.requests.push(*command, answer);
                 }
@@ -149,7 +149,7 @@ impl Worker {
 /// The pressures that a command requests; none of one that vents the arm.
 fn set_points(command: &Command) -> Option<SetPressures> {
     match command {
-        Command::SetPressures(asked) => Some(asked.clone()),
+        Command::SetPressures(requested) => Some(requested.clone()),
         Command::Disarm => Some(SetPressures { pressures_pa: [].into_iter().collect(), valid_ms: 0 }),
         _ => None,
     }

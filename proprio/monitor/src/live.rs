@@ -46,7 +46,7 @@ pub(super) struct Live<'t> {
     /// Regulators of the board's arm.
     regulators: usize,
     /// Pressures that the host has requested last, Pa.
-    asked_pa: Vec<u32>,
+    requested_pa: Vec<u32>,
     totals: Totals,
     totals_before: VecDeque<Totals>,
 }
@@ -62,7 +62,7 @@ impl<'t> Live<'t> {
             health: None,
             uncertainty: None,
             regulators: 0,
-            asked_pa: Vec::new(),
+            requested_pa: Vec::new(),
             totals: Totals::default(),
             totals_before: VecDeque::new(),
         }
@@ -83,9 +83,9 @@ impl<'t> Live<'t> {
             EventKind::Opened(_) => self.assembler.line_opened(),
             EventKind::Restarted | EventKind::Lost(_) | EventKind::Ended(_) => {
                 (self.health, self.uncertainty) = (None, None);
-                self.asked_pa.clear();
+                self.requested_pa.clear();
             }
-            EventKind::SetPoints(asked) => self.asked_pa = asked.pressures_pa.to_vec(),
+            EventKind::SetPoints(requested) => self.requested_pa = requested.pressures_pa.to_vec(),
             EventKind::Undecoded(_) | EventKind::Mismatch(_) => {}
         }
         None
@@ -154,7 +154,7 @@ impl<'t> Live<'t> {
         if let Some(uncertainty) = &self.uncertainty {
             page_row.set_uncertainty(uncertainty);
         }
-        page_row.set_pressures(ColumnGroup::PressureAsked, &self.asked_pa);
+        page_row.set_pressures(ColumnGroup::PressureRequested, &self.requested_pa);
         if let Some(health) = &self.health {
             page_row.set_pressures(ColumnGroup::PressureSet, &health.pressures_pa);
         }

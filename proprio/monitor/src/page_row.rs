@@ -45,7 +45,7 @@ pub(super) enum ColumnGroup {
     TruthY,
     TruthHeading,
     /// Pressure of a regulator that the host has requested.
-    PressureAsked,
+    PressureRequested,
     /// Set-point of a regulator, as the board has it.
     PressureSet,
 }
@@ -95,7 +95,7 @@ const GROUPS: [(ColumnGroup, &str, &str, Parts); 19] = [
     (ColumnGroup::TruthX, "truth", "_x_mm", Parts::Segments),
     (ColumnGroup::TruthY, "truth", "_y_mm", Parts::Segments),
     (ColumnGroup::TruthHeading, "truth", "_heading_deg", Parts::Segments),
-    (ColumnGroup::PressureAsked, "pressure", "_asked_kpa", Parts::Regulators),
+    (ColumnGroup::PressureRequested, "pressure", "_requested_kpa", Parts::Regulators),
     (ColumnGroup::PressureSet, "pressure", "_set_kpa", Parts::Regulators),
 ];
 

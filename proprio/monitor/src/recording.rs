@@ -152,8 +152,8 @@ impl Work {
             match self.events.next(CHECK_PERIOD) {
                 Some(event) => {
                     self.recorder.event(&event)?;
-                    if let EventKind::SetPoints(asked) = &event.kind {
-                        self.recorder.set_points(asked)?;
+                    if let EventKind::SetPoints(requested) = &event.kind {
+                        self.recorder.set_points(requested)?;
                     }
                 }
                 None => self.recorder.flush_if_due()?,

@@ -223,7 +223,7 @@ impl Sessions {
 #[derive(Default)]
 struct BoardState {
     uncertainty: Option<Uncertainty>,
-    asked_pa: Vec<u32>,
+    requested_pa: Vec<u32>,
     set_pa: Vec<u32>,
 }
 
@@ -240,7 +240,7 @@ impl BoardState {
             let segments = uncertainty.segments.iter_mut().enumerate();
             segments.for_each(|(i, segment)| segment.in_contact = mask >> i & 1 == 1);
         }
-        for (held_pa, sent_pa) in [(&mut self.asked_pa, &board.asked_pa), (&mut self.set_pa, &board.set_pa)] {
+        for (held_pa, sent_pa) in [(&mut self.requested_pa, &board.requested_pa), (&mut self.set_pa, &board.set_pa)] {
             if let Some(sent_pa) = sent_pa {
                 held_pa.clone_from(sent_pa);
             }
@@ -255,7 +255,7 @@ impl BoardState {
         if let Some(uncertainty) = &self.uncertainty {
             row.set_uncertainty(uncertainty);
         }
-        row.set_pressures(ColumnGroup::PressureAsked, &self.asked_pa);
+        row.set_pressures(ColumnGroup::PressureRequested, &self.requested_pa);
         row.set_pressures(ColumnGroup::PressureSet, &self.set_pa);
     }
 }

@@ -73,7 +73,7 @@ pub struct BoardOutput {
     /// Set-points of the regulators, Pa, where the board has sent them.
     pub set_pa: Option<Vec<u32>>,
     /// Pressures that the host has requested, Pa, where it has after the row before.
-    pub asked_pa: Option<Vec<u32>>,
+    pub requested_pa: Option<Vec<u32>>,
 }
 
 impl Row {

@@ -107,9 +107,9 @@ impl RowAssembler {
     }
 
     /// Adds the pressures that the host has requested to the last sample's row.
-    pub fn asked(&mut self, pressures_pa: Vec<u32>) {
+    pub fn requested(&mut self, pressures_pa: Vec<u32>) {
         if let Some(board) = self.open.as_mut().and_then(|row| row.board.as_mut()) {
-            board.asked_pa = Some(pressures_pa);
+            board.requested_pa = Some(pressures_pa);
         }
     }
 
@@ -157,7 +157,7 @@ impl RowAssembler {
                 uncertainty: None,
                 contact: None,
                 set_pa: None,
-                asked_pa: None,
+                requested_pa: None,
             }),
         };
         row.sample.time_us = self.base_us + sample.time_us;

@@ -96,8 +96,8 @@ function tipError(store) {
 function pressures(store) {
   return store.numbers('pressure', '_set_kpa').flatMap((i) => {
     const module = `${(i + 1) >> 1} ${i % 2 ? 'right' : 'left'}`;
-    return [['set', ''], ['asked', 'requested ']].map(([what, before]) => ({
-      name: `${before}module ${module}`, short: `${before}${module}`, column: `pressure${i}_${what}_kpa`, colour: i - 1, isSecond: what === 'asked', isOptional: what === 'asked',
+    return [['set', ''], ['requested', 'requested ']].map(([what, before]) => ({
+      name: `${before}module ${module}`, short: `${before}${module}`, column: `pressure${i}_${what}_kpa`, colour: i - 1, isSecond: what === 'requested', isOptional: what === 'requested',
     }));
   });
 }

@@ -31,6 +31,6 @@ export class Delay {
     this.until = now + HOLD;
   }
 
-  /** Largest delay of the last moments, s; 0 where it is not worth a word. */
+  /** Largest delay of the last moments, s; 0 where it is short. */
   behind(now) { return now < this.until ? this.largest : 0; }
 }
