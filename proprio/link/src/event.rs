@@ -4,7 +4,7 @@ use std::fmt;
 use std::sync::Arc;
 
 use proprio_session::HostNs;
-use telemetry::{DecodeError, Message, PROTOCOL_VERSION, SCHEMA, protocol_2};
+use telemetry::{DecodeError, Message, PROTOCOL_VERSION, SCHEMA, SetPressures, protocol_2};
 
 /// An event on the link.
 #[derive(Debug, Clone)]
@@ -19,7 +19,6 @@ pub struct LinkEvent {
 
 /// Kind of an event, and its contents.
 #[derive(Debug, Clone)]
-#[expect(clippy::large_enum_variant, reason = "almost all are messages: a box of each would cost more than it saves")]
 pub enum EventKind {
     /// The line of this name was opened.
     Opened(String),
@@ -31,6 +30,8 @@ pub enum EventKind {
     Bytes(Arc<[u8]>),
     /// A message of the board.
     Message(Message),
+    /// The host has requested pressures; none where it has vented the arm.
+    SetPoints(SetPressures),
     /// A frame that is not a valid message.
     Undecoded(DecodeError),
     /// The board has restarted, which is no loss of frames. Its `Hello` follows, or was lost.
@@ -48,7 +49,7 @@ impl EventKind {
             Self::Ended(reason) => Some(reason.clone()),
             Self::Restarted => Some("the board has restarted".to_owned()),
             Self::Mismatch(mismatch) => Some(mismatch.to_string()),
-            Self::Opened(_) | Self::Bytes(_) | Self::Message(_) | Self::Undecoded(_) => None,
+            Self::Opened(_) | Self::Bytes(_) | Self::Message(_) | Self::SetPoints(_) | Self::Undecoded(_) => None,
         }
     }
 }

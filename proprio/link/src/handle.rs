@@ -12,7 +12,7 @@ use crate::event::EventKind;
 use crate::history::ReceivedBytes;
 use crate::requests::{Answer, RequestError, TIME_LIMIT};
 use crate::shared::{LinkRequest, LinkState, SharedLink, Subscription};
-use crate::source::Source;
+use crate::source::{OpenedLine, Source};
 use crate::worker::Worker;
 
 /// Longest wait for a board to acknowledge a Ping: an emulated one may start slowly.
@@ -32,34 +32,41 @@ impl Link {
     ///
     /// # Errors
     /// [`LinkError`] where the line cannot be opened the first time.
-    pub fn start(source: Box<dyn Source>, table: Option<u32>) -> Result<(Self, Subscription), LinkError> {
-        Self::start_with(source, table, SharedLink::default())
+    pub fn start(mut source: Box<dyn Source>, table: Option<u32>) -> Result<(Self, Subscription), LinkError> {
+        let opened = source.open()?;
+        Self::start_on(source, Some(opened), table, SharedLink::default())
     }
 
-    /// The same for a link of which recordings may begin later: it holds the bytes since the last start of the board's
-    /// estimator, up to 256 MB.
+    /// The same for a line that may not be there yet, and of which recordings may begin later: the link waits for the line, with
+    /// the reason in its state, and holds the bytes since the last start of the board's estimator, up to 256 MB.
     ///
     /// # Errors
-    /// [`LinkError`] where the line cannot be opened the first time.
-    pub fn start_with_history(source: Box<dyn Source>, table: Option<u32>) -> Result<(Self, Subscription), LinkError> {
+    /// [`LinkError`] where the line cannot be opened and cannot come back, as that of an emulated board.
+    pub fn start_waiting(mut source: Box<dyn Source>, table: Option<u32>) -> Result<(Self, Subscription), LinkError> {
         let shared = SharedLink::default();
         shared.keep_history();
-        Self::start_with(source, table, shared)
+        match source.open() {
+            Err(error) if source.can_reconnect() => {
+                shared.state().waiting = Some(error.to_string());
+                Self::start_on(source, None, table, shared)
+            }
+            opened => Self::start_on(source, Some(opened?), table, shared),
+        }
     }
 
-    fn start_with(
-        mut source: Box<dyn Source>,
+    fn start_on(
+        source: Box<dyn Source>,
+        opened: Option<OpenedLine>,
         table: Option<u32>,
         shared: SharedLink,
     ) -> Result<(Self, Subscription), LinkError> {
-        let (name, transport) = source.open()?;
         let shared = Arc::new(shared);
         let (requests, received) = channel();
-        shared.state().port = Some(name.clone());
+        shared.state().port = opened.as_ref().map(|(name, _)| name.clone());
         let subscription = shared.subscribe();
         let worker = Worker::new(source, table, received, Arc::clone(&shared));
         let thread = std::thread::Builder::new().name("link".to_owned());
-        let thread = thread.spawn(move || worker.run(name, transport)).map_err(LinkError::Thread)?;
+        let thread = thread.spawn(move || worker.run(opened)).map_err(LinkError::Thread)?;
         Ok((Self { requests, shared, thread: Some(thread) }, subscription))
     }
 

@@ -43,6 +43,8 @@ struct Subscribers {
 pub struct LinkState {
     /// Name of the line; `None` while it is gone.
     pub port: Option<String>,
+    /// Reason why no line could be opened yet; `None` once one was.
+    pub waiting: Option<String>,
     /// True once the board has acknowledged a Ping since its start.
     pub is_connected: bool,
     /// The board's last `Hello`.

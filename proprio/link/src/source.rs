@@ -19,6 +19,9 @@ pub trait Transport: Send {
     fn write(&mut self, bytes: &[u8]) -> io::Result<()>;
 }
 
+/// An open line, and its name.
+pub(crate) type OpenedLine = (String, Box<dyn Transport>);
+
 /// Source of a line: a serial port, or an emulated board.
 pub trait Source: Send {
     /// Opens the line and returns its name and the line. Further calls, where [`can_reconnect`](Self::can_reconnect) is true,

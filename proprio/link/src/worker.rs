@@ -5,12 +5,12 @@ use std::sync::mpsc::{Receiver, TryRecvError};
 use std::time::{Duration, Instant};
 
 use proprio_session::{HostClock, HostNs};
-use telemetry::Message;
+use telemetry::{Command, Message, SetPressures};
 
 use crate::event::{EventKind, LinkEvent};
 use crate::requests::Requests;
 use crate::shared::{LinkRequest, SharedLink};
-use crate::source::{Source, Transport};
+use crate::source::{OpenedLine, Source, Transport};
 use crate::stream_decoder::{Received, StreamDecoder};
 
 /// Time between two attempts to open a line that is gone.
@@ -40,9 +40,11 @@ impl Worker {
         Self { source, received, shared, clock, decoder, requests }
     }
 
-    /// Works until the link is dropped or its line is gone for good.
-    pub fn run(mut self, mut name: String, mut transport: Box<dyn Transport>) {
+    /// Works until the link is dropped or its line is gone for good; waits for a line that is not there yet.
+    pub fn run(mut self, mut opened: Option<OpenedLine>) {
         loop {
+            let line = opened.take().map_or_else(|| self.open_again(), Ok);
+            let Ok((name, mut transport)) = line else { return };
             let Ok(reason) = self.work(&name, transport.as_mut()) else { return };
             drop(transport);
             self.requests.interrupt();
@@ -50,10 +52,6 @@ impl Worker {
                 return self.publish(EventKind::Ended(reason));
             }
             self.publish(EventKind::Lost(reason));
-            match self.open_again() {
-                Ok(opened) => (name, transport) = opened,
-                Err(LinkDropped) => return,
-            }
         }
     }
 
@@ -78,15 +76,22 @@ impl Worker {
         }
     }
 
-    fn open_again(&mut self) -> Result<(String, Box<dyn Transport>), LinkDropped> {
+    fn open_again(&mut self) -> Result<OpenedLine, LinkDropped> {
         loop {
             std::thread::sleep(RETRY_PERIOD);
             self.take_requests()?;
             // Without a line there is no answer.
             self.requests.interrupt();
-            if let Ok(opened) = self.source.open() {
-                self.shared.state().reopened += 1;
-                return Ok(opened);
+            let opened = self.source.open();
+            let mut state = self.shared.state();
+            match opened {
+                Ok(opened) => {
+                    // The first opening of a line that was waited for is no other one.
+                    state.reopened += u32::from(state.waiting.take().is_none());
+                    return Ok(opened);
+                }
+                Err(error) if state.waiting.is_some() => state.waiting = Some(error.to_string()),
+                Err(_) => {}
             }
         }
     }
@@ -94,7 +99,12 @@ impl Worker {
     fn take_requests(&mut self) -> Result<(), LinkDropped> {
         loop {
             match self.received.try_recv() {
-                Ok(LinkRequest::Command(command, answer)) => self.requests.push(*command, answer),
+                Ok(LinkRequest::Command(command, answer)) => {
+                    if let Some(requested) = set_points(&command) {
+                        self.publish(EventKind::SetPoints(requested));
+                    }
+                    self.requests.push(*command, answer);
+                }
                 Ok(LinkRequest::Stop) | Err(TryRecvError::Disconnected) => return Err(LinkDropped),
                 Err(TryRecvError::Empty) => return Ok(()),
             }
@@ -133,6 +143,15 @@ impl Worker {
 
     fn publish_at(&self, at: HostNs, kind: EventKind) {
         self.shared.publish(&LinkEvent { at, gaps: self.decoder.gaps(), kind });
+    }
+}
+
+/// The pressures that a command requests; none of one that vents the arm.
+fn set_points(command: &Command) -> Option<SetPressures> {
+    match command {
+        Command::SetPressures(requested) => Some(requested.clone()),
+        Command::Disarm => Some(SetPressures { pressures_pa: [].into_iter().collect(), valid_ms: 0 }),
+        _ => None,
     }
 }
 

@@ -9,6 +9,9 @@ pub enum Error {
     /// A session, a table or a recording.
     #[error(transparent)]
     File(#[from] proprio_session::Error),
+    /// A session without a table, and no other is known.
+    #[error("is shown with the estimates of a replay, which needs a table, and none is in it, on the board, or given")]
+    NoTable,
     /// The recorder's thread has panicked.
     #[error("{}: is incomplete: the recorder has stopped by a fault of proprio", .0.display())]
     RecorderPanicked(PathBuf),

@@ -1,14 +1,15 @@
 //! Messages to the page, as JSON.
 
 use calibration_tables::{ArmFile, Side};
+use estimator_core::Q;
 use proprio_link::status::MessageRates;
 use proprio_link::{LinkState, Mismatch};
-use proprio_session::{CHI2_2_95, ClockDrift};
+use proprio_session::ClockDrift;
 use serde::Serialize;
-use telemetry::{Actuation, Health, SegmentUncertainty, SensorHealth, SensorState};
+use telemetry::{Actuation, Health, SensorHealth, SensorState, TICK_HZ};
 
 use super::latency::Percentiles;
-use super::page_row;
+use super::page_row::{self, ArmSize};
 use super::recording::RecordingProgress;
 
 /// A message to the page.
@@ -19,10 +20,7 @@ pub(super) enum Feed<'a> {
     Arm(&'a ArmDescription),
     Rows(Batch),
     Status(Box<PageStatus>),
-    /// This page was too slow: this number of messages was not sent to it.
-    Skipped {
-        messages: u64,
-    },
+    Delivery(Delivery),
 }
 
 impl Feed<'_> {
@@ -31,47 +29,54 @@ impl Feed<'_> {
     }
 }
 
+/// Delivery of rows to one page.
+#[derive(Debug, Clone, Copy, Default, Serialize)]
+pub(super) struct Delivery {
+    /// Latency from the sample to its screen; `None` before its first report.
+    pub latency: Option<Percentiles>,
+    /// Batches that were dropped for newer ones, as the page was slow.
+    pub skipped: u64,
+}
+
 /// Description of the arm and of what the page can do.
 #[derive(Debug, Clone, Serialize)]
 pub(super) struct ArmDescription {
     /// Version of this program.
     pub proprio: &'static str,
-    pub segments: usize,
+    #[serde(flatten)]
+    pub size: ArmSize,
     pub columns: Vec<String>,
     /// Geometry of each segment; `None` without a table.
     pub geometry: Option<Vec<Geometry>>,
-    /// Semi-axis of a 95 % ellipse in standard deviations.
-    pub ellipse_sigmas: f64,
+    /// Arm and checksum of the table; `None` without a table.
+    pub table: Option<String>,
     /// A board is connected.
     pub is_live: bool,
     /// The page may send requests to the board.
     pub allows_control: bool,
-    /// Sessions can be opened, which needs a table.
-    pub opens_sessions: bool,
     /// The session to open at once.
     pub session: Option<String>,
 }
 
 impl ArmDescription {
-    pub fn new(segments: usize, table: Option<&ArmFile>) -> Self {
+    pub fn new(size: ArmSize, table: Option<&ArmFile>) -> Self {
+        let checksum = |table: &ArmFile| Some(table.compile::<Q>(TICK_HZ).ok()?.checksum());
         Self {
             proprio: env!("CARGO_PKG_VERSION"),
-            segments,
-            columns: page_row::names(segments),
+            size,
+            columns: page_row::names(size),
             geometry: table.map(|table| table.segments.iter().map(Geometry::from).collect()),
-            ellipse_sigmas: CHI2_2_95.sqrt(),
+            table: table.and_then(|table| Some(format!("{}, checksum {:08x}", table.arm, checksum(table)?))),
             is_live: false,
             allows_control: false,
-            opens_sessions: table.is_some(),
             session: None,
         }
     }
 
-    /// The same page for an arm of so many segments, with the geometry in `table`.
-    pub fn with_segments(&self, segments: usize, table: Option<&ArmFile>) -> Self {
-        let Self { is_live, allows_control, opens_sessions, ref session, .. } = *self;
-        let arm = Self::new(segments, table);
-        Self { is_live, allows_control, opens_sessions, session: session.clone(), ..arm }
+    /// The same page for an arm of another size, or with the table that is known now.
+    pub fn with(&self, size: ArmSize, table: Option<&ArmFile>) -> Self {
+        let Self { is_live, allows_control, ref session, .. } = *self;
+        Self { is_live, allows_control, session: session.clone(), ..Self::new(size, table) }
     }
 }
 
@@ -98,25 +103,8 @@ pub(super) struct Batch {
     pub rows: Vec<(f64, Vec<f32>)>,
     /// Time of the last sample, µs by this program's clock: the page sends it back once it has drawn the row.
     pub newest_us: u64,
-    /// Uncertainty of the shape, where the board has sent one.
-    pub uncertainty: Option<EndCovariances>,
-    /// Contact of the segments.
-    pub contact: Option<Vec<bool>>,
-}
-
-/// Uncertainty of the shape.
-#[derive(Debug, Clone, Serialize)]
-pub(super) struct EndCovariances {
-    /// Covariance xx, xy, yy of each segment's end in {W}, m².
-    pub ends_m2: Vec<[f64; 3]>,
-}
-
-impl EndCovariances {
-    /// The covariances up to the first segment without one; `None` without any.
-    pub fn of(uncertainty: &telemetry::Uncertainty) -> Option<Self> {
-        let ends_m2: Vec<_> = uncertainty.segments.iter().map_while(SegmentUncertainty::end_m2).collect();
-        (!ends_m2.is_empty()).then_some(Self { ends_m2 })
-    }
+    /// Time of the batch by the same clock, µs: the page sends it back when it has received it.
+    pub sent_us: u64,
 }
 
 /// Status of board and link.
@@ -124,6 +112,8 @@ impl EndCovariances {
 pub(super) struct PageStatus {
     /// Name of the line; `None` while it is gone.
     pub port: Option<String>,
+    /// Reason why no line could be opened yet; `None` once one was.
+    pub waiting: Option<String>,
     pub answers: bool,
     pub board: Option<BoardInfo>,
     /// The board has another table than the monitor, or none.
@@ -139,9 +129,7 @@ pub(super) struct PageStatus {
     /// Events that were dropped because this program was too slow.
     pub dropped_events: u64,
     pub clock: Option<BoardTime>,
-    /// Latency from the sample to the screen.
-    pub latency: Option<Percentiles>,
-    /// The part of it that is computed and not measured: the board's latency and the frame on the line.
+    /// The part of the latency from the sample to the screen that is computed and not measured: the board's latency and the frame on the line.
     pub least_delay_ms: Option<f64>,
     pub recording: Option<RecordingProgress>,
     /// Warnings for people.
@@ -242,6 +230,7 @@ impl PageStatus {
         });
         Self {
             port: link.port,
+            waiting: link.waiting,
             answers: link.is_connected,
             board,
             offers_table: link.mismatches.iter().any(Mismatch::is_table),
@@ -254,7 +243,6 @@ impl PageStatus {
             restarts: link.restarts,
             dropped_events: 0,
             clock: None,
-            latency: None,
             least_delay_ms: None,
             recording: None,
             findings: Vec::new(),

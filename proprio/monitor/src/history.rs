@@ -30,7 +30,11 @@ impl History {
         Self { times_s: VecDeque::new(), columns: vec![VecDeque::new(); columns] }
     }
 
-    pub fn push(&mut self, row: &PageRow) {
+    /// Adds a row; returns false for one with other columns.
+    pub fn push(&mut self, row: &PageRow) -> bool {
+        if row.values.len() != self.columns.len() {
+            return false;
+        }
         if self.times_s.len() == ROOM {
             self.times_s.pop_front();
             for column in &mut self.columns {
@@ -39,10 +43,21 @@ impl History {
         }
         self.times_s.push_back(row.time_s);
         self.columns.iter_mut().zip(&row.values).for_each(|(column, value)| column.push_back(*value));
+        true
     }
 
     pub fn is_full(&self) -> bool {
         self.times_s.len() == ROOM
+    }
+
+    /// Adds columns without values behind the others, up to this number; returns false where there are more.
+    pub fn widen(&mut self, columns: usize) -> bool {
+        let rows = self.times_s.len();
+        let is_wider = self.columns.len() <= columns;
+        if is_wider {
+            self.columns.resize_with(columns, || VecDeque::from(vec![f32::NAN; rows]));
+        }
+        is_wider
     }
 
     /// Leaves out every second row.

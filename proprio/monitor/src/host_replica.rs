@@ -1,7 +1,8 @@
-//! Replica of the board's estimator on the host, for the values that the board does not send: drift and innovations.
+//! Replica of the board's estimator on the host, for the values that the board does not send with each sample: drift,
+//! innovations, uncertainty and contact.
 
 use calibration_tables::MAX_SEGMENTS;
-use estimator_core::{ArmConfig, Estimator, Method, Q, Sample};
+use estimator_core::{ArmConfig, Covariance, Estimator, Method, Q, Sample, VARIANCE_SCALE};
 use proprio_analysis::HostEstimator;
 
 use super::page_row::{ColumnGroup, PageRow};
@@ -32,7 +33,7 @@ impl<'t> HostReplica<'t> {
         self.predicted_rad = [None; MAX_SEGMENTS];
     }
 
-    /// Takes one sample and sets its estimate, drift and innovations.
+    /// Takes one sample and sets its estimate, drift, innovations, uncertainty and contact.
     pub fn step(&mut self, sample: &Sample<MAX_SEGMENTS>, row: &mut PageRow) {
         let estimate = self.estimator.update_full(sample);
         let shape = self.estimator.shape(&estimate, Method::Fusion);
@@ -55,6 +56,13 @@ impl<'t> HostReplica<'t> {
             let z_bend = of.bend.map(|link| link.theta.remainder.to_f64());
             row.set(ColumnGroup::InnovationBend, i, innovation(z_bend, noise.orient.h_bend));
             self.predicted_rad[i] = of.fusion.map(|fused| fused.theta.remainder.to_f64());
+        }
+        for (i, of) in self.estimator.uncertainties().iter().enumerate() {
+            let theta_rad2 = of.theta.map(|variance| variance.to_f64() / VARIANCE_SCALE);
+            row.set_variances(i, theta_rad2, of.end.map(Covariance::square_metres));
+        }
+        for (i, of) in self.estimator.contacts().iter().enumerate() {
+            row.set_contact(i, of.score_percent, of.in_contact);
         }
     }
 }

@@ -1,22 +1,23 @@
 //! The thread between the link and the pages: events in, batches of rows and the status out.
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use estimator_core::ArmConfig;
 use proprio_check::SessionCheck;
-use proprio_link::{EventKind, Link, LinkEvent, Subscription};
+use proprio_link::{EventKind, Link, LinkEvent, ReceivedBytes, Subscription};
 use proprio_session::{HostNs, degradations};
-use telemetry::Message;
+use telemetry::{Decoder, Message};
 
-use super::feed::{Batch, EndCovariances, Feed, PageStatus};
+use super::feed::{Batch, Feed, PageStatus};
+use super::history::History;
 use super::host_replica::HostReplica;
 use super::live::{Live, TimedRow};
 use super::monitor_state::MonitorState;
+use super::page_row;
 
-/// Time from one batch of rows to the next: 50 a second.
-const PERIOD: Duration = Duration::from_millis(20);
+/// Time from one batch of rows to the next: a tick.
+const PERIOD: Duration = Duration::from_millis(10);
 /// Time from one status to the next.
 const STATUS: Duration = Duration::from_millis(200);
 /// Time from one evaluation of the session check to the next.
@@ -60,9 +61,30 @@ impl<'t> Hub<'t> {
         }
     }
 
-    /// Works until `stop` is set.
-    pub fn run(mut self, link: &Link, stop: &AtomicBool) {
-        while !stop.load(Ordering::Relaxed) {
+    /// Takes the bytes since the last start of the board's estimator, in place of the rows that the pages have.
+    pub fn take_history(&mut self, received: Vec<ReceivedBytes>) {
+        let mut size = self.shared.arm().size;
+        let new = |size| History::new(page_row::names(size).len());
+        let (mut history, mut decoder) = (new(size), Decoder::<Message>::new());
+        for (at, bytes) in received {
+            for byte in bytes.iter() {
+                let Some(Ok(message)) = decoder.push(*byte) else { continue };
+                let event = LinkEvent { at, gaps: decoder.counts().lost, kind: EventKind::Message(message) };
+                let Some(TimedRow { row, .. }) = self.live.take(&event) else { continue };
+                if row.size != size {
+                    size = row.size;
+                    history = new(size);
+                }
+                history.push(&row);
+            }
+        }
+        self.live.restart_rates();
+        self.shared.replace(size, history);
+    }
+
+    /// Works until `is_over`.
+    pub fn run(mut self, link: &Link, is_over: impl Fn() -> bool) {
+        while !is_over() {
             let wait = PERIOD.saturating_sub(self.batch_sent.elapsed());
             if let Some(mut event) = self.events.next(wait) {
                 // Events that this program was too slow for are a gap, too.
@@ -91,16 +113,15 @@ impl<'t> Hub<'t> {
         {
             self.note(event.at, &warning);
         }
-        let segments = match &event.kind {
-            EventKind::Message(Message::Hello(hello)) => Some(usize::from(hello.segments)),
-            EventKind::Message(Message::Sample(sample)) => Some(sample.imu.len()),
-            _ => None,
-        };
-        if segments.is_some_and(|segments| self.shared.set_segments(segments)) {
+        let row = self.live.take(event);
+        let size = if let EventKind::Message(message) = &event.kind { self.live.size(message) } else { None };
+        if size.is_some_and(|size| self.shared.set_size(size)) {
             self.batch.rows.clear();
         }
-        if let Some(TimedRow { row, sampled }) = self.live.take(event) {
-            self.shared.history().push(&row);
+        // The row before another size of the arm has other columns.
+        if let Some(TimedRow { row, sampled }) = row
+            && self.shared.history().push(&row)
+        {
             self.batch.newest_us = sampled.0 / 1000;
             self.batch.rows.push((row.time_s, row.values));
         }
@@ -118,9 +139,7 @@ impl<'t> Hub<'t> {
     fn send_rows(&mut self) {
         let mut batch = std::mem::take(&mut self.batch);
         if !batch.rows.is_empty() {
-            let uncertainty = self.live.uncertainty.as_ref();
-            batch.uncertainty = uncertainty.and_then(EndCovariances::of);
-            batch.contact = uncertainty.map(|of| of.segments.iter().map(|segment| segment.in_contact).collect());
+            batch.sent_us = self.shared.clock.now().0 / 1000;
             self.shared.publish(&Feed::Rows(batch));
         }
     }
@@ -133,7 +152,6 @@ impl<'t> Hub<'t> {
         status.sensors = self.live.sensors().into_iter().map(Into::into).collect();
         status.dropped_events = self.events.dropped();
         status.clock = self.live.board_time();
-        status.latency = self.shared.latency().percentiles();
         status.least_delay_ms = self.live.min_delay_us().map(|delay_us| f64::from(delay_us) / 1e3);
         status.recording = self.shared.recording();
         status.findings.clone_from(&self.findings);

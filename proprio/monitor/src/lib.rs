@@ -7,6 +7,7 @@
 //! | file | purpose |
 //! |---|---|
 //! | `live.rs`, `host_replica.rs`, `page_row.rs` | the link's events as rows; drift and innovations by a replica of the board's estimator |
+//! | `board_access.rs`, `table.rs` | waits for a board, and takes its table where none was given |
 //! | `hub.rs`, `feed.rs`, `history.rs` | batches and status; the last ten minutes |
 //! | `latency.rs` | latency from a sample to the screen |
 //! | `recording.rs`, `sessions.rs` | recording and opening of sessions |
@@ -19,6 +20,7 @@
 mod access;
 mod actions;
 mod app_state;
+mod board_access;
 mod body;
 mod error;
 mod feed;
@@ -36,11 +38,12 @@ mod running;
 mod server;
 mod sessions;
 mod socket;
+mod table;
 
 use std::net::SocketAddr;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use calibration_tables::CompiledTable;
 use estimator_core::Q;
@@ -57,11 +60,11 @@ pub use plain::Plain;
 pub use running::{RunningMonitor, RunningMonitorError};
 
 use app_state::AppState;
+use board_access::BoardAccess;
 use feed::ArmDescription;
 use hub::Hub;
-
 use monitor_state::MonitorState;
-use running::Announcement;
+use page_row::ArmSize;
 use sessions::Sessions;
 
 /// Options of a monitor.
@@ -69,7 +72,7 @@ use sessions::Sessions;
 pub struct Options<'p> {
     /// Port of 127.0.0.1; 0: any free one.
     pub port: u16,
-    /// Table of the arm: without it there is neither drift nor innovation, and no session can be opened.
+    /// Table of the arm; `None`: that of the board, and of each recording.
     pub table: Option<LoadedTable<'p>>,
     /// Folder of recordings and sessions.
     pub folder: PathBuf,
@@ -90,7 +93,6 @@ pub struct Options<'p> {
 pub struct Monitor {
     server: LocalServer,
     shared: Arc<MonitorState>,
-    _announcement: Option<Announcement>,
 }
 
 impl Monitor {
@@ -103,18 +105,22 @@ impl Monitor {
         let failed = |source| Error::Listen { port, source };
         let mut server = LocalServer::bind(port).map_err(failed)?;
         let address = server.address();
-        let compiled = options.table.as_ref().map(|table| table.compile::<Q>(TICK_HZ)).transpose()?;
+        if let Some(table) = &options.table {
+            table.compile::<Q>(TICK_HZ)?;
+        }
         let (link, events) = live.unzip();
-        let announcement = announce(link.as_ref(), options.runtime_folder.as_deref(), address);
-        let (announcement, program_token) = announcement.unzip();
-        let shared = Arc::new(shared(link, options, program_token));
+        let folder = options.runtime_folder.clone();
+        let token = folder.as_ref().and_then(|_| Token::new().ok());
+        let shared = Arc::new(shared(link, options, token.clone()));
         if let Some(events) = events {
+            let access = BoardAccess { shared: Arc::clone(&shared), address, folder, token };
+            server.spawn("board", move |stop| board(access, stop)).map_err(failed)?;
             let shared = Arc::clone(&shared);
-            server.spawn("hub", move |stop| hub(&shared, events, compiled.as_ref(), stop)).map_err(failed)?;
+            server.spawn("hub", move |stop| hub(&shared, events, stop)).map_err(failed)?;
         }
         let state = AppState { monitor: Arc::clone(&shared), port: address.port() };
         server.serve("server", |listener| server::serve(listener, server::router(state))).map_err(failed)?;
-        Ok(Self { server, shared, _announcement: announcement })
+        Ok(Self { server, shared })
     }
 
     /// Its address.
@@ -136,15 +142,6 @@ impl Monitor {
     }
 }
 
-/// Announces the monitor of a board to this user's programs, with a token for them. Without it they cannot use it, which is no
-/// failure of the monitor.
-fn announce(link: Option<&Link>, folder: Option<&Path>, address: SocketAddr) -> Option<(Announcement, Token)> {
-    let line = link?.state().port?;
-    let token = Token::new().ok()?;
-    let announcement = Announcement::new(folder?, line, address, token.to_string()).ok()?;
-    Some((announcement, token))
-}
-
 /// Serves one connection of a monitor without a board on any stream, which stands for one to the port in `options`. Tests and
 /// fuzzers use it.
 pub async fn serve_stream<S>(options: Options<'_>, stream: S)
@@ -160,18 +157,40 @@ where
 fn shared(link: Option<Link>, options: Options, program_token: Option<Token>) -> MonitorState {
     let table = options.table.as_ref();
     // Until a board has sent its number of segments, the arm is that of the table.
-    let segments = table.map_or(0, |table| table.file.segments.len());
-    let mut arm = ArmDescription::new(segments, table.map(|table| &table.file));
+    let size = ArmSize { segments: table.map_or(0, |table| table.file.segments.len()), regulators: 0 };
+    let mut arm = ArmDescription::new(size, table.map(|table| &table.file));
     (arm.is_live, arm.allows_control) = (link.is_some(), options.token.is_some());
     let sessions = Sessions::new(options.folder, table, options.session, options.finding_text);
     arm.session = sessions.given();
     MonitorState::new(link, arm, options.token, program_token, sessions, options.help)
 }
 
-fn hub(shared: &Arc<MonitorState>, events: Subscription, compiled: Option<&CompiledTable<Q>>, stop: &AtomicBool) {
-    let table = compiled.map(CompiledTable::config);
+fn board(access: BoardAccess, stop: &AtomicBool) {
+    let shared = Arc::clone(&access.shared);
     if let Some(link) = &shared.link {
-        let check = shared.sessions.check();
-        Hub::new(Arc::clone(shared), events, table.as_ref(), check).run(link, stop);
+        access.run(link, stop);
+    }
+}
+
+/// Runs the hub, and starts it again with each table that is taken from the board.
+fn hub(shared: &Arc<MonitorState>, mut events: Subscription, stop: &AtomicBool) {
+    let Some(link) = &shared.link else { return };
+    let mut received = None;
+    loop {
+        let tables = shared.board_tables();
+        let table = shared.sessions.table();
+        // It was compiled when it was given, or by the board.
+        let compiled = table.and_then(|table| table.loaded().compile::<Q>(TICK_HZ).ok());
+        let config = compiled.as_ref().map(CompiledTable::config);
+        let mut hub = Hub::new(Arc::clone(shared), events, config.as_ref(), shared.sessions.check());
+        if let Some(received) = received {
+            hub.take_history(received);
+        }
+        hub.run(link, || stop.load(Ordering::Relaxed) || shared.board_tables() != tables);
+        if stop.load(Ordering::Relaxed) {
+            return;
+        }
+        let (since, history) = link.subscribe_with_history();
+        (events, received) = (since, Some(history.unwrap_or_default()));
     }
 }

@@ -10,7 +10,7 @@ use telemetry::{FrameLengths, Health, LINE_BYTES_PER_SECOND, Message, SensorHeal
 
 use super::feed::BoardTime;
 use super::host_replica::HostReplica;
-use super::page_row::PageRow;
+use super::page_row::{ArmSize, ColumnGroup, PageRow};
 
 /// Time over which rates are measured, ns.
 const RATES_NS: u64 = 2_000_000_000;
@@ -42,7 +42,11 @@ pub(super) struct Live<'t> {
     zero_ns: Option<u64>,
     pub health: Option<Health>,
     /// The last one, with the contact of later events.
-    pub uncertainty: Option<Uncertainty>,
+    uncertainty: Option<Uncertainty>,
+    /// Regulators of the board's arm.
+    regulators: usize,
+    /// Pressures that the host has requested last, Pa.
+    requested_pa: Vec<u32>,
     totals: Totals,
     totals_before: VecDeque<Totals>,
 }
@@ -57,6 +61,8 @@ impl<'t> Live<'t> {
             zero_ns: None,
             health: None,
             uncertainty: None,
+            regulators: 0,
+            requested_pa: Vec::new(),
             totals: Totals::default(),
             totals_before: VecDeque::new(),
         }
@@ -77,7 +83,9 @@ impl<'t> Live<'t> {
             EventKind::Opened(_) => self.assembler.line_opened(),
             EventKind::Restarted | EventKind::Lost(_) | EventKind::Ended(_) => {
                 (self.health, self.uncertainty) = (None, None);
+                self.requested_pa.clear();
             }
+            EventKind::SetPoints(requested) => self.requested_pa = requested.pressures_pa.to_vec(),
             EventKind::Undecoded(_) | EventKind::Mismatch(_) => {}
         }
         None
@@ -102,13 +110,19 @@ impl<'t> Live<'t> {
                     *held = *conditions;
                 }
             }
-            Message::Hello(_)
-            | Message::Event(_)
-            | Message::Reply(_)
-            | Message::Table(_)
-            | Message::TableData(_)
-            | Message::Tare(_) => {}
+            Message::Hello(hello) => self.regulators = hello.regulators.into(),
+            Message::Event(_) | Message::Reply(_) | Message::Table(_) | Message::TableData(_) | Message::Tare(_) => {}
         }
+    }
+
+    /// The size of the arm that a message shows; `None` of other messages.
+    pub fn size(&self, message: &Message) -> Option<ArmSize> {
+        let segments = match message {
+            Message::Hello(hello) => usize::from(hello.segments),
+            Message::Sample(sample) => sample.imu.len(),
+            _ => return None,
+        };
+        Some(ArmSize { segments, regulators: self.regulators })
     }
 
     /// The row for the page. The replica runs from a start of the board's estimator until a sample is lost; from then on its
@@ -116,7 +130,8 @@ impl<'t> Live<'t> {
     fn timed(&mut self, row: &Row) -> TimedRow {
         let board = row.board.as_ref();
         let segments = board.map_or(0, |board| board.segments);
-        let mut page_row = PageRow::new(row.sample.time_us as f64 / 1e6, segments);
+        let size = ArmSize { segments, regulators: self.regulators };
+        let mut page_row = PageRow::new(row.sample.time_us as f64 / 1e6, size);
         // A table with another number of segments is not of this arm.
         let mut replica = self.replica.as_mut().filter(|replica| replica.segments() == segments);
         if let Some(replica) = &mut replica {
@@ -136,6 +151,13 @@ impl<'t> Live<'t> {
         // The page shows the board's own estimate.
         let estimate = board.and_then(|board| board.estimate.as_ref());
         page_row.set_estimate(estimate.map_or(&vec![None; segments], |estimate| &estimate.segments));
+        if let Some(uncertainty) = &self.uncertainty {
+            page_row.set_uncertainty(uncertainty);
+        }
+        page_row.set_pressures(ColumnGroup::PressureRequested, &self.requested_pa);
+        if let Some(health) = &self.health {
+            page_row.set_pressures(ColumnGroup::PressureSet, &health.pressures_pa);
+        }
         page_row.set_sample(&row.sample);
         let (at, time_us) = board.map_or((HostNs(0), 0), |board| (board.at, board.time_us));
         let delay_ns = self.min_delay_us().map_or(0, |delay_us| u64::from(delay_us) * 1000);
@@ -172,6 +194,11 @@ impl<'t> Live<'t> {
     /// All sensors, bend sensors first, then IMUs.
     pub fn sensors(&self) -> Vec<SensorHealth> {
         self.health.iter().flat_map(|health| health.bend.iter().chain(&health.imu).copied()).collect()
+    }
+
+    /// Begins to count messages from now on, behind those of a history.
+    pub fn restart_rates(&mut self) {
+        self.totals = Totals::default();
     }
 
     /// Rates over the last two seconds; called a few times per second.

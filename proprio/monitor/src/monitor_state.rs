@@ -1,5 +1,6 @@
 //! State that the threads of the monitor share.
 
+use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use axum::extract::ws::Utf8Bytes;
@@ -10,13 +11,23 @@ use tokio::sync::broadcast;
 use super::access::Token;
 use super::feed::{ArmDescription, Feed};
 use super::history::History;
-use super::latency::Latency;
+use super::page_row::{self, ArmSize};
 use super::recording::{Recording, RecordingProgress};
 use super::sessions::Sessions;
+use super::table::OwnedTable;
 use crate::error::Error;
 
 /// Capacity of a browser's queue, messages: one second. A slower browser loses the oldest.
-const CAPACITY: usize = 64;
+const CAPACITY: usize = 128;
+
+/// A message to every page.
+#[derive(Debug, Clone)]
+pub(super) enum Published {
+    /// A batch of rows, with its time, µs by this program's clock.
+    Rows(Utf8Bytes, u64),
+    Status(Utf8Bytes),
+    Arm(Utf8Bytes),
+}
 
 /// State that the threads of the monitor share.
 #[derive(Debug)]
@@ -29,11 +40,12 @@ pub(super) struct MonitorState {
     pub program_token: Option<Token>,
     pub sessions: Sessions,
     pub help: fn(&Error) -> String,
-    pub feed: broadcast::Sender<Utf8Bytes>,
+    pub feed: broadcast::Sender<Published>,
     history: Mutex<History>,
     status: Mutex<Utf8Bytes>,
-    latency: Mutex<Latency>,
     recording: Mutex<Option<Recording>>,
+    /// Number of tables that were taken from the board.
+    board_tables: AtomicU32,
 }
 
 impl MonitorState {
@@ -46,7 +58,7 @@ impl MonitorState {
         help: fn(&Error) -> String,
     ) -> Self {
         let history = Mutex::new(History::new(arm.columns.len()));
-        let (status, latency, recording) = Default::default();
+        let (status, recording, board_tables) = Default::default();
         let (feed, _) = broadcast::channel(CAPACITY);
         let arm = Mutex::new(arm);
         Self {
@@ -60,8 +72,8 @@ impl MonitorState {
             feed,
             history,
             status,
-            latency,
             recording,
+            board_tables,
         }
     }
 
@@ -69,33 +81,57 @@ impl MonitorState {
         lock(&self.arm)
     }
 
-    /// Sets the number of segments of the board's arm; returns true where it has changed. The rows before that are dropped.
-    pub fn set_segments(&self, segments: usize) -> bool {
-        let mut arm = self.arm();
-        if arm.segments == segments {
+    /// Sets the size of the board's arm; returns true where it has changed. The rows of an arm with other segments are dropped.
+    pub fn set_size(&self, size: ArmSize) -> bool {
+        let before = self.arm().size;
+        if before == size {
             return false;
         }
-        *arm = arm.with_segments(segments, self.sessions.arm(segments));
-        *self.history() = History::new(arm.columns.len());
-        self.publish(&Feed::Arm(&arm));
+        let columns = page_row::names(size).len();
+        let mut history = std::mem::replace(&mut *self.history(), History::new(columns));
+        // The number of regulators, whose columns are the last, may be known later than the segments.
+        if before.segments != size.segments || before.regulators != 0 || !history.widen(columns) {
+            history = History::new(columns);
+        }
+        self.replace(size, history);
         true
+    }
+
+    /// Replaces the rows, and describes the arm to every page again.
+    pub fn replace(&self, size: ArmSize, history: History) {
+        let mut arm = self.arm();
+        let table = self.sessions.table().filter(|table| table.file.segments.len() == size.segments);
+        *arm = arm.with(size, table.as_ref().map(|table| &table.file));
+        *self.history() = history;
+        self.publish(&Feed::Arm(&arm));
+    }
+
+    /// Takes a board's table.
+    pub fn set_board_table(&self, table: Option<OwnedTable>) {
+        self.sessions.set_board_table(table);
+        self.board_tables.fetch_add(1, Ordering::Relaxed);
+    }
+
+    pub fn board_tables(&self) -> u32 {
+        self.board_tables.load(Ordering::Relaxed)
     }
 
     pub fn history(&self) -> MutexGuard<'_, History> {
         lock(&self.history)
     }
 
-    pub fn latency(&self) -> MutexGuard<'_, Latency> {
-        lock(&self.latency)
-    }
-
     /// Sends a message to every page, if there is any.
     pub fn publish(&self, message: &Feed) {
         let json = Utf8Bytes::from(message.json());
-        if matches!(message, Feed::Status(_)) {
-            *lock(&self.status) = json.clone();
-        }
-        let _ = self.feed.send(json);
+        let published = match message {
+            Feed::Rows(batch) => Published::Rows(json, batch.sent_us),
+            Feed::Arm(_) => Published::Arm(json),
+            Feed::Status(_) | Feed::Delivery(_) => {
+                lock(&self.status).clone_from(&json);
+                Published::Status(json)
+            }
+        };
+        let _ = self.feed.send(published);
     }
 
     /// The last status that was sent; empty before the first.

@@ -8,7 +8,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-use proprio_link::{FileRecorder, Link, ReceivedBytes, Subscription};
+use proprio_link::{EventKind, FileRecorder, Link, ReceivedBytes, Subscription};
 use proprio_session::{HostClock, HostNs};
 use serde::Serialize;
 
@@ -150,7 +150,12 @@ impl Work {
         self.recorder.history(history)?;
         loop {
             match self.events.next(CHECK_PERIOD) {
-                Some(event) => self.recorder.event(&event)?,
+                Some(event) => {
+                    self.recorder.event(&event)?;
+                    if let EventKind::SetPoints(requested) = &event.kind {
+                        self.recorder.set_points(requested)?;
+                    }
+                }
                 None => self.recorder.flush_if_due()?,
             }
             self.count();

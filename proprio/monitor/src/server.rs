@@ -20,7 +20,7 @@ use super::app_state::AppState;
 use super::{actions, body, programs, socket};
 
 /// The files of the page, embedded in this program.
-const FILES: [(&str, &str, &str); 14] = [
+const FILES: [(&str, &str, &str); 19] = [
     ("/", "text/html; charset=utf-8", include_str!("page/index.html")),
     ("/style.css", "text/css; charset=utf-8", include_str!("page/style.css")),
     ("/main.js", SCRIPT, include_str!("page/main.js")),
@@ -29,6 +29,11 @@ const FILES: [(&str, &str, &str); 14] = [
     ("/arm.js", SCRIPT, include_str!("page/arm.js")),
     ("/plot.js", SCRIPT, include_str!("page/plot.js")),
     ("/view.js", SCRIPT, include_str!("page/view.js")),
+    ("/catalogue.js", SCRIPT, include_str!("page/catalogue.js")),
+    ("/figures.js", SCRIPT, include_str!("page/figures.js")),
+    ("/faults.js", SCRIPT, include_str!("page/faults.js")),
+    ("/delay.js", SCRIPT, include_str!("page/delay.js")),
+    ("/picture.js", SCRIPT, include_str!("page/picture.js")),
     ("/export.js", SCRIPT, include_str!("page/export.js")),
     ("/board_panel.js", SCRIPT, include_str!("page/board_panel.js")),
     ("/findings.js", SCRIPT, include_str!("page/findings.js")),

@@ -4,20 +4,21 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use calibration_tables::ArmFile;
 use estimator_core::Q;
 use proprio_check::{Finding, SessionCheck};
 use proprio_link::table::StoredTable;
-use proprio_session::{LoadedTable, Mark, SessionError, SessionReader};
+use proprio_session::{LoadedTable, Mark, Row, SessionError, SessionReader, recorded_table};
 use serde::Serialize;
+use telemetry::Uncertainty;
 use tempfile::TempPath;
 
 use super::feed::ArmDescription;
 use super::history::History;
 use super::host_replica::HostReplica;
-use super::page_row::{self, PageRow};
+use super::page_row::{self, ArmSize, ColumnGroup, PageRow};
+use super::table::OwnedTable;
 use crate::error::Error;
 
 /// Sessions that can be opened.
@@ -25,7 +26,9 @@ use crate::error::Error;
 pub(super) struct Sessions {
     /// Folder of recordings and sessions.
     pub folder: PathBuf,
-    table: Option<(PathBuf, ArmFile)>,
+    /// The given one, or the board's; a given one is used for every session.
+    table: Mutex<Option<Arc<OwnedTable>>>,
+    is_given: bool,
     /// The session that the command was given.
     given: Option<PathBuf>,
     /// Returns the text of a finding, with its remedy.
@@ -75,8 +78,9 @@ impl Sessions {
         given: Option<PathBuf>,
         finding_text: fn(&Finding) -> String,
     ) -> Self {
-        let table = table.map(|table| (table.path.to_owned(), table.file.clone()));
-        Self { folder, table, given, finding_text, sent: Mutex::default() }
+        let is_given = table.is_some();
+        let table = Mutex::new(table.map(|table| Arc::new(OwnedTable::given(table))));
+        Self { folder, table, is_given, given, finding_text, sent: Mutex::default() }
     }
 
     /// Name of the session that the command was given.
@@ -86,27 +90,42 @@ impl Sessions {
 
     /// The text of the table's file.
     pub fn table_toml(&self) -> Result<Option<Vec<u8>>, Error> {
-        Ok(self.table().map(|table| table.toml()).transpose()?)
+        Ok(self.table().map(|table| table.loaded().toml()).transpose()?)
     }
 
     /// The table as a board stores it; `None` without a table.
     pub fn stored_table(&self) -> Result<Option<StoredTable>, Error> {
         let Some(table) = self.table() else { return Ok(None) };
-        Ok(Some(StoredTable::new(&table.file, &table.toml()?)?))
+        Ok(Some(StoredTable::new(&table.file, &table.loaded().toml()?)?))
     }
 
     /// A session check with the table; `None` without a table.
     pub fn check(&self) -> Option<SessionCheck> {
-        self.table().and_then(|table| SessionCheck::new(&table).ok())
+        self.table().and_then(|table| SessionCheck::new(&table.loaded()).ok())
     }
 
-    /// The arm of the table, if it has so many segments.
-    pub fn arm(&self, segments: usize) -> Option<&ArmFile> {
-        self.table.as_ref().map(|(_, file)| file).filter(|file| file.segments.len() == segments)
+    pub fn table(&self) -> Option<Arc<OwnedTable>> {
+        self.locked_table().clone()
     }
 
-    fn table(&self) -> Option<LoadedTable<'_>> {
-        self.table.as_ref().map(|(path, file)| LoadedTable { file: file.clone(), path })
+    /// True where a table was given: the board's is not taken then.
+    pub const fn is_table_given(&self) -> bool {
+        self.is_given
+    }
+
+    pub fn set_board_table(&self, table: Option<OwnedTable>) {
+        *self.locked_table() = table.map(Arc::new);
+    }
+
+    fn locked_table(&self) -> MutexGuard<'_, Option<Arc<OwnedTable>>> {
+        self.table.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// The table of a session: the given one, that in the recording, or the board's.
+    fn table_of(&self, path: &Path) -> Result<Arc<OwnedTable>, Error> {
+        let recorded = if self.is_given { None } else { recorded_table(path)? };
+        let recorded = recorded.map(|file| Arc::new(OwnedTable::given(&LoadedTable { file, path })));
+        recorded.or_else(|| self.table()).ok_or(Error::NoTable)
     }
 
     /// The files of the folder, by name.
@@ -150,31 +169,32 @@ impl Sessions {
     }
 
     fn rows_of(&self, path: &Path, times_s: &RangeInclusive<f64>) -> Result<Vec<u8>, Error> {
-        let Some(table) = self.table() else { return Ok(Vec::new()) };
-        let file = &table.file;
-        let segments = file.segments.len();
+        let table = self.table_of(path)?;
+        let (table, file) = (table.loaded(), &table.file);
         let mut reader = SessionReader::open(path, &table.required_columns()?)?;
         let compiled = table.compile::<Q>(reader.rate_hz(file.rate_hz)?)?;
         let compiled = compiled.config();
+        let regulators = reader.hello().map_or(0, |hello| usize::from(hello.regulators));
+        let size = ArmSize { segments: file.segments.len(), regulators };
         let mut replica = HostReplica::new(&compiled);
+        let mut held = BoardState::default();
         let mut check = SessionCheck::new(&table)?;
-        let mut history = History::new(page_row::names(segments).len());
+        let mut history = History::new(page_row::names(size).len());
         let (mut samples, mut every) = (0, 1);
         while let Some(read) = reader.next_row()? {
-            let mut row = PageRow::new(read.sample.time_us as f64 / 1e6, segments);
+            let mut row = PageRow::new(read.sample.time_us as f64 / 1e6, size);
             if read.starts {
                 replica.start();
             }
             if read.is_comparable() {
                 replica.step(&read.sample, &mut row);
             }
+            held.update(&read);
             if !read.is_recorded() {
                 continue;
             }
             check.update(&read);
-            if let Some(estimate) = read.board.as_ref().and_then(|board| board.estimate.as_ref()) {
-                row.set_estimate(&estimate.segments);
-            }
+            held.set(&read, &mut row);
             row.set_sample(&read.sample);
             row.set_truth(&read.truth);
             if !times_s.contains(&row.time_s) {
@@ -194,8 +214,49 @@ impl Sessions {
         let marks = reader.marks().iter().map(PageMark::from).filter(|mark| times_s.contains(&mark.time_s));
         let marks = marks.collect();
         let findings = reader.defects().warnings().chain(check.findings().iter().map(self.finding_text)).collect();
-        let arm = ArmDescription::new(segments, Some(file));
+        let arm = ArmDescription::new(size, Some(file));
         Ok(history.to_bytes(&About { arm, samples, every, marks, findings }))
+    }
+}
+
+/// What a board sends less often than samples, held until the next one.
+#[derive(Default)]
+struct BoardState {
+    uncertainty: Option<Uncertainty>,
+    requested_pa: Vec<u32>,
+    set_pa: Vec<u32>,
+}
+
+impl BoardState {
+    fn update(&mut self, row: &Row) {
+        let Some(board) = &row.board else { return };
+        if row.starts {
+            *self = Self::default();
+        }
+        if board.uncertainty.is_some() {
+            self.uncertainty.clone_from(&board.uncertainty);
+        }
+        if let (Some(mask), Some(uncertainty)) = (board.contact, &mut self.uncertainty) {
+            let segments = uncertainty.segments.iter_mut().enumerate();
+            segments.for_each(|(i, segment)| segment.in_contact = mask >> i & 1 == 1);
+        }
+        for (held_pa, sent_pa) in [(&mut self.requested_pa, &board.requested_pa), (&mut self.set_pa, &board.set_pa)] {
+            if let Some(sent_pa) = sent_pa {
+                held_pa.clone_from(sent_pa);
+            }
+        }
+    }
+
+    /// Sets the board's own values in a row, in place of the replica's.
+    fn set(&self, read: &Row, row: &mut PageRow) {
+        if let Some(estimate) = read.board.as_ref().and_then(|board| board.estimate.as_ref()) {
+            row.set_estimate(&estimate.segments);
+        }
+        if let Some(uncertainty) = &self.uncertainty {
+            row.set_uncertainty(uncertainty);
+        }
+        row.set_pressures(ColumnGroup::PressureRequested, &self.requested_pa);
+        row.set_pressures(ColumnGroup::PressureSet, &self.set_pa);
     }
 }
 

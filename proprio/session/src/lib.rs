@@ -79,7 +79,7 @@ pub use row::{BoardOutput, Mark, Pose, Row, Truth};
 pub use row_assembler::RowAssembler;
 pub use session_error::{SessionError, SessionProblem};
 pub use source::FileFormat;
-pub use table::LoadedTable;
+pub use table::{LoadedTable, recorded_table};
 pub use time_unit::{time_factor, time_unit_of};
 pub use utc::{today, utc_minute};
 pub use version::is_version_0_1;

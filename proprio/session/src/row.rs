@@ -70,6 +70,10 @@ pub struct BoardOutput {
     pub uncertainty: Option<telemetry::Uncertainty>,
     /// Contact of the segments, where the board has sent a change of it: bit i is segment i, from 0.
     pub contact: Option<u8>,
+    /// Set-points of the regulators, Pa, where the board has sent them.
+    pub set_pa: Option<Vec<u32>>,
+    /// Pressures that the host has requested, Pa, where it has after the row before.
+    pub requested_pa: Option<Vec<u32>>,
 }
 
 impl Row {

@@ -71,12 +71,10 @@ impl RowAssembler {
             Message::Estimate(estimate) => self.output(estimate.tick, |board| board.estimate = Some(estimate.clone())),
             Message::Uncertainty(of) => self.output(of.tick, |board| board.uncertainty = Some(of.clone())),
             Message::Event(Event::Contact(tick, touched)) => self.output(*tick, |board| board.contact = Some(*touched)),
-            Message::Health(_)
-            | Message::Event(_)
-            | Message::Reply(_)
-            | Message::Table(_)
-            | Message::TableData(_)
-            | Message::Tare(_) => {}
+            Message::Health(health) => {
+                self.output(health.tick, |board| board.set_pa = Some(health.pressures_pa.to_vec()));
+            }
+            Message::Event(_) | Message::Reply(_) | Message::Table(_) | Message::TableData(_) | Message::Tare(_) => {}
         }
         Ok(None)
     }
@@ -105,6 +103,13 @@ impl RowAssembler {
     pub fn truth(&mut self, tick: u32, ends: &[Option<Truth>]) {
         if let Some(row) = self.open(tick) {
             row.truth.iter_mut().zip(ends).for_each(|(truth, end)| *truth = *end);
+        }
+    }
+
+    /// Adds the pressures that the host has requested to the last sample's row.
+    pub fn requested(&mut self, pressures_pa: Vec<u32>) {
+        if let Some(board) = self.open.as_mut().and_then(|row| row.board.as_mut()) {
+            board.requested_pa = Some(pressures_pa);
         }
     }
 
@@ -151,6 +156,8 @@ impl RowAssembler {
                 estimate: None,
                 uncertainty: None,
                 contact: None,
+                set_pa: None,
+                requested_pa: None,
             }),
         };
         row.sample.time_us = self.base_us + sample.time_us;

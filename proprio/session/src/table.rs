@@ -6,7 +6,9 @@ use calibration_tables::{ArmFile, CompiledTable, FileError};
 use estimator_core::FusedOps;
 
 use crate::Error;
+use crate::recording::attached_table;
 use crate::required_columns::RequiredColumns;
+use crate::source::{FileFormat, SessionFile};
 
 /// A table and the path of its file.
 #[derive(Debug, Clone)]
@@ -15,6 +17,18 @@ pub struct LoadedTable<'p> {
     pub file: ArmFile,
     /// Path of its file.
     pub path: &'p Path,
+}
+
+/// The table that is attached to a recording; `None` of another session, and without one.
+///
+/// # Errors
+/// [`SessionError`](crate::SessionError) where the file cannot be opened.
+pub fn recorded_table(path: &Path) -> Result<Option<ArmFile>, Error> {
+    let file = SessionFile::open(path)?;
+    if file.kind != FileFormat::Recording || !file.is_regular_file {
+        return Ok(None);
+    }
+    Ok(attached_table(file.into_bytes()?))
 }
 
 impl<'p> LoadedTable<'p> {

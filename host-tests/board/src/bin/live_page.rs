@@ -92,20 +92,9 @@ mod figures {
         println!("{name}, {span} s seen: {} frames/s median, {} least of 20 s ({rows})", rates[10], rates[0]);
     }
 
-    /// Latency of the last 3000 pictures, which are those of one screen and some of the one before.
+    /// Latency of the last 3000 pictures of this browser.
     fn latency(browser: &mut Browser) {
-        let status = browser.value("fetch('/status').then((answer) => answer.json())");
-        let of = |name: &str| status["latency"][name].as_f64().unwrap_or(f64::NAN);
-        let reckoned = status["least_delay_ms"].as_f64().unwrap_or(f64::NAN);
-        println!(
-            "    sample to screen, ms: {:.0} at 5 %, {:.0} median, {:.0} at 95 %, {:.0} at 99 %, {:.0} largest of {}; {reckoned:.1} of it reckoned",
-            of("p5_ms"),
-            of("p50_ms"),
-            of("p95_ms"),
-            of("p99_ms"),
-            of("largest_ms"),
-            of("reports")
-        );
+        println!("    sample to screen: {}", browser.text("fact-latency"));
     }
 
     /// The virtual Due in a thread of this process: its first minutes as fast as possible, then in real time.

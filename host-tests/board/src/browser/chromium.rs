@@ -141,18 +141,54 @@ impl Browser {
         }
     }
 
-    /// Waits for a download; returns its text.
+    /// Waits for a download whose name has this ending; returns its name and content.
     ///
     /// # Panics
     /// If it is missing after a minute.
-    pub fn download(&mut self, name: &str) -> String {
-        let path = self.folder.path().join("downloads").join(name);
+    pub fn download(&mut self, ending: &str) -> (String, Vec<u8>) {
+        let folder = self.folder.path().join("downloads");
         let start = Instant::now();
-        while !path.is_file() {
-            assert!(start.elapsed() < TIMEOUT, "{name} was never downloaded; {:?}", self.errors);
+        loop {
+            let files = fs::read_dir(&folder).into_iter().flatten().flatten();
+            let mut names = files.filter_map(|file| file.file_name().into_string().ok());
+            if let Some(name) = names.find(|name| name.ends_with(ending)) {
+                let content = fs::read(folder.join(&name)).expect("it is there");
+                return (name, content);
+            }
+            assert!(start.elapsed() < TIMEOUT, "no {ending} was downloaded; {:?}", self.errors);
             std::thread::sleep(Duration::from_millis(20));
         }
-        fs::read_to_string(path).expect("it is text")
+    }
+
+    /// Moves the mouse to a place in the window, pixels.
+    pub fn point(&mut self, [x, y]: [f64; 2]) {
+        self.call("Input.dispatchMouseEvent", &json!({"type": "mouseMoved", "x": x, "y": y}));
+    }
+
+    /// Clicks at a place in the window, pixels.
+    pub fn click(&mut self, [x, y]: [f64; 2]) {
+        for kind in ["mousePressed", "mouseReleased"] {
+            let event = json!({"type": kind, "x": x, "y": y, "button": "left", "clickCount": 1});
+            self.call("Input.dispatchMouseEvent", &event);
+        }
+    }
+
+    /// Puts a finger on a place in the window, pixels, or takes it away.
+    pub fn touch(&mut self, place: Option<[f64; 2]>) {
+        let points: Vec<Value> = place.iter().map(|[x, y]| json!({"x": x, "y": y})).collect();
+        let kind = if place.is_some() { "touchStart" } else { "touchEnd" };
+        self.call("Input.dispatchTouchEvent", &json!({"type": kind, "touchPoints": points}));
+    }
+
+    /// A place in an element, which an expression of JavaScript selects, at shares of its width and height.
+    ///
+    /// # Panics
+    /// If there is no such element.
+    pub fn place(&mut self, element: &str, [across, down]: [f64; 2]) -> [f64; 2] {
+        let place = self.value(&format!(
+            "(({{x, y, width, height}}) => [x + width * {across}, y + height * {down}])({element}.getBoundingClientRect())"
+        ));
+        [0, 1].map(|i| place[i].as_f64().expect("a number"))
     }
 
     /// Writes a picture of the whole page to `target/browser`.

@@ -1,7 +1,7 @@
 //! The tools as users run them: the virtual Due on a pseudo-terminal, and `proprio monitor` connected to it.
 
 use std::io::{BufRead, BufReader};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::{Child, Command, Stdio};
 
 use tempfile::TempDir;
@@ -18,8 +18,8 @@ pub struct MonitorRun {
     pub folder: TempDir,
 }
 
-fn table() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../calibration-tables/planar-6.toml")
+fn table() -> String {
+    concat!(env!("CARGO_MANIFEST_DIR"), "/../../calibration-tables/planar-6.toml").to_owned()
 }
 
 impl MonitorRun {
@@ -29,11 +29,41 @@ impl MonitorRun {
     /// If the tools are not built, or do not start.
     #[must_use]
     pub fn live(arguments: &[&str]) -> Self {
+        Self::of_board(&[arguments, &["--table", &table()]].concat())
+    }
+
+    /// A live board, whose table is known to the board alone.
+    ///
+    /// # Panics
+    /// As [`MonitorRun::live`].
+    #[must_use]
+    pub fn of_board(arguments: &[&str]) -> Self {
         let folder = tempfile::tempdir().expect("there is room for a temporary folder");
         let due = DueProcess::start(folder.path());
         let port = due.port.clone();
         let arguments = [&["--port", &port], arguments].concat();
         Self::start(folder, Some(due), &arguments)
+    }
+
+    /// A monitor of a board that is not there yet.
+    ///
+    /// # Panics
+    /// As [`MonitorRun::live`].
+    #[must_use]
+    pub fn waiting() -> Self {
+        let folder = tempfile::tempdir().expect("there is room for a temporary folder");
+        Self::start(folder, None, &["--port", "./board"])
+    }
+
+    /// Plugs in the board that a monitor waits for.
+    ///
+    /// # Panics
+    /// As [`MonitorRun::live`].
+    #[cfg(unix)]
+    pub fn plug_in(&mut self) {
+        let due = DueProcess::start(self.folder.path());
+        std::os::unix::fs::symlink(&due.port, self.folder.path().join("board")).expect("the folder can be written to");
+        self.due = Some(due);
     }
 
     /// A session and no board.
@@ -43,13 +73,13 @@ impl MonitorRun {
     #[must_use]
     pub fn session(path: &Path) -> Self {
         let folder = tempfile::tempdir().expect("there is room for a temporary folder");
-        Self::start(folder, None, &[path.to_str().expect("a path of this workspace")])
+        Self::start(folder, None, &[path.to_str().expect("a path of this workspace"), "--table", &table()])
     }
 
     fn start(folder: TempDir, due: Option<DueProcess>, arguments: &[&str]) -> Self {
         let mut command = Command::new(tool("proprio"));
-        command.current_dir(folder.path()).arg("monitor").args(arguments).args(["--listen", "0", "--table"]);
-        command.arg(table()).stdin(Stdio::null()).stdout(Stdio::piped());
+        command.current_dir(folder.path()).arg("monitor").args(arguments).args(["--listen", "0"]);
+        command.stdin(Stdio::null()).stdout(Stdio::piped());
         let mut monitor = command.spawn().expect("the tool starts");
         let mut address = String::new();
         BufReader::new(monitor.stdout.take().expect("a pipe")).read_line(&mut address).expect("it prints its address");

@@ -113,7 +113,7 @@ fn take(events: &Subscription, messages: &mut Vec<Message>) {
     while let Some(event) = events.next(Duration::ZERO) {
         match event.kind {
             EventKind::Message(message) => messages.push(message),
-            EventKind::Opened(_) | EventKind::Bytes(_) | EventKind::Undecoded(_) => {}
+            EventKind::Opened(_) | EventKind::Bytes(_) | EventKind::SetPoints(_) | EventKind::Undecoded(_) => {}
             other => panic!("one run of one board: {other:?}"),
         }
     }

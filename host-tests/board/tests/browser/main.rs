@@ -4,8 +4,11 @@
 //! `target/browser`.
 #![cfg(unix)]
 
+mod first;
 mod live;
 mod modules;
 mod page;
 mod pictures;
 mod sessions;
+mod slow;
+mod values;

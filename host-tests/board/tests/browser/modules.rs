@@ -49,10 +49,8 @@ fn a_single_sample_s_spike_is_in_the_picture_however_long_the_span_is() {
 #[ignore = "needs Chromium: .ci/browser runs it"]
 fn an_ellipse_is_that_of_95_percent_of_its_covariance() {
     let (_run, mut browser) = opened();
-    // 3 mm along x and 1 mm along y, and the same turned by 30°; the server sends 2.4477 standard deviations.
-    let work = "const {arm: about} = await (await import('/sessions.js')).load('scenario-2.csv', {}); \
-                const straight = arm.ellipse([9e-6, 0, 1e-6], about.ellipse_sigmas); \
-                const turned = arm.ellipse([7e-6, 3.4641016e-6, 3e-6], about.ellipse_sigmas); \
+    // 3 mm along x and 1 mm along y, and the same turned by 30°.
+    let work = "const straight = arm.ellipse([9, 0, 1]), turned = arm.ellipse([7, 3.4641016, 3]); \
                 return [straight, turned].flatMap(({major, minor, turn}) => [major, minor, turn * 180 / Math.PI].map((v) => Math.round(v * 1000) / 1000));";
     assert_eq!(with_modules(&mut browser, work), serde_json::json!([7.343, 2.448, 0, 7.343, 2.448, 30]));
 }
@@ -63,14 +61,50 @@ fn uncertainty_and_contact_are_drawn_where_the_feed_has_them() {
     let (_run, mut browser) = opened();
     let work = "const {SvgContext} = await import('/export.js'); const {store: rows, arm: about} = await (await import('/sessions.js')).load('scenario-2.csv', {}); \
                 const colours = {series: ['#00f'], ink: '#000', faint: '#888', grid: '#eee', paper: '#fff', bad: '#f00', trail: '#80f', font: 'sans-serif'}; \
-                const draw = (more) => { const c = new SvgContext(); \
-                    arm.drawArm(c, 400, 300, {store: rows, row: 300, geometry: about.geometry, ellipseSigmas: about.ellipse_sigmas, colours, ...more}); return c.parts; }; \
-                const ends_m2 = Array(6).fill([4e-6, 0, 1e-6]); \
-                const contact = [false, false, true, false, false, false]; \
-                const bare = draw({}).length; \
-                return [draw({uncertainty: {ends_m2}}).length - bare, \
-                        draw({contact}).filter((part) => part.includes('stroke=\"#f00\"')).length - draw({}).filter((part) => part.includes('stroke=\"#f00\"')).length];";
+                const draw = () => { const c = new SvgContext(); \
+                    arm.drawArm(c, 400, 300, {store: rows, row: 300, geometry: about.geometry, colours}); return c.parts; }; \
+                for (const name of ['end', 'in_contact']) for (let i = 1; i <= 6; i++) \
+                    for (const part of ['', '_xx_mm2', '_xy_mm2', '_yy_mm2']) if (rows.column(name + i + part)) rows.column(name + i + part)[300] = NaN; \
+                const bare = draw().length; \
+                for (let i = 1; i <= 6; i++) Object.entries({xx: 4, xy: 0, yy: 1}).forEach(([part, value]) => { rows.column(`end${i}_${part}_mm2`)[300] = value; }); \
+                const ellipses = draw().length - bare; \
+                rows.column('in_contact3')[300] = 1; \
+                return [ellipses, draw().filter((part) => part.includes('stroke=\"#f00\"')).length];";
     assert_eq!(with_modules(&mut browser, work), serde_json::json!([6, 1]));
+}
+
+#[test]
+#[ignore = "needs Chromium: .ci/browser runs it"]
+fn ticks_of_time_are_those_of_clocks() {
+    let (_run, mut browser) = opened();
+    let work = "return [5, 9, 20, 45, 90, 140, 280, 550, 1100, 1900].map((span) => plot.timeTicks(100.3, 100.3 + span, 9).step)";
+    assert_eq!(with_modules(&mut browser, work), serde_json::json!([1, 1, 5, 5, 10, 30, 60, 120, 300, 300]));
+    let work = "return plot.timeTicks(57, 123, 5).found.map((time) => plot.clock(time, 15))";
+    assert_eq!(with_modules(&mut browser, work), serde_json::json!(["1:00", "1:15", "1:30", "1:45", "2:00"]));
+}
+
+#[test]
+#[ignore = "needs Chromium: .ci/browser runs it"]
+fn computed_columns_follow_the_rows_through_every_move_of_the_store() {
+    let (_run, mut browser) = opened();
+    let work = "const kept = new store.Store(['a'], 100); kept.push(0, [1]); \
+                kept.derive('twice', (row) => 2 * kept.column('a')[row]); \
+                for (let i = 1; i < 1000; i++) kept.push(i, [i]); \
+                return [500, 950, 999].map((time) => kept.column('twice')[kept.rowAt(time)]);";
+    assert_eq!(with_modules(&mut browser, work), serde_json::json!([1800, 1900, 1998]));
+}
+
+#[test]
+#[ignore = "needs Chromium: .ci/browser runs it"]
+fn the_tip_s_error_and_semi_axes_are_those_of_its_columns() {
+    let (_run, mut browser) = opened();
+    let work = "const {KINDS} = await import('/catalogue.js'); \
+                const rows = new store.Store(['x1_mm', 'y1_mm', 'truth1_x_mm', 'truth1_y_mm', 'end1_xx_mm2', 'end1_xy_mm2', 'end1_yy_mm2'], 10); \
+                rows.push(0, [3, 4, 0, 0, 9, 0, 1]); rows.push(1, [3, 4, null, null, 9, 0, 1]); \
+                const curves = KINDS.find(({id}) => id === 'tip_error').curves(rows); \
+                return [0, 1].map((row) => curves.map(({column}) => rows.column(column)[row]).map((v) => Number.isNaN(v) ? 'none' : v.toFixed(3)));";
+    let expected = serde_json::json!([["5.000", "7.343", "2.448"], ["none", "7.343", "2.448"]]);
+    assert_eq!(with_modules(&mut browser, work), expected);
 }
 
 #[test]

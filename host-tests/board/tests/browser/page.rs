@@ -42,7 +42,7 @@ fn space_pauses_the_picture_while_samples_arrive_and_then_catches_up() {
 
 #[test]
 #[ignore = "needs Chromium: .ci/browser runs it"]
-fn what_is_seen_is_exported_as_csv_and_svg() {
+fn what_is_seen_is_exported_as_csv_svg_and_png() {
     let (_rig, mut browser) = opened();
     browser.press(" ");
     browser.wait_for("document.getElementById('pause').getAttribute('aria-pressed') === 'true'");
@@ -51,10 +51,11 @@ fn what_is_seen_is_exported_as_csv_and_svg() {
     browser.value("document.getElementById('span').value = '10'");
     browser.value("document.getElementById('span').dispatchEvent(new Event('change'))");
     browser.press("c");
-    let csv = browser.download("proprio.csv");
+    let (_, csv) = browser.download(".csv");
+    let csv = String::from_utf8(csv).expect("it is text");
     let mut lines = csv.lines();
     let head: Vec<&str> = lines.next().expect("a header").split(',').collect();
-    assert_eq!((head[0], head[1], head.len()), ("time_s", "theta1_deg", 73));
+    assert_eq!((head[0], head[1], head.len()), ("time_s", "theta1_deg", 121));
     let times: Vec<f64> =
         lines.map(|line| line.split(',').next().expect("a cell").parse().expect("a number")).collect();
     assert!(times.is_sorted() && times.len() > 300, "{} rows", times.len());
@@ -62,15 +63,21 @@ fn what_is_seen_is_exported_as_csv_and_svg() {
     assert!(first >= paused_s - 10.02 && (last - paused_s).abs() < 0.02, "{first} to {last}, paused at {paused_s}");
 
     browser.press("s");
-    let svg = browser.download("proprio.svg");
+    let (_, svg) = browser.download(".svg");
+    let svg = String::from_utf8(svg).expect("it is text");
     assert!(svg.starts_with("<svg xmlns=") && svg.ends_with("</svg>\n"));
-    for text in ["Bend angle θ, °", "Innovation by the bend sensors, °", "100 mm"] {
+    for text in ["Bend angle θ, °", "Innovation by the bend sensors, °", "100 mm", "arm planar-6"] {
         assert!(svg.contains(&format!(">{text}</text>")), "{text}");
     }
     let parsed = "new DOMParser().parseFromString(SVG, 'image/svg+xml')";
     let quoted = serde_json::Value::from(svg).to_string();
     let is_good = parsed.replace("SVG", &quoted) + ".querySelectorAll('parsererror').length === 0";
     assert_eq!(browser.value(&is_good), true);
+
+    browser.press("p");
+    let (name, png) = browser.download(".png");
+    assert!(png.starts_with(b"\x89PNG\r\n\x1a\n") && png.len() > 20_000, "{} bytes", png.len());
+    assert!(name.starts_with("planar-6-20") && name.contains("Z-"), "{name}");
     assert!(browser.errors.is_empty(), "{:?}", browser.errors);
 }
 
@@ -82,7 +89,7 @@ fn plots_are_zoomed_and_moved_from_the_keyboard() {
     browser.wait_for("document.getElementById('pause').getAttribute('aria-pressed') === 'true'");
     browser.value("document.querySelector('#figures canvas').focus()");
     let plot = "document.querySelector('#figures canvas').toDataURL()";
-    for key in ["+", "-", "ArrowLeft", "*"] {
+    for key in ["+", "-", "PageDown", "*"] {
         let before = browser.value(plot);
         browser.press(key);
         let before = serde_json::Value::to_string(&before);

@@ -22,7 +22,15 @@ fn a_session_is_opened_scrubbed_and_played_with_its_truth() {
     // A dashed line from the base through the true ends.
     browser.wait_for("!document.getElementById('key-truth').hidden");
     browser.press("s");
-    assert!(browser.download("proprio.svg").contains(r#"stroke-dasharray="5 5""#));
+    let (name, svg) = browser.download(".svg");
+    let svg = String::from_utf8(svg).expect("it is text");
+    assert!(svg.contains(r#"stroke-dasharray="5 5""#));
+    assert!(name.starts_with("scenario-2-0.00s-") && name.ends_with("s.svg"), "{name}");
+    for text in
+        [">session scenario-2.csv<", ">table planar-6, checksum ", ">at 40.00 s, picked; saved 20", ">segment 6 "]
+    {
+        assert!(svg.contains(text), "{text}");
+    }
     browser.picture("session.png");
 
     browser.press(" ");

@@ -184,7 +184,7 @@ fn pressures_kpa(text: &str) -> Result<Pressures, String> {
 
 #[derive(Debug, Args)]
 pub struct MonitorArgs {
-    /// Session to show instead of a board; needs a table
+    /// Session to show instead of a board; a recording has its table, any other needs one
     #[arg(conflicts_with_all = ["port", "emulated", "allow_control", "plain", "foxglove"])]
     pub session: Option<PathBuf>,
     #[command(flatten)]

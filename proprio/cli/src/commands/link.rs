@@ -23,9 +23,9 @@ pub fn open(args: &LinkArgs) -> Result<(Option<LoadedTable<'_>>, Link, Subscript
     open_by(args, Link::start)
 }
 
-/// The same for a link of which recordings may begin later.
-pub fn open_with_history(args: &LinkArgs) -> Result<(Option<LoadedTable<'_>>, Link, Subscription), Error> {
-    open_by(args, Link::start_with_history)
+/// The same for a link of which recordings may begin later, and that waits for a board.
+pub fn open_waiting(args: &LinkArgs) -> Result<(Option<LoadedTable<'_>>, Link, Subscription), Error> {
+    open_by(args, Link::start_waiting)
 }
 
 /// Starts a link on the board's line, with the checksum of its table.

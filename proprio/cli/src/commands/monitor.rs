@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use proprio_link::{EventKind, Link, LinkError, Subscription};
 use proprio_monitor::{Monitor, Options, Plain, Token};
-use proprio_session::{HostClock, LoadedTable, SessionReader};
+use proprio_session::{HostClock, LoadedTable, SessionReader, recorded_table};
 
 use super::link;
 use super::motion::Motion;
@@ -28,7 +28,10 @@ pub fn run(args: &args::MonitorArgs) -> Result<(), Error> {
         let _stream = link::stream(&args.foxglove, &link, table.as_ref())?;
         return plain(&link, &events, &ShutdownGuard::new());
     }
-    let (table, link, events) = link::open_with_history(&args.link)?;
+    let (table, link, events) = link::open_waiting(&args.link)?;
+    if let Some(reason) = link.state().waiting {
+        terminal::eprint_line(&format_args!("{reason}; waiting for it, and opening sessions meanwhile"));
+    }
     let shutdown = ShutdownGuard::new();
     let warnings = link.subscribe();
     let _stream = link::stream(&args.foxglove, &link, table.as_ref())?;
@@ -52,14 +55,16 @@ pub fn run(args: &args::MonitorArgs) -> Result<(), Error> {
 
 /// A session without a board.
 fn show(args: &args::MonitorArgs) -> Result<(), Error> {
-    let table = args.link.table.as_deref().ok_or(Error::SessionWithoutTable)?;
-    let table = LoadedTable::load(table)?;
+    let table = args.link.table.as_deref().map(LoadedTable::load).transpose()?;
     if let Some(session) = &args.session {
         // An error of the session is reported here, before the page is opened.
-        SessionReader::open(session, &table.required_columns()?)?;
+        let recorded = if table.is_none() { recorded_table(session)? } else { None };
+        let recorded = recorded.map(|file| LoadedTable { file, path: session });
+        let used = table.as_ref().or(recorded.as_ref()).ok_or(Error::SessionWithoutTable)?;
+        SessionReader::open(session, &used.required_columns()?)?;
     }
     let shutdown = ShutdownGuard::new();
-    let monitor = start(args, None, Some(table))?;
+    let monitor = start(args, None, table)?;
     while !shutdown.is_requested() {
         std::thread::sleep(CHECK_PERIOD);
     }

@@ -4,10 +4,11 @@ use std::io::{Read, Write};
 use std::net::{Shutdown, TcpStream};
 
 use proprio_monitor::Token;
-use telemetry::{Command, SetPressures};
+use telemetry::{Command, Message, SensorState, SetPressures};
 
 use super::http::Page;
 use super::line::{Line, PATIENCE};
+use super::page::{health, send_ticks};
 
 #[test]
 fn only_this_machine_s_own_names_are_answered() {
@@ -88,6 +89,35 @@ fn the_token_is_needed_to_drive_the_board() {
     let done = line.board().done.clone();
     let done: Vec<_> = done.iter().filter(|command| **command != Command::Ping).collect();
     assert_eq!(done, [&Command::Arm, &Command::SetPressures(pressures), &Command::Disarm]);
+}
+
+#[test]
+fn pressures_that_are_requested_and_set_are_columns_of_the_page_until_the_arm_is_vented() {
+    let line = Line::new();
+    let token = Token::new().expect("the system has random numbers");
+    let page = Page::of(&line, Some(token.clone()));
+    let mut socket = page.socket(Some(&page.origin())).expect("its own page");
+    line.board().restart(1);
+    let mut arm = socket.arm();
+    while arm["regulators"] == 0 {
+        arm = socket.arm();
+    }
+    let (host, origin, token) = (page.host(), page.origin(), format!("Bearer {token}"));
+    let headers = [("Host", &host[..]), ("Origin", &origin[..]), ("Authorization", &token[..])];
+    let mut pressures = |command: &str, ticks: std::ops::Range<u32>| {
+        assert_eq!(page.request("POST", "/control", &headers, command).status, 200);
+        line.board().send(&Message::Health(health(0, SensorState::Ok)));
+        send_ticks(&line, ticks);
+        let rows = socket.next("rows");
+        ["pressure2_requested_kpa", "pressure2_set_kpa"].map(|name| {
+            let columns = arm["columns"].as_array().expect("names");
+            let place = columns.iter().position(|column| column == name).unwrap_or_else(|| panic!("{name}: {arm}"));
+            rows["rows"][0][1][place].as_f64()
+        })
+    };
+    let set_kpa = health(0, SensorState::Ok).pressures_pa.get(1).map(|pressure_pa| f64::from(*pressure_pa) / 1e3);
+    assert_eq!(pressures(r#"{"set_pressures":{"kpa":[0,12.5,0,0,0,0]}}"#, 0..1), [Some(12.5), set_kpa]);
+    assert_eq!(pressures(r#""vent""#, 1..2), [None, set_kpa]);
 }
 
 #[test]

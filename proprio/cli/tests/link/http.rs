@@ -60,7 +60,7 @@ impl Page {
     }
 
     pub fn with_table(line: &Line, token: Option<Token>, table: Option<LoadedTable>) -> Self {
-        let live = Link::start_with_history(Box::new(line.clone()), None).expect("memory opens");
+        let live = Link::start_waiting(Box::new(line.clone()), None).expect("memory opens");
         let folder = tempfile::tempdir().expect("there is room for a temporary folder");
         let runtime_folder = tempfile::tempdir().expect("there is room for a temporary folder");
         let options = Options {
@@ -151,14 +151,33 @@ impl Page {
 pub struct Socket(WebSocket<TcpStream>);
 
 impl Socket {
-    /// The next message of this type.
+    /// The next message of this type; batches of rows are confirmed as a page does.
     pub fn next(&mut self, kind: &str) -> Value {
         loop {
+            let message = self.read();
+            if let Some(sent_us) = message["sent_us"].as_u64() {
+                self.send(&format!(r#"{{"taken_us":{sent_us}}}"#));
+            }
+            if message["type"] == kind {
+                return message;
+            }
+        }
+    }
+
+    /// The next message of this type; nothing is confirmed.
+    pub fn unconfirmed(&mut self, kind: &str) -> Value {
+        loop {
+            let message = self.read();
+            if message["type"] == kind {
+                return message;
+            }
+        }
+    }
+
+    fn read(&mut self) -> Value {
+        loop {
             if let Message::Text(text) = self.0.read().expect("the feed is open") {
-                let message: Value = serde_json::from_str(&text).expect("it is JSON");
-                if message["type"] == kind {
-                    return message;
-                }
+                return serde_json::from_str(&text).expect("it is JSON");
             }
         }
     }

@@ -125,13 +125,15 @@ fn a_page_that_is_opened_later_gets_what_came_before() {
     let line = Line::new();
     let page = Page::of(&line, None);
     line.board().restart(1);
+    let columns =
+        page.socket(Some(&page.origin())).expect("its own page").arm()["columns"].as_array().map_or(0, Vec::len);
     send_ticks(&line, 0..500);
     page.wait_for_status(|_| page.get("/history").about()["rows"] == 500);
     let history = page.get("/history");
     let about = history.about();
-    assert_eq!((&about["rows"], &about["columns"]), (&500.into(), &72.into()));
+    assert_eq!((&about["rows"], &about["columns"]), (&500.into(), &columns.into()));
     let begin = history.body.iter().position(|byte| *byte == b'\n').expect("a line") + 1;
-    assert_eq!((begin % 8, history.body.len() - begin), (0, 500 * (8 + 4 * 72)));
+    assert_eq!((begin % 8, history.body.len() - begin), (0, 500 * (8 + 4 * columns)));
     let last = &history.body[begin + 499 * 8..][..8];
     assert_eq!(last, 4.99_f64.to_le_bytes());
 }
@@ -156,6 +158,28 @@ fn the_time_continues_over_a_restart_of_the_board() {
 }
 
 #[test]
+fn a_page_that_confirms_no_more_misses_old_batches_and_not_the_newest() {
+    let line = Line::new();
+    let page = Page::of(&line, None);
+    line.board().restart(1);
+    let mut socket = page.socket(Some(&page.origin())).expect("its own page");
+    socket.send(r#"{"taken_us":0}"#);
+    for tick in 0..150 {
+        send_ticks(&line, tick..tick + 1);
+        page.wait_for_status(|_| page.get("/history").about()["rows"] == tick + 1);
+    }
+    while socket.unconfirmed("delivery")["skipped"] == 0 {}
+    socket.send(&format!(r#"{{"taken_us":{}}}"#, u64::MAX));
+    // The rows that follow those without a confirmation.
+    let mut times_s = Vec::new();
+    while times_s.last() != Some(&1.49) {
+        let rows = socket.unconfirmed("rows");
+        times_s.extend(rows["rows"].as_array().expect("rows").iter().map(|row| row[0].as_f64().expect("a time")));
+    }
+    assert!(times_s.is_sorted() && times_s.len() < 150, "{times_s:?}");
+}
+
+#[test]
 fn the_time_from_sample_to_screen_is_measured_from_what_pages_report() {
     let line = Line::new();
     let page = Page::of(&line, None);
@@ -166,9 +190,16 @@ fn the_time_from_sample_to_screen_is_measured_from_what_pages_report() {
     std::thread::sleep(std::time::Duration::from_millis(120));
     socket.send(&format!(r#"{{"shown_us":{newest_us}}}"#));
     socket.send("nonsense");
-    let status = page.wait_for_status(|status| !status["latency"].is_null());
-    let latency_ms = status["latency"]["p50_ms"].as_f64().expect("a number");
-    assert!(latency_ms >= 120.0 && status["latency"]["reports"] == 1, "{status}");
+    let latency = loop {
+        let delivery = socket.next("delivery");
+        if !delivery["latency"].is_null() {
+            break delivery["latency"].clone();
+        }
+    };
+    assert!(latency["p50_ms"].as_f64().expect("a number") >= 120.0 && latency["reports"] == 1, "{latency}");
+    // The latency of a page is its own.
+    let mut other = page.socket(Some(&page.origin())).expect("its own page");
+    assert!(other.next("delivery")["latency"].is_null());
 }
 
 #[test]

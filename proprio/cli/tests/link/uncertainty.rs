@@ -2,8 +2,7 @@
 
 use proprio_link::Link;
 use proprio_link::status::Status;
-use proprio_session::CHI2_2_95;
-use serde_json::{Value, json};
+use serde_json::Value;
 use telemetry::{Event, Message, SegmentUncertainty, Uncertainty};
 
 use super::http::Page;
@@ -18,32 +17,39 @@ fn uncertainty(tick: u32) -> Message {
     Message::Uncertainty(Uncertainty { tick, segments: [segment; 6].into_iter().collect() })
 }
 
-const NONE: [bool; 6] = [false; 6];
-const SECOND: [bool; 6] = [false, true, false, false, false, false];
-
 #[test]
 fn the_page_receives_the_board_s_covariances_and_contact_before_the_next_of_them() {
     let line = Line::new();
     let page = Page::of(&line, None);
     line.board().restart(1);
     let mut socket = page.socket(Some(&page.origin())).expect("its own page");
-    let sigmas = socket.next("arm")["ellipse_sigmas"].as_f64().expect("a number");
-    assert!((sigmas - CHI2_2_95.sqrt()).abs() < 1e-12 && (sigmas - 2.4477).abs() < 1e-4, "{sigmas}");
+    let arm = socket.arm();
+    let value = |rows: &Value, name: &str| {
+        let columns = arm["columns"].as_array().expect("names");
+        let place = columns.iter().position(|column| column == name).unwrap_or_else(|| panic!("{name}"));
+        rows["rows"][0][1][place].as_f64()
+    };
     send_ticks(&line, 0..1);
     let rows = socket.next("rows");
-    assert!(rows["uncertainty"].is_null() && rows["contact"].is_null(), "{rows}");
+    assert!(value(&rows, "end6_xx_mm2").is_none() && value(&rows, "in_contact2").is_none(), "{rows}");
 
     line.board().send(&uncertainty(0));
     send_ticks(&line, 1..2);
     let rows = socket.next("rows");
-    let ends = rows["uncertainty"]["ends_m2"].as_array().expect("ends");
-    assert_eq!((ends.len(), &rows["contact"]), (6, &json!(NONE)));
-    let is_near = |value: &Value, square_mm: f64| (value.as_f64().expect("a number") * 1e6 - square_mm).abs() < 1e-3;
-    assert!(is_near(&ends[5][0], 1.0) && is_near(&ends[5][1], 0.0) && is_near(&ends[5][2], 4.0), "{rows}");
+    let is_near = |name: &str, expected: f64| value(&rows, name).is_some_and(|value| (value - expected).abs() < 1e-3);
+    for (name, expected) in
+        [("end6_xx_mm2", 1.0), ("end6_xy_mm2", 0.0), ("end6_yy_mm2", 4.0), ("contact2_percent", 3.0)]
+    {
+        assert!(is_near(name, expected), "{name}: {rows}");
+    }
+    // 0.1 rad.
+    assert!(is_near("theta1_deviation_deg", 5.7296), "{rows}");
+    assert_eq!(value(&rows, "in_contact2"), Some(0.0));
 
     line.board().send(&Message::Event(Event::Contact(2, 0b10)));
     send_ticks(&line, 2..3);
-    assert_eq!(socket.next("rows")["contact"], json!(SECOND));
+    let rows = socket.next("rows");
+    assert_eq!((value(&rows, "in_contact2"), value(&rows, "in_contact3")), (Some(1.0), Some(0.0)));
 }
 
 #[test]
@@ -59,7 +65,7 @@ fn status_has_the_uncertainty_of_the_tip_and_the_contacts() {
     }
     let status = Status::of(&link, &events, false).expect("the board has sent its status");
     let shape = status.shape.expect("the board has sent an uncertainty");
-    assert_eq!(shape.touched, SECOND);
+    assert_eq!(shape.touched, [false, true, false, false, false, false]);
     // χ² of two degrees of freedom: 95 % are within 2.448 standard deviations.
     let tip = shape.tip.expect("it is known");
     assert!((tip.major_mm - 2.0 * 2.448).abs() < 1e-3 && (tip.minor_mm - 2.448).abs() < 1e-3, "{tip:?}");

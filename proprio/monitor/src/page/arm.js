@@ -45,15 +45,27 @@ function line(x, y, heading, theta, end, geometry) {
   });
 }
 
-/** Semi-axes, mm, and turn of the ellipse of a covariance in m²; `sigmas`: semi-axis in standard deviations. */
-export function ellipse([xx, xy, yy], sigmas) {
+/** Semi-axis of a 95 % ellipse in standard deviations: the root of χ² with two degrees of freedom. */
+const SIGMAS = Math.sqrt(5.991);
+
+/** Semi-axes, mm, and angle of the longer one from x to y, rad, of the 95 % ellipse of a covariance xx, xy, yy in mm². */
+export function ellipse([xx, xy, yy]) {
   const mean = (xx + yy) / 2, spread = Math.hypot((xx - yy) / 2, xy);
-  const axis = (variance) => 1000 * sigmas * Math.sqrt(Math.max(0, variance));
+  const axis = (variance) => SIGMAS * Math.sqrt(Math.max(0, variance));
   return { major: axis(mean + spread), minor: axis(mean - spread), turn: Math.atan2(2 * xy, xx - yy) / 2 };
 }
 
+/** Covariance xx, xy, yy of each segment's end in one row, mm²; NaN where it is not known. */
+export function covariances(store, row) {
+  const parts = ['_xx_mm2', '_xy_mm2', '_yy_mm2'].map((suffix) => store.series('end', suffix));
+  return parts[0].map((_, i) => parts.map((part) => part[i][row]));
+}
+
+/** Contact of each segment in one row. */
+export const contacts = (store, row) => store.series('in_contact', '').map((column) => column[row] === 1);
+
 /** Draws the arm in one row onto a canvas or an SVG of this size. */
-export function drawArm(c, width, height, { store, row, geometry, uncertainty, ellipseSigmas, contact, colours }) {
+export function drawArm(c, width, height, { store, row, geometry, colours }) {
   const length = geometry?.reduce((sum, { length_mm, offset_mm }) => sum + length_mm + offset_mm, 0) ?? LENGTH * Math.max(1, store?.series('theta', '_deg').length ?? 0);
   const scale = Math.min(width / (2.1 * length), height / (1.6 * length));
   const to = ([x, y]) => [width / 2 + x * scale, height - 0.42 * length * scale - y * scale];
@@ -63,17 +75,16 @@ export function drawArm(c, width, height, { store, row, geometry, uncertainty, e
   c.lineCap = 'round';
   c.lineJoin = 'round';
   trail(c, store, row, to, colours);
-  const segments = shape(store, row, geometry);
+  const segments = shape(store, row, geometry), covariance = covariances(store, row), contact = contacts(store, row);
   const thick = Math.max(5, 26 * scale);
   segments.forEach(({ line }, i) => {
-    if (contact?.[i]) path(c, line.map(to), { colour: colours.bad, width: thick + 8 });
+    if (contact[i]) path(c, line.map(to), { colour: colours.bad, width: thick + 8 });
     path(c, line.map(to), { colour: colours.series[i % colours.series.length], width: thick });
   });
   segments.forEach(({ end, heading }, i) => {
     joint(c, to(end), heading, thick, colours);
-    const covariance = uncertainty?.ends_m2?.[i];
-    if (!covariance) return;
-    const { major, minor, turn } = ellipse(covariance, ellipseSigmas);
+    if (!covariance[i]?.every(Number.isFinite)) return;
+    const { major, minor, turn } = ellipse(covariance[i]);
     c.beginPath();
     c.ellipse(...to(end), major * scale, minor * scale, -turn, 0, 2 * Math.PI);
     c.strokeStyle = colours.ink;

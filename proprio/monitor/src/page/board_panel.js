@@ -15,7 +15,7 @@ const VALUES = [
   ['load', 'CPU load', (s) => s.health && `${s.health.load_percent.toFixed(1)} %, estimate at most ${s.health.longest_tick_ms.toFixed(1)} ms after the tick`],
   ['trouble', 'Since boot', (s) => s.health && `${s.health.overruns} overruns, ${s.health.dropped_frames} frames dropped, ${s.health.bus_recoveries} bus recoveries, ${s.health.saturations} saturations`],
   ['clock', 'Board\'s clock', (s) => s.clock && `began ${new Date(s.clock.zero_ms).toISOString().slice(11, 23)} UTC, ${drift(s.clock.drift)}`],
-  ['latency', 'Sample to screen', (s) => s.latency && `${s.latency.p50_ms.toFixed(0)} ms median, ${s.latency.p95_ms.toFixed(0)} ms 95 %, ${s.latency.largest_ms.toFixed(0)} ms largest${s.least_delay_ms ? `; ${s.least_delay_ms.toFixed(1)} ms of it computed` : ''}`],
+  ['latency', 'Sample to screen', (s, { latency: l }) => l && `${[[l.p5_ms, 'at 5 %'], [l.p50_ms, 'median'], [l.p95_ms, 'at 95 %'], [l.p99_ms, 'at 99 %'], [l.largest_ms, 'largest']].map(([ms, at]) => `${ms.toFixed(0)} ms ${at}`).join(', ')}${s.least_delay_ms ? `; ${s.least_delay_ms.toFixed(1)} ms of it computed` : ''}`],
   ['slow', 'Too slow', (s) => (s.dropped_events ? `${s.dropped_events} events dropped by this machine` : 'nothing dropped')],
   ['recording', 'Recording', (s) => (s.recording ? recording(s.recording) : 'none')],
 ];
@@ -38,8 +38,9 @@ export class BoardPanel {
     this.page = add(list, 'page', 'Page');
   }
 
-  show(status) {
-    VALUES.forEach(([, , toText], i) => text(this.values[i], (status && toText(status)) || '–'));
+  /** `delivery`: latency and skipped batches of this page. */
+  show(status, delivery) {
+    VALUES.forEach(([, , toText], i) => text(this.values[i], (status && toText(status, delivery)) || '–'));
     const notes = status?.notes ?? [];
     if (notes.join() === this.noted) return;
     this.noted = notes.join();
@@ -47,7 +48,7 @@ export class BoardPanel {
   }
 
   showPage(frames, rows, skipped) {
-    text(this.page, `${frames} frames/s, ${rows} rows${skipped ? `, ${skipped} messages skipped` : ''}`);
+    text(this.page, `${frames} frames/s, ${rows} rows${skipped ? `, ${skipped} ${skipped === 1 ? 'batch' : 'batches'} skipped` : ''}`);
   }
 }
 

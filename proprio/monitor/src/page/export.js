@@ -2,10 +2,10 @@
 
 import { visible } from './plot.js';
 
-/** Saves a text as a file of the browser. */
-export function save(name, type, text) {
+/** Saves a text or other content as a file of the browser. */
+export function save(name, type, content) {
   const link = document.createElement('a');
-  link.href = URL.createObjectURL(new Blob([text], { type }));
+  link.href = URL.createObjectURL(new Blob([content], { type }));
   link.download = name;
   document.body.append(link);
   link.click();

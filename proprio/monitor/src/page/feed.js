@@ -1,11 +1,13 @@
 // The connection to the server.
 
+/** Time without a dropped batch after which the missing rows are fetched, ms. */
+const CALM = 10_000;
 /** Time between two attempts to connect, ms. */
 const RETRY = 1000;
 
 /**
- * Keeps a WebSocket to the server and calls these `handlers`: `arm(message)`, `history(buffer)`, `rows(message)`,
- * `status(message)`, `skipped(count)`, `gone()`.
+ * Keeps a WebSocket to the server and calls these `handlers`: `arm(message)`, `history(buffer)`, `arrived(sent_us)`,
+ * `rows(message)`, `status(message)`, `delivery(message)`, `gone()`.
  */
 export class Feed {
   constructor(handlers) {
@@ -31,13 +33,17 @@ export class Feed {
         this.catchUp();
         break;
       case 'rows':
+        // The server holds back a page that does not confirm.
+        this.send({ taken_us: message.sent_us });
+        this.handlers.arrived(message.sent_us);
         if (this.waiting) this.waiting.push(message); else this.handlers.rows(message);
         break;
       case 'status':
         this.handlers.status(message);
         break;
-      case 'skipped':
-        this.handlers.skipped(message.messages);
+      case 'delivery':
+        this.fill(message.skipped);
+        this.handlers.delivery(message);
         break;
     }
   }
@@ -56,9 +62,20 @@ export class Feed {
     waiting.forEach((message) => this.handlers.rows(message));
   }
 
+  /** Fetches the rows of batches that the server has dropped, once this page keeps up again. */
+  fill(skipped) {
+    const now = performance.now();
+    if (skipped !== this.skipped) Object.assign(this, { skipped, skippedAt: now, hasGap: skipped > 0 });
+    if (!this.hasGap || this.waiting || now - this.skippedAt < CALM) return;
+    this.hasGap = false;
+    this.catchUp();
+  }
+
   /** Reports the batch that is on the screen. */
-  shown(newest_us) {
-    if (this.socket.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify({ shown_us: newest_us }));
+  shown(newest_us) { this.send({ shown_us: newest_us }); }
+
+  send(report) {
+    if (this.socket.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify(report));
   }
 }
 

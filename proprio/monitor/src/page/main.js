@@ -2,15 +2,19 @@
 
 import { Store } from './store.js';
 import { Feed, post } from './feed.js';
-import { armValues, drawArm } from './arm.js';
-import { PLOTS, Range, clock, drawPlot, extent, fit, innerWidth, visible } from './plot.js';
-import { View, handle } from './view.js';
+import { armValues, contacts, covariances, drawArm } from './arm.js';
+import { clock, fit } from './plot.js';
+import { Figures } from './figures.js';
+import { View, moveByKey } from './view.js';
 import { SensorList, text } from './sensors.js';
 import { FindingList } from './findings.js';
+import { faults } from './faults.js';
+import { Delay } from './delay.js';
 import { BoardPanel } from './board_panel.js';
 import { SessionPicker, load } from './sessions.js';
 import { Control } from './control.js';
-import { SvgContext, csv, save } from './export.js';
+import { csv, save } from './export.js';
+import { picture, toPng, toSvg } from './picture.js';
 
 const $ = (id) => document.getElementById(id);
 
@@ -22,12 +26,14 @@ const SERIES = 8;
 const app = {
   arm: null, status: null, live: null, session: null,
   view: new View(), isFixed: false, isPlaying: false, hidden: new Set(), marks: [],
-  uncertainty: null, contact: null,
+  /** The pointer's share of the plots' width. */
+  pointer: null, isPointerNew: false,
   /** The user has changed something; new rows have come. */
-  isDirty: true, isNew: false, newest_us: 0, drawn: 0, skipped: 0,
+  isDirty: true, isNew: false, newest_us: 0, drawn: 0, delivery: { latency: null, skipped: 0 }, palette: null,
   /** The rows that are shown: of a session, or live. */
   get store() { return this.session?.store ?? this.live; },
   changed() { this.isDirty = true; },
+  point(share) { Object.assign(this, { pointer: share, isPointerNew: true }); },
   fix(isFixed) {
     this.isFixed = isFixed;
     $('fixed').checked = isFixed;
@@ -39,8 +45,9 @@ const sensorList = new SensorList($('strips'));
 const findingList = new FindingList($('findings'));
 const boardPanel = new BoardPanel($('facts'), $('notes'));
 const control = new Control($('control'), showError, showNotice);
-const sessionPicker = new SessionPicker($('sessions'), () => app.arm?.opens_sessions, openSession);
-const plots = PLOTS.map(figure);
+const sessionPicker = new SessionPicker($('sessions'), openSession);
+const figures = new Figures($('figures'), $('add-plot'), app);
+const delay = new Delay();
 
 const feed = new Feed({
   arm(arm) {
@@ -50,36 +57,41 @@ const feed = new Feed({
       build();
     }
     for (const id of ['record', 'mark', 'board']) $(id).hidden = !arm.is_live;
-    linkState(arm.is_live ? 'wait' : 'ok', arm.is_live ? 'waiting for the board' : 'sessions only');
+    linkState(arm.is_live ? 'wait' : 'ok', arm.is_live ? 'waiting for a board' : 'sessions only');
     if (arm.session && !app.session) load(arm.session, {}).then(openSession, (error) => showError(error.message));
   },
   history(buffer) {
     app.live.load(buffer);
     app.changed();
   },
-  rows({ rows, newest_us, uncertainty, contact }) {
+  arrived(sent_us) { delay.arrived(sent_us, performance.now()); },
+  rows({ rows, newest_us }) {
     for (const [time, values] of rows) {
       // The history may contain it.
       if (!(time <= app.live.last)) app.live.push(time, values);
     }
-    Object.assign(app, { newest_us, uncertainty: uncertainty ?? app.uncertainty, contact: contact ?? app.contact });
+    app.newest_us = newest_us;
     if (!app.session && app.view.isFollowing) app.isNew = true;
   },
   status(status) {
     app.status = status;
     const name = status.board ? status.board.arm : '';
     if (!app.session) text($('arm-name'), name);
-    if (!status.port) linkState('bad', 'line gone, waiting');
-    else if (status.samples_hz > 0) linkState('ok', 'live');
-    else linkState('wait', 'no samples');
+    const behind = delay.behind(performance.now());
+    if (status.waiting) linkState('wait', 'waiting for a board');
+    else if (!status.port) linkState('bad', 'line gone, waiting');
+    else if (!(status.samples_hz > 0)) linkState('wait', 'no samples');
+    else if (behind) linkState('wait', `behind by ${behind.toFixed(0)} s`);
+    else linkState('ok', 'live');
     const load = status.health ? `, load ${status.health.load_percent.toFixed(1)} %` : '';
-    text($('glance'), `${status.samples_hz.toFixed(0)} samples/s, ${status.lost} lost${load}`);
-    recordState(Boolean(status.recording && !status.recording.failed), true);
+    text($('glance'), status.waiting ? '' : `${status.samples_hz.toFixed(0)} samples/s, ${status.lost} lost${load}`);
+    recordState(Boolean(status.recording && !status.recording.failed), !status.waiting);
     control.status(app.arm, status.health, status.offers_table);
   },
-  skipped(messages) { app.skipped += messages; },
+  delivery(delivery) { app.delivery = delivery; },
   gone() {
     app.status = null;
+    delay.reset();
     linkState('bad', 'monitor is not running');
     text($('glance'), '');
     recordState(false, false);
@@ -115,6 +127,7 @@ function showNotice(message, kind = 'done') {
 /** Builds the parts for another arm: sensors, and the legend that shows and hides segments. */
 function build() {
   sensorList.build(app.store.names);
+  figures.build();
   const segments = app.store.series('theta', '_deg').length;
   app.hidden.clear();
   $('segments').replaceChildren(...Array.from({ length: segments }, (_, i) => {
@@ -146,28 +159,15 @@ function listMarks() {
   }));
 }
 
-function figure(spec) {
-  const element = document.createElement('figure');
-  const canvas = Object.assign(document.createElement('canvas'), { tabIndex: 0 });
-  canvas.setAttribute('role', 'img');
-  canvas.setAttribute('aria-label', `${spec.title}, ${spec.unit}, over time`);
-  element.append(Object.assign(document.createElement('figcaption'), { textContent: `${spec.title}, ${spec.unit}` }), canvas);
-  $('figures').append(element);
-  const range = new Range(spec.least);
-  handle(canvas, app, range);
-  return { ...spec, canvas, range };
-}
-
 // Sessions
 
 function openSession(session) {
   app.session = session;
-  Object.assign(app, { isPlaying: false, uncertainty: null, contact: null });
+  app.isPlaying = false;
   app.view.span = 0;
   app.view.follow();
-  app.view.seek(session.store, session.store.first);
+  app.view.seek(session.store, session.store.firstValue(session.store.series('x', '_mm')));
   app.view.end = session.store.last;
-  plots.forEach(({ range }) => range.reset());
   $('span').value = '0';
   $('close-session').hidden = !app.arm?.is_live;
   text($('arm-name'), session.name);
@@ -183,7 +183,6 @@ function closeSession() {
   $('span').value = '30';
   $('close-session').hidden = true;
   $('thinned').hidden = true;
-  plots.forEach(({ range }) => range.reset());
   build();
 }
 
@@ -211,7 +210,7 @@ function pause() {
 }
 
 function reset() {
-  plots.forEach(({ range }) => range.reset());
+  figures.resetRanges();
   app.fix(false);
   app.view.span = Number($('span').value) || 0;
   if (app.session) app.view.end = app.session.store.last; else app.view.follow();
@@ -227,9 +226,9 @@ function colours() {
   return { series, ink: get('--ink'), faint: get('--faint'), grid: get('--grid'), paper: get('--card'), bad: get('--bad'), trail: get('--trail'), font: 'system-ui, sans-serif' };
 }
 
-let palette = colours();
+app.palette = colours();
 matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => {
-  palette = colours();
+  app.palette = colours();
   app.changed();
 });
 new ResizeObserver(() => app.changed()).observe(document.body);
@@ -238,29 +237,7 @@ function armSpec() {
   const { store } = app;
   const row = store?.count ? store.rowAt(app.view.cursor ?? store.last) : 0;
   const geometry = (app.session ? app.session.arm : app.arm)?.geometry;
-  const isNow = !app.session && app.view.isFollowing;
-  return { store, row, geometry, colours: palette, ellipseSigmas: app.arm?.ellipse_sigmas, uncertainty: isNow && app.uncertainty, contact: isNow && app.contact };
-}
-
-function plotSpec({ prefix, range, canvas }) {
-  const { store, view, hidden } = app;
-  const [from, to] = wholePixels(view.window(store), innerWidth(canvas));
-  const columns = store?.series(prefix, '_deg') ?? [];
-  const seen = columns.filter((_, i) => !hidden.has(i));
-  const [low, high] = store?.count ? extent(seen, ...visible(store, from, to, view.limit)) : [NaN, NaN];
-  if (!app.isFixed) range.follow(low, high);
-  const hasTable = Boolean(app.session || app.arm?.opens_sessions);
-  const unknown = !store?.count ? 'nothing has come yet' : !hasTable ? 'takes a table: --table TABLE.toml'
-    : app.session || prefix === 'theta' ? 'not known here' : 'known from the next tare on';
-  const empty = low <= high ? '' : unknown;
-  return { store, columns, range, from, to, limit: view.limit, cursor: view.cursor, marks: (app.session ?? app).marks, hidden, colours: palette, empty };
-}
-
-/** The window, moved by whole pixels only: rows stay in their columns, and an unchanged picture is not drawn again. */
-function wholePixels([from, to], width) {
-  const pixel = (to - from) / width;
-  const end = Math.ceil(to / pixel) * pixel;
-  return [end - (to - from), end];
+  return { store, row, geometry, colours: app.palette };
 }
 
 /** Draws the arm, and the plots where they have changed or the newest row is in another column of pixels. */
@@ -268,16 +245,29 @@ function draw(isAll) {
   const spec = armSpec();
   drawArm(...fit($('arm-canvas')), spec);
   const [from, to] = app.view.window(app.store);
-  const column = Math.ceil(((app.store?.last ?? 0) / (to - from)) * innerWidth(plots[0].canvas));
-  if (isAll || column !== drawnTo) for (const plot of plots) drawPlot(...fit(plot.canvas), plotSpec(plot));
+  const column = Math.ceil(((app.store?.last ?? 0) / (to - from)) * figures.width);
+  if (isAll || column !== drawnTo) figures.draw();
   drawnTo = column;
   if (spec.store?.count) text($('arm-values'), armValues(spec.store, spec.row));
+  if (isAll) showMoment();
   app.drawn++;
+}
+
+/** The moment that arm and plots show, in words and numbers. */
+function showMoment() {
+  const { store, view } = app;
+  if (!store?.count) return;
+  const isNow = view.cursor === null, time = store.times[store.rowAt(view.cursor ?? view.last(store))];
+  const before = !app.session && !isNow ? `, ${clock(store.last - time, 0.1)} ago` : '';
+  text($('moment'), isNow ? `now, ${clock(time)}` : `at ${clock(time)}${app.isPlaying ? ', playing' : `, picked${before}`}`);
+  $('moment').dataset.state = isNow ? 'ok' : 'wait';
+  figures.showReadings(app.pointer);
 }
 
 function drawPeriodic() {
   const { store, view } = app;
   if (!store) return;
+  showMoment();
   const isSession = Boolean(app.session);
   const row = isSession ? store.rowAt(view.cursor ?? store.last) : Math.max(store.begin, store.end - 1);
   sensorList.show(store, row, isSession ? null : app.status?.sensors ?? []);
@@ -294,9 +284,13 @@ function drawPeriodic() {
   }
   const at = (name) => store.count && store.column(name) && Number.isFinite(store.column(name)[row]);
   $('key-truth').hidden = !store.names.some((name) => /^truth\d+_x_mm$/.test(name) && at(name));
-  $('key-ellipse').hidden = !app.uncertainty;
-  $('key-contact').hidden = !app.contact;
-  boardPanel.show(app.status);
+  const shown = store.count ? store.rowAt(view.cursor ?? store.last) : -1;
+  $('key-ellipse').hidden = shown < 0 || !covariances(store, shown).flat().some(Number.isFinite);
+  $('key-contact').hidden = shown < 0 || !contacts(store, shown).some(Boolean);
+  boardPanel.show(app.status, app.delivery);
+  const wrong = app.session ? '' : faults(app.status, sensorList.states(app.status?.sensors));
+  text($('wrong'), wrong);
+  $('wrong').hidden = !wrong;
   findingList.show((app.session ?? app.status)?.findings ?? []);
 }
 
@@ -313,6 +307,8 @@ function frame(now) {
     app.isDirty = true;
   }
   played = now;
+  if (app.isPointerNew) figures.showReadings(app.pointer);
+  app.isPointerNew = false;
   if (!app.isDirty && !app.isNew) return;
   draw(app.isDirty);
   Object.assign(app, { isDirty: false, isNew: false });
@@ -321,35 +317,34 @@ function frame(now) {
 requestAnimationFrame(frame);
 setInterval(drawPeriodic, PERIOD);
 setInterval(() => {
-  boardPanel.showPage(app.drawn, app.store?.count ?? 0, app.skipped);
+  boardPanel.showPage(app.drawn, app.store?.count ?? 0, app.delivery.skipped);
   app.drawn = 0;
 }, 1000);
 
 // Input
 
-function exportCsv() {
-  if (app.store?.count) save('proprio.csv', 'text/csv', csv(app.store, ...app.view.window(app.store), app.view.limit));
+/** Name of a file: the session and the part of it, or the arm and the time of day, UTC. */
+function fileName(ending) {
+  const [from, to] = app.view.window(app.store).map((time) => Math.min(Math.max(time, app.store.first), app.view.last(app.store)).toFixed(2));
+  const session = app.session?.name.replace(/\.\w+$/, '');
+  const name = session ?? `${app.status?.board?.arm || 'arm'}-${new Date().toISOString().slice(0, 19).replaceAll(':', '-')}Z`;
+  return `${name}-${from}s-${to}s.${ending}`;
 }
 
-/** The arm and all plots, one below the other, as they are seen. */
-function exportSvg() {
-  const c = new SvgContext();
-  let y = 0, width = 0;
-  const add = (canvas, title, drawIt) => {
-    c.group(0, y);
-    c.fillStyle = palette.ink;
-    Object.assign(c, { font: '13px system-ui, sans-serif', textAlign: 'left', textBaseline: 'top' });
-    c.fillText(title, 8, 6);
-    c.endGroup();
-    c.group(0, y + 24);
-    drawIt(canvas.clientWidth, canvas.clientHeight);
-    c.endGroup();
-    y += canvas.clientHeight + 32;
-    width = Math.max(width, canvas.clientWidth);
-  };
-  add($('arm-canvas'), `Arm, ${$('arm-values').textContent}`, (w, h) => drawArm(c, w, h, armSpec()));
-  for (const plot of plots) add(plot.canvas, `${plot.title}, ${plot.unit}`, (w, h) => drawPlot(c, w, h, plotSpec(plot)));
-  save('proprio.svg', 'image/svg+xml', c.text(width, y, palette.paper));
+function exportCsv() {
+  if (app.store?.count) save(fileName('csv'), 'text/csv', csv(app.store, ...app.view.window(app.store), app.view.limit));
+}
+
+/** Saves a picture of the arm and all plots, one below the other, as they are seen. */
+async function exportPicture(ending) {
+  if (!app.store?.count) return;
+  const { table } = (app.session ? app.session.arm : app.arm) ?? {};
+  const what = app.session ? `session ${app.session.name}` : `arm ${app.status?.board?.arm || 'without a name'}`;
+  const head = [what, `table ${table ?? 'none'}`, `${$('moment').textContent}; saved ${new Date().toISOString().slice(0, 19)}Z`];
+  const arm = armSpec();
+  const drawn = picture({ head, arm, armTitle: `Arm, ${$('arm-values').textContent}`, armSize: $('arm-canvas'), figures, row: arm.row, colours: app.palette });
+  if (ending === 'svg') save(fileName('svg'), 'image/svg+xml', toSvg(drawn));
+  else save(fileName('png'), 'image/png', await toPng(drawn));
 }
 
 async function attempt(work) {
@@ -370,12 +365,15 @@ const mark = () => attempt(async () => {
   app.changed();
 });
 
-const BUTTONS = { pause, record, mark, open: () => attempt(() => sessionPicker.show()), 'close-session': closeSession, reset, csv: exportCsv, svg: exportSvg, 'in-full': inFull };
+const BUTTONS = { pause, record, mark, open: () => attempt(() => sessionPicker.show()), 'close-session': closeSession, reset, csv: exportCsv, svg: () => exportPicture('svg'), png: () => exportPicture('png'), 'in-full': inFull };
 for (const [id, act] of Object.entries(BUTTONS)) $(id).addEventListener('click', act);
 $('fixed').addEventListener('change', ({ target }) => app.fix(target.checked));
 $('span').addEventListener('change', ({ target }) => {
   app.view.setSpan(app.store, Number(target.value));
   app.changed();
+});
+$('scrub').addEventListener('keydown', (event) => {
+  if (moveByKey(event, app)) event.preventDefault();
 });
 $('scrub').addEventListener('input', ({ target }) => {
   app.isPlaying = false;
@@ -383,7 +381,7 @@ $('scrub').addEventListener('input', ({ target }) => {
   app.changed();
 });
 
-const KEYS = { ' ': 'pause', r: 'record', m: 'mark', t: 'tare', o: 'open', 0: 'reset', c: 'csv', s: 'svg', f: 'fixed' };
+const KEYS = { ' ': 'pause', r: 'record', m: 'mark', t: 'tare', o: 'open', 0: 'reset', c: 'csv', s: 'svg', p: 'png', f: 'fixed' };
 document.addEventListener('keydown', (event) => {
   if (event.key === 'Escape' && app.arm?.allows_control) control.vent();
   const isTyping = event.target.closest('input:not([type=checkbox], [type=range]), select, dialog');

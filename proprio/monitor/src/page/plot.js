@@ -1,11 +1,7 @@
 // Plots over time, of any number of rows.
 
-export const PLOTS = [
-  { title: 'Bend angle θ', unit: '°', prefix: 'theta', least: 20 },
-  { title: 'Drift taken from the IMUs', unit: '°', prefix: 'drift', least: 2 },
-  { title: 'Innovation by the corrected IMUs', unit: '°', prefix: 'innovation_imu', least: 1 },
-  { title: 'Innovation by the bend sensors', unit: '°', prefix: 'innovation_bend', least: 4 },
-];
+/** Opacity of the second curve of a colour. */
+export const SECOND = 0.45;
 
 const LEFT = 48, RIGHT = 10, TOP = 8, BOTTOM = 20;
 
@@ -112,6 +108,19 @@ export function ticks(low, high, about) {
   return { step, found };
 }
 
+/** Steps of ticks of time from a second on, s. */
+const SECONDS = [1, 2, 5, 10, 15, 30, 60, 120, 300, 600, 900, 1800, 3600];
+
+/** Ticks of time, at most about this number. */
+export function timeTicks(from, to, about) {
+  const rough = (to - from) / about - 1e-9;
+  if (rough <= 0.5) return ticks(from, to, about);
+  const step = SECONDS.find((candidate) => candidate >= rough) ?? Math.ceil(rough / 3600) * 3600;
+  const found = [];
+  for (let i = Math.ceil(from / step); i * step <= to; i++) found.push(i * step);
+  return { step, found };
+}
+
 const shown = (value, step) => minus(value.toFixed(Math.max(0, -Math.floor(Math.log10(step) + 1e-9))));
 
 /** With a minus instead of a hyphen, and no minus in front of nothing. */
@@ -127,7 +136,7 @@ export function clock(seconds, step = 0.01) {
 
 /** Draws one plot onto a canvas or an SVG of this size. */
 export function drawPlot(c, width, height, spec) {
-  const { store, columns, range, from, to, limit, cursor, marks, hidden, colours, empty } = spec;
+  const { store, curves, range, from, to, limit, cursor, marks, colours, empty } = spec;
   const inner = { x: LEFT, y: TOP, w: width - LEFT - RIGHT, h: height - TOP - BOTTOM };
   const toX = (time) => inner.x + ((time - from) / (to - from)) * inner.w;
   const toY = (value) => inner.y + (1 - (value - range.low) / (range.high - range.low)) * inner.h;
@@ -153,9 +162,9 @@ export function drawPlot(c, width, height, spec) {
     // Where rows are dense, lines of one pixel: browsers draw them twenty times as fast as wider ones.
     c.lineWidth = last - first > inner.w ? 1 : 1.6;
     c.lineJoin = 'bevel';
-    columns.forEach((column, i) => {
-      if (hidden.has(i)) return;
-      c.strokeStyle = colours.series[i % colours.series.length];
+    for (const { column, colour, isSecond } of curves) {
+      c.strokeStyle = colours.series[colour % colours.series.length];
+      c.globalAlpha = isSecond ? SECOND : 1;
       c.beginPath();
       for (const piece of pieces(store.times, column, first, last, toX, toY)) {
         c.moveTo(piece[0], piece[1]);
@@ -163,7 +172,8 @@ export function drawPlot(c, width, height, spec) {
         for (let k = 2; k < piece.length; k += 2) c.lineTo(piece[k], piece[k + 1]);
       }
       c.stroke();
-    });
+    }
+    c.globalAlpha = 1;
   }
   if (Number.isFinite(cursor)) vertical(c, toX(cursor), inner, colours.ink, []);
   c.restore();
@@ -197,7 +207,7 @@ function axes(c, inner, { from, to, range, toX, toY, colours, width }) {
     c.fillText(shown(value, vertical.step), inner.x - 6, y);
   }
   c.textBaseline = 'top';
-  const horizontal = ticks(from, to, Math.max(2, width / 110));
+  const horizontal = timeTicks(from, to, Math.max(2, width / 110));
   // There is nothing before the begin.
   for (const time of horizontal.found.filter((found) => found >= 0)) {
     const x = Math.round(toX(time)) + 0.5;
@@ -220,6 +230,9 @@ export function shares(canvas, event) {
   const y = 1 - (event.clientY - box.top - TOP) / (box.height - TOP - BOTTOM);
   return [Math.min(1, Math.max(0, x)), Math.min(1, Math.max(0, y))];
 }
+
+/** Distance of a share of the width from the left of the canvas, pixels. */
+export const offset = (canvas, share) => LEFT + share * innerWidth(canvas);
 
 /** Width of a plot's inside. */
 export const innerWidth = (canvas) => canvas.clientWidth - LEFT - RIGHT;

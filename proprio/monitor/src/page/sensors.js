@@ -20,12 +20,15 @@ export class SensorList {
       const item = document.createElement('li');
       const part = (tag, className) => item.appendChild(Object.assign(document.createElement(tag), { className }));
       part('b', 'name').textContent = `${kind === 'imu' ? 'IMU' : 'bend'} ${number}`;
-      const sensor = { column, kind, item, value: part('span', 'value'), state: part('span', 'state'), reason: part('span', 'reason') };
+      const sensor = { column, kind, short: `${kind}${kind === 'imu' ? '' : ' '}${number}`, item, value: part('span', 'value'), state: part('span', 'state'), reason: part('span', 'reason') };
       item.id = `strip-${kind}${number}`;
       this.list.append(item);
       return sensor;
     });
   }
+
+  /** Short name and state of each sensor. */
+  states(health) { return this.sensors.map(({ short: name }, i) => ({ name, state: health?.[i]?.state })); }
 
   /** `health`: the board's state of each, in this order; without it a sensor is read or missing. */
   show(store, row, health) {

@@ -18,24 +18,18 @@ export async function load(name, part) {
 
 /** The dialog that lists the sessions that can be opened. */
 export class SessionPicker {
-  constructor(dialog, opens, chosen) {
+  constructor(dialog, chosen) {
     this.dialog = dialog;
     this.chosen = chosen;
     this.note = dialog.querySelector('#sessions-note');
     this.files = dialog.querySelector('#files');
     this.file = dialog.querySelector('#file');
     this.file.addEventListener('change', () => this.send(this.file.files[0]));
-    this.opens = opens;
   }
 
   async show() {
     this.dialog.showModal();
-    this.file.disabled = !this.opens();
     this.files.replaceChildren();
-    if (!this.opens()) {
-      this.note.textContent = 'A session is shown with the estimates of a replay, which needs a table: start proprio monitor with --table TABLE.toml.';
-      return;
-    }
     const files = await (await fetch('/sessions')).json();
     this.note.textContent = files.length ? '' : 'There is no session (.csv, .mcap, .bin) in the folder of this monitor.';
     for (const { name, bytes } of files) {

@@ -11,6 +11,8 @@ export class Store {
     this.times = new Float64Array(2 * room);
     this.columns = names.map(() => new Float32Array(2 * room));
     this.byName = new Map(names.map((name, i) => [name, this.columns[i]]));
+    /** Columns that are computed from others. */
+    this.derived = [];
     this.clear();
   }
 
@@ -25,14 +27,24 @@ export class Store {
 
   column(name) { return this.byName.get(name); }
 
+  /** Adds a column that is computed from others, unless it is there: `compute(row)` returns its value. */
+  derive(name, compute) {
+    if (this.byName.has(name)) return;
+    const column = new Float32Array(2 * this.room);
+    this.byName.set(name, column);
+    this.derived.push({ column, compute });
+    for (let row = this.begin; row < this.end; row++) column[row] = compute(row);
+  }
+
   push(time, values) {
     if (this.end === this.times.length) {
-      for (const array of [this.times, ...this.columns]) array.copyWithin(0, this.end - this.room, this.end);
+      for (const array of [this.times, ...this.columns, ...this.derived.map(({ column }) => column)]) array.copyWithin(0, this.end - this.room, this.end);
       this.begin = 0;
       this.end = this.room;
     }
     this.times[this.end] = time;
     for (let i = 0; i < values.length; i++) this.columns[i][this.end] = values[i] ?? NaN;
+    for (const { column, compute } of this.derived) column[this.end] = compute(this.end);
     this.end++;
     this.begin = Math.max(this.begin, this.end - this.room);
   }
@@ -47,14 +59,22 @@ export class Store {
     return Math.max(this.begin, low - 1);
   }
 
-  /** Values of one kind, a segment each, in a row: `series('theta', '_deg')`. */
-  series(prefix, suffix) {
+  /** Numbers of the columns of one kind, from 1. */
+  numbers(prefix, suffix) {
     const found = [];
-    for (let i = 1; ; i++) {
-      const column = this.column(`${prefix}${i}${suffix}`);
-      if (!column) return found;
-      found.push(column);
+    while (this.column(`${prefix}${found.length + 1}${suffix}`)) found.push(found.length + 1);
+    return found;
+  }
+
+  /** Columns of one kind, a segment each: `series('theta', '_deg')`. */
+  series(prefix, suffix) { return this.numbers(prefix, suffix).map((i) => this.column(`${prefix}${i}${suffix}`)); }
+
+  /** Time of the first row with a value in one of these columns; of the first row where there is none. */
+  firstValue(columns) {
+    for (let row = this.begin; row < this.end; row++) {
+      if (columns.some((column) => Number.isFinite(column[row]))) return this.times[row];
     }
+    return this.first;
   }
 
   /** Replaces its rows by those of the server's answer; returns the description in front of them. */
@@ -68,6 +88,9 @@ export class Store {
     const floats = new Float32Array(buffer, offset + 8 * about.rows);
     this.columns.forEach((column, i) => column.set(floats.subarray(i * about.rows, (i + 1) * about.rows)));
     this.end = about.rows;
+    for (const { column, compute } of this.derived) {
+      for (let row = 0; row < this.end; row++) column[row] = compute(row);
+    }
     return about;
   }
 }

@@ -70,6 +70,19 @@ export class View {
     this.end = Math.min(Math.max(end, store.first + 0.1 * this.span), this.last(store) + 0.9 * this.span);
   }
 
+  /** Moves the cursor by a number of rows. */
+  step(store, rows) {
+    this.hold(store);
+    const row = store.rowAt(this.cursor) + rows;
+    this.seek(store, store.times[Math.min(Math.max(row, store.begin), store.rowAt(this.last(store)))]);
+  }
+
+  /** Moves the cursor by a share of the width. */
+  page(store, share) {
+    const [from, to] = this.window(store);
+    this.seek(store, (this.cursor ?? this.last(store)) + share * (to - from));
+  }
+
   /** Moves the cursor to this moment, and the window to the cursor. */
   seek(store, time) {
     this.hold(store);
@@ -79,8 +92,27 @@ export class View {
   }
 }
 
+/** Moves the cursor by a key; returns false for a key that does not. */
+export function moveByKey({ key }, app) {
+  const { view, store } = app;
+  const act = {
+    ArrowLeft: () => view.step(store, -1),
+    ArrowRight: () => view.step(store, 1),
+    PageDown: () => view.page(store, -0.1),
+    PageUp: () => view.page(store, 0.1),
+    Home: () => view.seek(store, store.first),
+    End: () => view.seek(store, view.last(store)),
+  }[key];
+  if (!act || !store?.count) return false;
+  app.isPlaying = false;
+  act();
+  app.changed();
+  return true;
+}
+
 /**
- * Handles mouse, touch and keys on a plot. `app` has `store`, `view`, `isFixed` and `changed()`; `range` is the plot's own.
+ * Handles mouse, touch and keys on a plot. `app` has `store`, `view`, `isFixed`, `changed()` and `point(share)`, which takes the
+ * pointer's share of the width, or null; `range` is the plot's own.
  */
 export function handle(canvas, app, range) {
   const pointers = new Map();
@@ -97,8 +129,11 @@ export function handle(canvas, app, range) {
     canvas.setPointerCapture(event.pointerId);
     pointers.set(event.pointerId, event);
     moved = 0;
+    app.point(shares(canvas, event)[0]);
   });
+  canvas.addEventListener('pointerleave', () => app.point(null));
   canvas.addEventListener('pointermove', (event) => {
+    app.point(shares(canvas, event)[0]);
     const before = pointers.get(event.pointerId);
     if (!before) return;
     const [dx, dy] = [event.clientX - before.clientX, event.clientY - before.clientY];
@@ -119,19 +154,23 @@ export function handle(canvas, app, range) {
     // A click without a movement picks a moment.
     if (event.type === 'pointerup' && moved <= 4 && pointers.size === 1 && app.store.count) {
       const [from, to] = app.view.window(app.store);
+      app.isPlaying = false;
       app.view.seek(app.store, from + shares(canvas, event)[0] * (to - from));
       app.changed();
     }
     pointers.delete(event.pointerId);
+    if (event.pointerType !== 'mouse') app.point(null);
   };
   canvas.addEventListener('pointerup', release);
   canvas.addEventListener('pointercancel', release);
 
   canvas.addEventListener('keydown', (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
+    if (moveByKey(event, app)) {
+      event.preventDefault();
+      return;
+    }
     const act = {
-      ArrowLeft: () => app.store.count && app.view.move(app.store, -0.1),
-      ArrowRight: () => app.store.count && app.view.move(app.store, 0.1),
       ArrowUp: () => app.isFixed && range.move(0.1),
       ArrowDown: () => app.isFixed && range.move(-0.1),
       '+': () => zoom(event.shiftKey && event.code === 'NumpadAdd', 0.8, 0.5, 0.5),

@@ -105,7 +105,7 @@ fn extract(input: &Path, mut file: OutputFile, has_truth: bool) -> Result<(Outpu
                 holes += 1;
                 Ok(())
             }
-            Item::Truth(..) | Item::Mark(..) => Ok(()),
+            Item::Truth(..) | Item::Mark(..) | Item::SetPoints(_) => Ok(()),
         };
         result.map_err(|error| file.error(error))?;
     }

@@ -296,6 +296,18 @@ pub fn set_points(stamp: HostNs, requested: &SetPressures) -> Vec<u8> {
     cdr.into_bytes()
 }
 
+/// The pressures in a `proprio_msgs/msg/SetPoints`, Pa; `None` where it cannot be decoded.
+pub fn read_set_points(message: &[u8]) -> Option<Vec<u32>> {
+    let mut cdr = CdrReader::new(message)?;
+    cdr.u32()?;
+    cdr.u32()?;
+    cdr.string()?;
+    let regulators = cdr.length()?;
+    let pressures_pa = (0..regulators).map(|_| cdr.u32()).collect::<Option<_>>()?;
+    cdr.u16()?;
+    cdr.is_at_end().then_some(pressures_pa)
+}
+
 /// `proprio_msgs/msg/Truth`.
 pub fn truth(stamp: HostNs, ends: &[Option<Truth>]) -> Vec<u8> {
     let mut cdr = header(stamp);

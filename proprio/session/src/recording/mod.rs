@@ -7,7 +7,8 @@
 //! |---|---|
 //! | `writer.rs`, `channel.rs`, `topics.rs` | writes a recording; its channels and their topics |
 //! | `board_messages.rs` | the board's messages on their channels, for a file or a live stream |
-//! | `reader.rs`, `read_error.rs` | reads bytes, truth and marks |
+//! | `reader.rs`, `read_error.rs` | reads bytes, truth, set-points and marks |
+//! | `attached_table.rs` | the table that is attached |
 //! | `rows.rs` | the rows of a recording |
 //! | `recover.rs` | recovery of a file that was cut or damaged |
 //! | `scanner.rs`, `window.rs`, `form.rs`, `hole.rs` | whole records of a damaged file, and its holes |
@@ -15,6 +16,7 @@
 //! | `decompress.rs`, `summary.rs` | compressed chunks; the index at a file's end |
 //! | `messages.rs`, `schema.rs`, `cdr.rs` | ROS 2 messages |
 
+mod attached_table;
 mod board_messages;
 mod cdr;
 mod channel;
@@ -36,6 +38,7 @@ pub mod topics;
 mod window;
 mod writer;
 
+pub(crate) use attached_table::attached_table;
 pub use board_messages::{BoardMessages, MessageInfo, MessageSink};
 pub use cdr::CdrWriter;
 pub use channel::{BOARD_CHANNELS, CDR, Channel, ROS2_MESSAGE};

@@ -13,7 +13,7 @@ use super::own_channels::{OWN_CHANNELS, are_own};
 use super::read_error::ReadError;
 use super::scanner::{Part, Scanner};
 use super::summary::Summary;
-use super::topics::{HISTORY, MARKS, RAW, SAMPLES, TRUTH};
+use super::topics::{HISTORY, MARKS, RAW, SAMPLES, SET_POINTS, TRUTH};
 use crate::{HostNs, Truth};
 
 /// Length that no header reaches: it has two short names.
@@ -32,6 +32,8 @@ pub enum Item {
     Truth(u32, Vec<Option<Truth>>),
     /// A mark that a person has set: its time and text.
     Mark(HostNs, String),
+    /// Pressures of the regulators that the host has requested, Pa.
+    SetPoints(Vec<u32>),
     /// A damaged part, which is left out.
     Hole(Hole),
 }
@@ -157,6 +159,8 @@ fn item(topic: &str, at: HostNs, sequence: u32, data: &[u8]) -> Result<Option<It
         HISTORY => Some(Item::History(at, received(data))),
         SAMPLES => messages::read_sample(data).map(|sample| Item::Sample(at, sample)),
         TRUTH => messages::read_truth(data).map(|ends| Item::Truth(sequence, ends)),
+        // Versions before 0.3 have another form of it, which is no part of a session.
+        SET_POINTS => return Ok(messages::read_set_points(data).map(Item::SetPoints)),
         MARKS => messages::read_mark(data).map(|text| Item::Mark(at, text)),
         _ => return Ok(None),
     };

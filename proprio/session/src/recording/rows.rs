@@ -81,6 +81,7 @@ impl<I: Iterator<Item = Result<Item, ReadError>>> RecordedRows<I> {
                     self.complete.extend(row);
                 }
                 Some(Item::Hole(_)) => self.hole(),
+                Some(Item::SetPoints(pressures_pa)) => self.assembler.requested(pressures_pa),
                 Some(Item::Truth(tick, ends)) => self.assembler.truth(tick, &ends),
                 Some(Item::Mark(at, text)) => {
                     self.marks.push(Mark { time_us: self.assembler.row_time_us(at), text });

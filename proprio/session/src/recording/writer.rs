@@ -9,6 +9,7 @@ use mcap::write::NoSeek;
 use mcap::{Attachment, McapError, WriteOptions};
 use telemetry::{Hello, Message, SCHEMA, SetPressures};
 
+use super::attached_table::TABLE;
 use super::board_messages::{BoardMessages, MessageInfo, MessageSink};
 use super::channel::{CDR, Channel, HISTORY, MARKS, RAW, ROS2_MESSAGE, ROS2_PROFILE, SET_POINTS, TRUTH};
 use super::messages;
@@ -51,7 +52,7 @@ impl<W: Write> Recorder<W> {
     /// # Errors
     /// Errors of the sink.
     pub fn attach_table(&mut self, at: HostNs, toml: &[u8]) -> io::Result<()> {
-        self.attach(at, "table.toml", "application/toml", toml)
+        self.attach(at, TABLE, "application/toml", toml)
     }
 
     fn attach(&mut self, at: HostNs, name: &str, media_type: &str, data: &[u8]) -> io::Result<()> {

@@ -132,6 +132,7 @@ pub fn page_messages() -> Vec<Seed> {
         ("tare-anyway", 4, r#"{"force":true}"#),
         ("table", 5, "{}"),
         ("shown", 6, r#"{"shown_us":1764000000000000}"#),
+        ("taken", 6, r#"{"taken_us":1764000000000000}"#),
         ("session", 7, "name=session.mcap&from_s=1.5&to_s=2e3"),
         ("session-outside", 7, "name=..%2Fsession.csv"),
         ("get", 8, "GET / HTTP/1.1\r\nHost: 127.0.0.1:8000\r\n\r\n"),
