@@ -37,7 +37,7 @@ mod sessions;
 mod socket;
 
 use std::net::SocketAddr;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
@@ -78,6 +78,8 @@ pub struct Options<'p> {
     pub session: Option<PathBuf>,
     /// Folder that only this user can read, in which the monitor of a board is announced to the user's programs.
     pub runtime_folder: Option<PathBuf>,
+    /// Address of the board's stream to Foxglove, which is announced with it.
+    pub stream: Option<SocketAddr>,
     /// Returns the remedy of an error, which the page shows with it.
     pub help: fn(&Error) -> String,
     /// Returns the text of a finding of the session check, with its remedy.
@@ -104,7 +106,7 @@ impl Monitor {
         let address = server.address();
         let compiled = options.table.as_ref().map(|table| table.compile::<Q>(TICK_HZ)).transpose()?;
         let (link, events) = live.unzip();
-        let announcement = announce(link.as_ref(), options.runtime_folder.as_deref(), address);
+        let announcement = announce(link.as_ref(), &options, address);
         let (announcement, program_token) = announcement.unzip();
         let shared = Arc::new(shared(link, options, program_token));
         if let Some(events) = events {
@@ -137,11 +139,11 @@ impl Monitor {
 
 /// Announces the monitor of a board to this user's programs, with a token for them. Without it they cannot use it, which is no
 /// failure of the monitor.
-fn announce(link: Option<&Link>, folder: Option<&Path>, address: SocketAddr) -> Option<(Announcement, Token)> {
+fn announce(link: Option<&Link>, options: &Options, address: SocketAddr) -> Option<(Announcement, Token)> {
     let line = link?.state().port?;
     let token = Token::new().ok()?;
-    let announcement = Announcement::new(folder?, line, address, token.to_string()).ok()?;
-    Some((announcement, token))
+    let monitor = RunningMonitor { line, address, token: token.to_string(), stream: options.stream };
+    Some((Announcement::new(options.runtime_folder.as_deref()?, &monitor).ok()?, token))
 }
 
 /// Serves one connection of a monitor without a board on any stream, which stands for one to the port in `options`. Tests and
