@@ -143,6 +143,7 @@ fn served(bytes: &[u8], leaves: bool) -> Vec<u8> {
         .get_or_init(|| tokio::runtime::Builder::new_current_thread().enable_all().build().expect("a runtime starts"));
     let options = Options {
         runtime_folder: None,
+        stream: None,
         port: PORT,
         table: None,
         folder: PathBuf::from("/nowhere"),

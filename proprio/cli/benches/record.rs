@@ -111,6 +111,7 @@ fn open_on_the_page() {
         token: None,
         session,
         runtime_folder: None,
+        stream: None,
         help: ToString::to_string,
         finding_text: ToString::to_string,
     };

@@ -1,6 +1,7 @@
 //! Errors that stop a command; `help/` has their remedies.
 
 use std::io;
+use std::net::SocketAddr;
 use std::path::PathBuf;
 
 use board_table::MAX_FULL_SCALE_PA;
@@ -32,6 +33,9 @@ pub enum Error {
     /// A running monitor, through which the board is reached.
     #[error(transparent)]
     RunningMonitor(#[from] proprio_monitor::RunningMonitorError),
+    /// The running monitor that has the board's line does not stream.
+    #[error("the monitor at http://{0} has the board's line, and does not stream")]
+    NoStream(SocketAddr),
     /// The live stream for other viewers.
     #[error(transparent)]
     Foxglove(#[from] proprio_foxglove::Error),

@@ -35,6 +35,7 @@ pub struct ShutdownGuard(());
 impl ShutdownGuard {
     /// Guards from now on.
     #[must_use]
+    #[expect(clippy::new_without_default, reason = "it changes the state of the program")]
     pub fn new() -> Self {
         IS_REQUESTED.store(false, Ordering::SeqCst);
         IS_GUARDED.store(true, Ordering::SeqCst);
@@ -43,7 +44,6 @@ impl ShutdownGuard {
 
     /// True after an interrupt.
     #[must_use]
-    #[expect(clippy::unused_self, reason = "only work that is guarded may end late")]
     pub fn is_requested(&self) -> bool {
         IS_REQUESTED.load(Ordering::SeqCst)
     }

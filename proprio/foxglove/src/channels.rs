@@ -13,7 +13,7 @@ pub static TRANSFORMS: Channel = Channel::new("/tf", &TF_MESSAGE);
 /// The arm and its ellipses.
 pub static ARM: Channel = Channel::new("/proprio/arm", &MARKER_ARRAY);
 
-/// All channels, in the order of their numbers, from 0.
+/// All channels of the live stream, in the order of their numbers, from 0.
 pub fn all() -> impl Iterator<Item = &'static Channel> {
     BOARD_CHANNELS.into_iter().chain([&TRANSFORMS, &ARM])
 }

@@ -8,7 +8,8 @@
 //!
 //! | file | purpose |
 //! |---|---|
-//! | `feed.rs` | the link's events as messages, for all clients |
+//! | `live_messages.rs` | the link's events as messages |
+//! | `feed.rs` | the messages, for all clients |
 //! | `channels.rs` | the channels and their numbers |
 //! | `scene.rs`, `arm_line.rs`, `scene_schemas.rs` | transforms and markers of the arm; the line from its base to its tip; their schemas |
 //! | `stream.rs` | state of thread and clients: the queue, and who receives which channel |
@@ -22,6 +23,7 @@ mod channels;
 mod client;
 mod error;
 mod feed;
+mod live_messages;
 mod protocol;
 mod scene;
 mod scene_schemas;
@@ -35,7 +37,9 @@ use calibration_tables::ArmFile;
 use proprio_link::Subscription;
 use proprio_server::LocalServer;
 
+pub use channels::all as channels;
 pub use error::Error;
+pub use live_messages::LiveMessages;
 
 use feed::Feed;
 use stream::Stream;

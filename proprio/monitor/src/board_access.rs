@@ -11,7 +11,7 @@ use proprio_session::NoProgress;
 
 use super::access::Token;
 use super::monitor_state::MonitorState;
-use super::running::Announcement;
+use super::running::{Announcement, RunningMonitor};
 use super::table::OwnedTable;
 use crate::error::Error;
 
@@ -29,6 +29,8 @@ pub(super) struct BoardAccess {
     pub folder: Option<PathBuf>,
     /// Token for the user's programs.
     pub token: Option<Token>,
+    /// Address of the stream to Foxglove, if there is one.
+    pub stream: Option<SocketAddr>,
 }
 
 impl BoardAccess {
@@ -60,7 +62,8 @@ impl BoardAccess {
     /// Announces the monitor to this user's programs. Without it they cannot use it, which is no failure of the monitor.
     fn announce(&self, line: String) -> Option<Announcement> {
         let (folder, token) = (self.folder.as_deref()?, self.token.as_ref()?);
-        Announcement::new(folder, line, self.address, token.to_string()).ok()
+        let (address, stream) = (self.address, self.stream);
+        Announcement::new(folder, &RunningMonitor { line, address, token: token.to_string(), stream }).ok()
     }
 }
 

@@ -82,6 +82,8 @@ pub struct Options<'p> {
     pub session: Option<PathBuf>,
     /// Folder that only this user can read, in which the monitor of a board is announced to the user's programs.
     pub runtime_folder: Option<PathBuf>,
+    /// Address of the board's stream to Foxglove, which is announced with it.
+    pub stream: Option<SocketAddr>,
     /// Returns the remedy of an error, which the page shows with it.
     pub help: fn(&Error) -> String,
     /// Returns the text of a finding of the session check, with its remedy.
@@ -110,10 +112,11 @@ impl Monitor {
         }
         let (link, events) = live.unzip();
         let folder = options.runtime_folder.clone();
+        let stream = options.stream;
         let token = folder.as_ref().and_then(|_| Token::new().ok());
         let shared = Arc::new(shared(link, options, token.clone()));
         if let Some(events) = events {
-            let access = BoardAccess { shared: Arc::clone(&shared), address, folder, token };
+            let access = BoardAccess { shared: Arc::clone(&shared), address, folder, token, stream };
             server.spawn("board", move |stop| board(access, stop)).map_err(failed)?;
             let shared = Arc::clone(&shared);
             server.spawn("hub", move |stop| hub(&shared, events, stop)).map_err(failed)?;

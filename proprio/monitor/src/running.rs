@@ -26,10 +26,12 @@ const TIMEOUT: Duration = Duration::from_secs(40);
 #[derive(Serialize, Deserialize)]
 pub struct RunningMonitor {
     /// Name of the board's line.
-    line: String,
-    address: SocketAddr,
+    pub(super) line: String,
+    pub(super) address: SocketAddr,
     /// Token that permits this user's programs to change the board's tare and table.
-    token: String,
+    pub(super) token: String,
+    /// Address of its stream to Foxglove, if there is one.
+    pub(super) stream: Option<SocketAddr>,
 }
 
 /// Reason why a monitor did not do what it was asked for.
@@ -62,8 +64,8 @@ pub(super) struct Announcement(PathBuf);
 
 impl Announcement {
     /// Announces a monitor in a folder of this user.
-    pub fn new(folder: &Path, line: String, address: SocketAddr, token: String) -> io::Result<Self> {
-        let path = folder.join(format!("{PREFIX}{}.json", address.port()));
+    pub fn new(folder: &Path, monitor: &RunningMonitor) -> io::Result<Self> {
+        let path = folder.join(format!("{PREFIX}{}.json", monitor.address.port()));
         // What a monitor with this port has left that did not end in order.
         let _ = fs::remove_file(&path);
         let mut options = OpenOptions::new();
@@ -71,7 +73,7 @@ impl Announcement {
         #[cfg(unix)]
         std::os::unix::fs::OpenOptionsExt::mode(&mut options, 0o600);
         let mut file = options.open(&path)?;
-        serde_json::to_writer(&mut file, &RunningMonitor { line, address, token })?;
+        serde_json::to_writer(&mut file, monitor)?;
         Ok(Self(path))
     }
 }
@@ -100,6 +102,12 @@ impl RunningMonitor {
     #[must_use]
     pub const fn address(&self) -> SocketAddr {
         self.address
+    }
+
+    /// Address of its stream to Foxglove, if there is one.
+    #[must_use]
+    pub const fn stream(&self) -> Option<SocketAddr> {
+        self.stream
     }
 
     /// The status of the board.

@@ -29,11 +29,11 @@ pub fn write(files: &Files, folder: &Path) -> Result<PathBuf, String> {
     emptied(&tree)?;
     let library = tree.join("usr/lib/proprio");
     make(&library)?;
-    for file in [&files.proprio].into_iter().chain(&files.companions) {
+    for file in [&files.proprio, &files.ros2].into_iter().chain(&files.companions) {
         copy(file, &library)?;
     }
     make(&tree.join("usr/bin"))?;
-    for program in ["proprio", "virtual-due"] {
+    for program in ["proprio", "proprio-ros2", "virtual-due"] {
         link(&format!("../lib/proprio/{program}"), &tree.join("usr/bin").join(program))?;
     }
     let print = |arguments: &[&str]| output(Command::new(&files.proprio).args(arguments));

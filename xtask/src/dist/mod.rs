@@ -3,7 +3,7 @@
 //! | file | what |
 //! |---|---|
 //! | `firmware.rs` | the firmware: its ELF file and its plain image |
-//! | `programs.rs` | `proprio` and `virtual-due`, stripped, with the firmware and the reference arm's table, as a `.tar.gz` |
+//! | `programs.rs` | `proprio`, `proprio-ros2` and `virtual-due`, stripped, with the firmware and the reference arm's table, as a `.tar.gz` |
 //! | `deb.rs` | the same as a Debian package, with manual pages, completions and the rule for the port |
 //! | `wheel.rs` | the Python package with all of them |
 //! | `checksums.rs`, `files.rs` | checksums of the files; copies |

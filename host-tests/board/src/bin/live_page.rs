@@ -32,6 +32,7 @@ mod figures {
             token: None,
             session: None,
             runtime_folder: None,
+            stream: None,
             help: ToString::to_string,
             finding_text: ToString::to_string,
         };

@@ -1,7 +1,9 @@
 //! `proprio monitor`.
 
+use std::net::SocketAddr;
 use std::time::{Duration, Instant};
 
+use proprio_foxglove::FoxgloveServer;
 use proprio_link::{EventKind, Link, LinkError, Subscription};
 use proprio_monitor::{Monitor, Options, Plain, Token};
 use proprio_session::{HostClock, LoadedTable, SessionReader, recorded_table};
@@ -34,9 +36,9 @@ pub fn run(args: &args::MonitorArgs) -> Result<(), Error> {
     }
     let shutdown = ShutdownGuard::new();
     let warnings = link.subscribe();
-    let _stream = link::stream(&args.foxglove, &link, table.as_ref())?;
+    let stream = link::stream(&args.foxglove, &link, table.as_ref())?;
     let second_handle = link.second_handle();
-    let monitor = start(args, Some((link, events)), table)?;
+    let monitor = start(args, Some((link, events)), table, stream.as_ref().map(FoxgloveServer::address))?;
     // The page moves an arm that it may control.
     let moves = args.link.emulated && !args.allow_control;
     let motion = moves.then(|| Motion::start(second_handle, &args.link)).transpose()?;
@@ -64,7 +66,7 @@ fn show(args: &args::MonitorArgs) -> Result<(), Error> {
         SessionReader::open(session, &used.required_columns()?)?;
     }
     let shutdown = ShutdownGuard::new();
-    let monitor = start(args, None, table)?;
+    let monitor = start(args, None, table, None)?;
     while !shutdown.is_requested() {
         std::thread::sleep(CHECK_PERIOD);
     }
@@ -77,6 +79,7 @@ fn start(
     args: &args::MonitorArgs,
     live: Option<(Link, Subscription)>,
     table: Option<LoadedTable>,
+    stream: Option<SocketAddr>,
 ) -> Result<Monitor, Error> {
     let token = args.allow_control.then(Token::new).transpose().map_err(proprio_monitor::Error::Random)?;
     let address = |port: u16| match &token {
@@ -90,6 +93,7 @@ fn start(
         token: token.clone(),
         session: args.session.clone(),
         runtime_folder: link::runtime_folder(),
+        stream,
         help: Help::help,
         finding_text: with_remedy,
     };

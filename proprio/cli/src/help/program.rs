@@ -16,6 +16,7 @@ impl Help for Error {
             Self::Monitor(error) => return error.help(),
             Self::RunningMonitor(RunningMonitorError::Moving(_)) => "let it rest, or use --force",
             Self::RunningMonitor(_) => "see its page, or end it and try again",
+            Self::NoStream(_) => "start the monitor with --foxglove",
             Self::Foxglove(proprio_foxglove::Error::Listen { .. }) => {
                 "give another with --foxglove=PORT; does another program stream to Foxglove already?"
             }

@@ -1,7 +1,7 @@
 //! A monitor over a line in memory, and a client of its page.
 
 use std::io::{Read, Write};
-use std::net::TcpStream;
+use std::net::{IpAddr, Ipv4Addr, SocketAddr, TcpStream};
 use std::time::Duration;
 
 use proprio_link::Link;
@@ -13,6 +13,9 @@ use tungstenite::client::IntoClientRequest;
 use tungstenite::{Message, WebSocket};
 
 use super::line::{Line, PATIENCE};
+
+/// Address that a page announces for its stream.
+pub const STREAM: SocketAddr = SocketAddr::new(IpAddr::V4(Ipv4Addr::LOCALHOST), 8765);
 
 /// The monitor, and its folders.
 pub struct Page {
@@ -70,6 +73,7 @@ impl Page {
             token,
             session: None,
             runtime_folder: Some(runtime_folder.path().to_owned()),
+            stream: Some(STREAM),
             help: ToString::to_string,
             finding_text: ToString::to_string,
         };

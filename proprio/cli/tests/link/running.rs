@@ -3,7 +3,7 @@
 use proprio_monitor::{RunningMonitor, RunningMonitorError};
 use telemetry::{Command, Message, Refusal, SensorState, TareMode, TareReport};
 
-use super::http::Page;
+use super::http::{Page, STREAM};
 use super::line::{Line, sample};
 use super::page::health;
 
@@ -56,6 +56,13 @@ fn a_program_tares_the_board_through_a_monitor_whose_page_may_not() {
     let moving = monitor.tare(TareMode::IfStill).expect_err("the arm moves");
     assert!(matches!(moving, RunningMonitorError::Moving(_)), "{moving}");
     assert!(moving.to_string().starts_with("the arm moves"), "{moving}");
+}
+
+#[test]
+fn a_program_finds_the_stream_of_the_monitor_that_has_the_line() {
+    let line = Line::new();
+    let (_page, monitor) = running(&line);
+    assert_eq!(monitor.stream(), Some(STREAM));
 }
 
 #[test]

@@ -32,6 +32,7 @@ pub fn page(given: Option<PathBuf>) -> Page {
         token: None,
         session: given,
         runtime_folder: None,
+        stream: None,
         help: ToString::to_string,
         finding_text: ToString::to_string,
     };
