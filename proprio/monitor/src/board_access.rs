@@ -34,15 +34,14 @@ pub(super) struct BoardAccess {
 }
 
 impl BoardAccess {
-    /// Works until `stop` is set.
-    pub fn run(self, link: &Link, stop: &AtomicBool) {
-        let mut announcement = None;
+    /// Works until `stop` is set; `announcement` is that of a line which is open already.
+    pub fn run(self, link: &Link, mut announcement: Option<Announcement>, stop: &AtomicBool) {
         let (mut taken, mut due) = (0, Instant::now());
         while !stop.load(Ordering::Relaxed) {
             std::thread::sleep(PERIOD);
             let state = link.state();
             if let (None, Some(line)) = (&announcement, state.port) {
-                announcement = self.announce(line);
+                announcement = self.announce_line(line);
             }
             let Some(hello) = state.hello.filter(|_| state.is_connected) else { continue };
             if self.shared.sessions.is_table_given() || hello.table == taken || Instant::now() < due {
@@ -59,8 +58,14 @@ impl BoardAccess {
         }
     }
 
-    /// Announces the monitor to this user's programs. Without it they cannot use it, which is no failure of the monitor.
-    fn announce(&self, line: String) -> Option<Announcement> {
+    /// Announces the monitor to this user's programs, where its line is open.
+    pub fn announce(&self) -> Option<Announcement> {
+        let line = self.shared.link.as_ref()?.state().port?;
+        self.announce_line(line)
+    }
+
+    /// Without an announcement programs cannot use the monitor, which is no failure of the monitor.
+    fn announce_line(&self, line: String) -> Option<Announcement> {
         let (folder, token) = (self.folder.as_deref()?, self.token.as_ref()?);
         let (address, stream) = (self.address, self.stream);
         Announcement::new(folder, &RunningMonitor { line, address, token: token.to_string(), stream }).ok()

@@ -65,6 +65,7 @@ use feed::ArmDescription;
 use hub::Hub;
 use monitor_state::MonitorState;
 use page_row::ArmSize;
+use running::Announcement;
 use sessions::Sessions;
 
 /// Options of a monitor.
@@ -117,7 +118,9 @@ impl Monitor {
         let shared = Arc::new(shared(link, options, token.clone()));
         if let Some(events) = events {
             let access = BoardAccess { shared: Arc::clone(&shared), address, folder, token, stream };
-            server.spawn("board", move |stop| board(access, stop)).map_err(failed)?;
+            // Before the address is known to anybody, so that programs find the monitor from then on.
+            let announcement = access.announce();
+            server.spawn("board", move |stop| board(access, announcement, stop)).map_err(failed)?;
             let shared = Arc::clone(&shared);
             server.spawn("hub", move |stop| hub(&shared, events, stop)).map_err(failed)?;
         }
@@ -168,10 +171,10 @@ fn shared(link: Option<Link>, options: Options, program_token: Option<Token>) ->
     MonitorState::new(link, arm, options.token, program_token, sessions, options.help)
 }
 
-fn board(access: BoardAccess, stop: &AtomicBool) {
+fn board(access: BoardAccess, announcement: Option<Announcement>, stop: &AtomicBool) {
     let shared = Arc::clone(&access.shared);
     if let Some(link) = &shared.link {
-        access.run(link, stop);
+        access.run(link, announcement, stop);
     }
 }
 

@@ -43,7 +43,7 @@ pub fn write(files: &Files, folder: &Path) -> Result<PathBuf, String> {
     put(&tree.join("usr/lib/udev/rules.d/60-proprio.rules"), &print(&["ports", "--udev"])?)?;
     manual(&files.proprio, &tree.join("usr/share/man/man1"))?;
     put(&tree.join("usr/share/doc/proprio/copyright"), COPYRIGHT.as_bytes())?;
-    let architecture = output(Command::new("dpkg-deb").arg("--print-architecture"))?;
+    let architecture = output(Command::new("dpkg").arg("--print-architecture"))?;
     let architecture = String::from_utf8_lossy(&architecture).trim().to_owned();
     put(&tree.join("DEBIAN/control"), control(&architecture, kilobytes(&tree)?, &libc()?).as_bytes())?;
     let package = folder.join(format!("proprio_{}_{architecture}.deb", env!("CARGO_PKG_VERSION")));
