@@ -8,7 +8,7 @@ use crate::error::{FileError, ensure};
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CalibrationToml {
-    /// The sessions, as they were named.
+    /// The sessions' file names.
     pub sessions: Vec<String>,
     /// Day of the calibration, UTC: `2026-11-30`; `None` where it is not known.
     #[serde(default, skip_serializing_if = "Option::is_none")]

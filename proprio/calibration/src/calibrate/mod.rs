@@ -92,7 +92,8 @@ pub fn calibrate(
     let held_out = held_out::evaluate(&sweep, sessions, arm, options, progress)?;
     warnings.extend(held_out.as_ref().and_then(HeldOut::warning));
     let sensors = derived.sensors.into_iter().map(|sensor| sensor.report).collect();
-    let sessions = sessions.iter().map(|session| session.display().to_string()).collect();
+    let name = |session: &PathBuf| session.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let sessions = sessions.iter().map(name).collect();
     let record = CalibrationToml { sessions, date: None };
     Ok(Calibration {
         table: ArmFile { calibration: Some(record), ..derived.table },
