@@ -174,6 +174,8 @@ function openSession(session) {
   $('thinned').hidden = session.every === 1;
   text($('thinned').firstElementChild, `Every ${session.every}th of ${session.samples} samples is shown.`);
   build();
+  // The time slider has the session's range at once.
+  drawPeriodic();
 }
 
 function closeSession() {
