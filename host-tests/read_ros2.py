@@ -20,6 +20,7 @@ from catkin_pkg.package import parse_package
 from mcap.reader import make_reader
 from rosbags.typesys import Stores
 
+from processor_time import cpu_s
 from ros2_subscriber import PACKAGE, Node, dds_name
 
 SAMPLES = 1000
@@ -56,14 +57,6 @@ class Program:
             if found := re.search(pattern, line):
                 return found.group(1)
         raise AssertionError(f"{self.command} has ended without {pattern}")
-
-    def cpu_s(self):
-        """Time of the processor that it has taken, s; 0 where the system does not have it there."""
-        stat = Path(f"/proc/{self.process.pid}/stat")
-        if not stat.exists():
-            return 0
-        user, system = stat.read_text().rsplit(")", 1)[1].split()[11:13]
-        return (int(user) + int(system)) / os.sysconf("SC_CLK_TCK")
 
     def __exit__(self, *error):
         self.process.send_signal(2)
@@ -161,9 +154,9 @@ def check_board(programs, table):
         check_node(node)
         # The emulated board boots, and catches up with real time.
         receive(readers, 600)
-        start, start_s = time.time_ns(), program.cpu_s()
+        start, start_s = time.time_ns(), cpu_s(program.process)
         received = receive({**readers, "best effort": best_effort}, SAMPLES)
-        end, end_s = time.time_ns(), program.cpu_s()
+        end, end_s = time.time_ns(), cpu_s(program.process)
 
     by_topic = {}
     for topic, message, _ in received:

@@ -8,7 +8,6 @@ definitions of ROS 2 Humble that `rosbags` has; the recording is read with `mcap
 
 import json
 import math
-import os
 import re
 import statistics
 import struct
@@ -24,6 +23,8 @@ from mcap_ros2._dynamic import generate_dynamic
 from rosbags.typesys import Stores, get_typestore
 from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
+
+from processor_time import cpu_s
 
 SECONDS = 5
 SUBPROTOCOLS = ["foxglove.sdk.v1", "foxglove.websocket.v1"]
@@ -155,15 +156,6 @@ def check_layouts(decoded):
             assert part == "position" and joint in last[topic].name, name
         else:
             value(last[topic], fields.replace("/", "."))
-
-
-def cpu_s(process):
-    """Time of the processor that a process has taken, s; 0 where the system does not have it there."""
-    stat = Path(f"/proc/{process.pid}/stat")
-    if not stat.exists():
-        return 0
-    user, system = stat.read_text().rsplit(")", 1)[1].split()[11:13]
-    return (int(user) + int(system)) / os.sysconf("SC_CLK_TCK")
 
 
 def recorded(path):

@@ -72,7 +72,7 @@ impl BoardAccess {
     }
 }
 
-/// The board's table with this checksum; 0 is none.
+/// Reads the board's table with this checksum; `None` for checksum 0, which is that of a board without a table.
 fn board_table(link: &Link, checksum: u32) -> Result<Option<OwnedTable>, Error> {
     if checksum == 0 {
         return Ok(None);

@@ -126,7 +126,9 @@ impl MonitorState {
         let published = match message {
             Feed::Rows(batch) => Published::Rows(json, batch.sent_us),
             Feed::Arm(_) => Published::Arm(json),
-            Feed::Status(_) | Feed::Delivery(_) => {
+            // It is about one page, which gets it from its own socket.
+            Feed::Delivery(_) => return,
+            Feed::Status(_) => {
                 lock(&self.status).clone_from(&json);
                 Published::Status(json)
             }

@@ -33,8 +33,12 @@ async fn with_board<T: Send + 'static>(
 
 /// The status of the board, measured within seconds, as `proprio status` has it.
 pub(super) async fn status(State(state): State<AppState>) -> Answer<Json<Status>> {
-    let has_table = state.monitor.sessions.stored_table().is_ok_and(|table| table.is_some());
-    with_board(state, move |link| Ok(Status::of(link, &link.subscribe(), has_table)?)).await
+    let shared = state.monitor.clone();
+    with_board(state, move |link| {
+        let has_table = shared.sessions.stored_table().is_ok_and(|table| table.is_some());
+        Ok(Status::of(link, &link.subscribe(), has_table)?)
+    })
+    .await
 }
 
 /// Tares the board.

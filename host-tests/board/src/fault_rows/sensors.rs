@@ -66,10 +66,15 @@ struct Reported {
 impl Reported {
     /// Injects it; `reported_ms` finds the time of the report.
     fn measure(self, reported_ms: impl Fn(&Trial) -> Option<f64>) -> Measured {
+        let trial = with(self.injected, self.measured_ms);
+        self.of(&trial, reported_ms)
+    }
+
+    /// The same of a trial in which it was injected.
+    fn of(self, trial: &Trial, reported_ms: impl Fn(&Trial) -> Option<f64>) -> Measured {
         let Self { row, injected, promise, word, limit_ms, measured_ms } = self;
-        let trial = with(injected, measured_ms);
-        let reported = reported_ms(&trial);
-        let (tip, is_near) = tip(&trial, 0.0, measured_ms as f64);
+        let reported = reported_ms(trial);
+        let (tip, is_near) = tip(trial, 0.0, measured_ms as f64);
         let measured = format!("{word} after {}; {tip}", text_of(reported));
         Measured { row, injected, promise, measured, holds: within(reported, limit_ms) && is_near }
     }
@@ -138,23 +143,27 @@ fn imu_frozen() -> Measured {
         limit_ms: 520.0,
         measured_ms: 8_000,
     };
-    row.measure(|trial| trial.noticed_ms(|event| event == Event::Imu(2, SensorState::Stuck)))
+    row.measure(stuck_ms)
 }
 
 fn imu_frozen_slow() -> Measured {
-    let injected = "imu3:frozen";
-    let mut trial = slow();
-    trial.inject(injected);
-    trial.run_ms(8_000);
-    let stuck = trial.noticed_ms(|event| event == Event::Imu(2, SensorState::Stuck));
-    let (tip, is_near) = tip(&trial, 0.0, 8e3);
-    Measured {
+    let row = Reported {
         row: "IMU frozen in slow motion, a twelfth of the speed",
-        injected,
+        injected: "imu3:frozen",
         promise: "stuck within 1 s, the estimate stays near",
-        measured: format!("stuck after {}; {tip}", text_of(stuck)),
-        holds: within(stuck, 1e3) && is_near,
-    }
+        word: "stuck",
+        limit_ms: 1e3,
+        measured_ms: 8_000,
+    };
+    let mut trial = slow();
+    trial.inject(row.injected);
+    trial.run_ms(row.measured_ms);
+    row.of(&trial, stuck_ms)
+}
+
+/// Time of the first event that reports IMU 3 as stuck, ms.
+fn stuck_ms(trial: &Trial) -> Option<f64> {
+    trial.noticed_ms(|event| event == Event::Imu(2, SensorState::Stuck))
 }
 
 fn imu_restarted(row: &'static str, injected: &'static str, trial: &Trial) -> Measured {

@@ -12,7 +12,7 @@ use crate::error::Error;
 use crate::progress_bar::{Bar, JoinedBar};
 
 /// Works on sessions, as many at a time as there are cores, and passes the results to `take` in the order of the sessions, up to
-/// the first error. No session is begun after an error.
+/// the first error. After an error no further session starts.
 pub fn each_in_order<T: Send>(
     work: &str,
     sessions: &[PathBuf],

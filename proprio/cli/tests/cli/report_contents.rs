@@ -1,4 +1,4 @@
-//! Contents of a report beside its errors: history of the table, command, times, stated uncertainty, contact, the tip, another table.
+//! Contents of a report other than errors: history of the table, command, times, stated uncertainty, contact, the tip, another table.
 
 use serde_json::Value;
 

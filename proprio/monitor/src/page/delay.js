@@ -13,14 +13,14 @@ export class Delay {
   reset() {
     /** Least difference of the page's clock and the server's, in this period and the one before: delays are counted from it. */
     this.least = [Infinity, Infinity];
-    this.begun = this.until = 0;
+    this.periodStart = this.until = 0;
     this.largest = 0;
   }
 
   /** A batch has arrived: its time by the server's clock, µs, and that by the page's, ms. */
   arrived(sent_us, now) {
-    if (now - this.begun > PERIOD) {
-      this.begun = now;
+    if (now - this.periodStart > PERIOD) {
+      this.periodStart = now;
       this.least = [Infinity, this.least[0]];
     }
     const difference = now - sent_us / 1000;
