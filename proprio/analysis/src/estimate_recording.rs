@@ -18,7 +18,7 @@ pub struct EstimateRecorder {
     path: PathBuf,
     segments: usize,
     /// Segments in contact, a bit each.
-    contact: Option<u8>,
+    contact: u8,
 }
 
 impl EstimateRecorder {
@@ -35,7 +35,7 @@ impl EstimateRecorder {
         let failed = |source| output_error(path, source);
         let mut recorder = SessionRecorder::new(file, segments, "replay").map_err(failed)?;
         recorder.attach_table(table.file.to_toml().as_bytes()).map_err(failed)?;
-        Ok(Self { recorder, path: path.to_owned(), segments, contact: None })
+        Ok(Self { recorder, path: path.to_owned(), segments, contact: 0 })
     }
 
     /// Writes a row, which may be from before the begin of a recording, and its estimates.
@@ -59,8 +59,8 @@ impl EstimateRecorder {
         }
         let contacts = outcome.contacts.iter().rev();
         let contact = contacts.fold(0, |mask: u8, contact| mask << 1 | u8::from(contact.in_contact));
-        if contact != self.contact.unwrap_or(0) {
-            self.contact = Some(contact);
+        if contact != self.contact {
+            self.contact = contact;
             self.recorder.message(&Message::Event(Event::Contact(tick, contact)))?;
         }
         Ok(())
