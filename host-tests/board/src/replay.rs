@@ -25,6 +25,8 @@ pub struct Replayed {
     pub uncertainty: Uncertainty,
     /// Event of a contact that begins or ends with this sample.
     pub contact: Option<Event>,
+    /// Segments in contact, a bit each.
+    pub contact_mask: u8,
 }
 
 /// The host's estimator, in the same fixed point, restarted at the same samples as the board's.
@@ -62,6 +64,7 @@ impl<'t> Replica<'t> {
             estimate: Estimate::of(sample.tick, &self.estimator.shape(&estimate, Method::Fusion)),
             uncertainty: Uncertainty::of(sample.tick, self.config.segments.len(), &errors, &contacts),
             contact: (touched != before).then_some(Event::Contact(sample.tick, touched as u8)),
+            contact_mask: touched as u8,
         }
     }
 }

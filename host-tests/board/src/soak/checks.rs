@@ -50,6 +50,8 @@ pub struct Checks<'t> {
     replica: Replica<'t>,
     /// True if the replica has had every sample since its start.
     is_replica: bool,
+    /// Tick of the tare at which the comparison was resumed last.
+    resumed_at: Option<u32>,
     replayed: VecDeque<Replayed>,
     last: Option<Sample>,
     health: Option<Health>,
@@ -73,6 +75,7 @@ impl<'t> Checks<'t> {
             config,
             replica: Replica::new(config),
             is_replica: false,
+            resumed_at: None,
             replayed: VecDeque::new(),
             last: None,
             health: None,
@@ -139,7 +142,11 @@ impl<'t> Checks<'t> {
             self.find(Invariant::EveryTick, time_s, figure);
         }
         // A loss pauses the comparison until the estimator restarts, at a tare or a boot.
-        self.is_replica = is_next && (self.is_replica || self.last.is_none() || sample.tare_epoch != epoch);
+        let was_replica = self.is_replica;
+        self.is_replica = is_next && (was_replica || self.last.is_none() || sample.tare_epoch != epoch);
+        if self.is_replica && !was_replica {
+            self.resumed_at = self.last.as_ref().map(|_| sample.tick);
+        }
         if self.is_replica {
             self.replayed.push_back(self.replica.update(sample));
             if self.replayed.len() > KEPT {
@@ -241,9 +248,11 @@ impl<'t> Checks<'t> {
 
     fn event(&mut self, event: Event, time_s: f64) {
         self.reported.event(event);
-        if let Event::Contact(tick, _) = event
+        if let Event::Contact(tick, mask) = event
             && let Some(expected) = self.replayed(tick)
             && expected.contact != Some(event)
+            // The board's contact before the tare is not known to a host that is resumed with it.
+            && !(self.resumed_at == Some(tick) && expected.contact_mask == mask)
         {
             let figure = format!("the board's {event:?}, the host's {:?}", expected.contact);
             self.find(Invariant::Replay, time_s, figure);
