@@ -27,8 +27,8 @@ impl<S: Scalar, F: FusedOps, const N: usize, T: BiasTrace<F>> DriftCorrection<S,
             return;
         }
         self.track_headings(config, sensed);
-        self.fill_absent_headings(config.segments.len(), dt);
-        self.angles(config.segments, corrected);
+        self.fill_absent_headings(config.segments.len(), dt, sensed.time_us);
+        self.angles(config.segments, sensed.time_us, corrected);
         self.state.trace_mut().record(BiasOperation::Output);
         if sensed.share == Share::Update {
             self.update_next(config.segments, sensed);

@@ -10,12 +10,17 @@ use crate::drift::correction::{CorrectedArm, MeasuredAngles};
 use crate::drift::rest::RestDetector;
 use crate::numeric::fused::FusedOps;
 use crate::numeric::phase::Turns;
-use crate::numeric::scalar::{Constant, Scalar};
-use crate::numeric::variance::{smaller, variance_deg};
+use crate::numeric::scalar::{Constant, Scalar, TIME_UNIT_S};
+use crate::numeric::variance::{degrees, scaled_square, smaller, variance_deg};
 use crate::types::Condition;
 
 /// Variance rate of an absent heading's own error: 0.5° after a second, growing with the square root of time.
 const ABSENT: Constant = variance_deg(0.5 * 8.0);
+/// Time for which an angle that no sensor tells is kept, µs and time units.
+const UNMEASURED_US: u64 = 500_000;
+const UNMEASURED_TIME: Constant = Constant::new(0.5 / TIME_UNIT_S);
+/// Standard deviation that such a heading gains: 20° a second, for the arm moves; rad per time unit.
+const UNMEASURED_SPEED: Constant = degrees(20.0 * TIME_UNIT_S);
 
 /// State of the bias filter for up to `N` segments, in the number type `F`.
 ///
@@ -95,9 +100,11 @@ impl<F: Scalar, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
     /// zero.
     pub fn absence_variance(&self, config: &BendErrorConfig, i: usize) -> F {
         let Some(track) = self.segments.get(i).filter(|track| !track.is_heading_read) else { return F::zero() };
-        let absent = since(track.heading_read_at_us, self.last_us.unwrap_or(0));
-        let grown = smaller(absent, F::one()) * F::constant(ABSENT);
-        smaller(grown, track.offset_prior + F::from_q(config.mean))
+        let now_us = self.last_us.unwrap_or(0);
+        let grown = smaller(since(track.heading_read_at_us, now_us), F::one()) * F::constant(ABSENT);
+        let by_bend = smaller(grown, track.offset_prior + F::from_q(config.mean));
+        let unmeasured = smaller(since(track.heading_measured_at_us, now_us), F::constant(UNMEASURED_TIME));
+        by_bend + scaled_square(unmeasured * F::constant(UNMEASURED_SPEED))
     }
 
     /// Returns `true` once the tare is complete, so that the covariance is known.
@@ -124,14 +131,14 @@ impl<F: Scalar, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
         }
     }
 
-    /// θ of all segments, from their headings.
-    pub(super) fn angles<S>(&mut self, segments: &[SegmentConfig<S>], corrected: &mut CorrectedArm<N>) {
+    /// θ of all segments, from their headings; none of a segment that no sensor has told for a while.
+    pub(super) fn angles<S>(&mut self, segments: &[SegmentConfig<S>], time_us: u64, corrected: &mut CorrectedArm<N>) {
         let (mut below, mut is_below_read, mut steps_below) = (Turns::ZERO, true, Turns::ZERO);
         let angles = corrected.fused.iter_mut().zip(&mut corrected.imu).zip(&mut corrected.measured);
         for (track, ((fused, imu), measured)) in self.segments.iter_mut().zip(angles).take(segments.len()) {
             let theta = Turns::from((track.heading - below).phase());
             track.theta = F::from_phase(theta.phase());
-            *fused = Some(theta);
+            *fused = (time_us.saturating_sub(track.theta_measured_at_us) < UNMEASURED_US).then_some(theta);
             *imu = (track.is_heading_read && is_below_read).then_some(theta);
             let steps = track.bias_steps - steps_below;
             let bend = track.bend.map(|bend| bend.theta.to_turns());

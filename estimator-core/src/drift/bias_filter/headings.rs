@@ -56,32 +56,52 @@ impl<F: Scalar, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
     }
 
     /// Estimates the headings that were not read: from below by the segment's own bend sensors, and from above by those
-    /// of the next segment.
-    pub(super) fn fill_absent_headings(&mut self, count: usize, dt: F) {
+    /// of the next segment. A path without a bend sensor counts only where neither has one; the path from above is drawn
+    /// to its bend sensors only where it is the only one.
+    pub(super) fn fill_absent_headings(&mut self, count: usize, dt: F, time_us: u64) {
         let share = smaller(dt / F::constant(ABSENT_TIME), F::one());
-        let mut below = Turns::ZERO;
-        let mut offsets = self.state.offset.iter();
+        let (mut below, mut is_below_measured) = (Turns::ZERO, true);
+        let mut offsets = self.state.offset.as_slice();
         let mut tracks = self.segments.get_mut(..count).unwrap_or_default();
-        while let (Some((track, above)), Some(offset)) = (tracks.split_first_mut(), offsets.next()) {
+        while let (Some((track, above)), Some((offset, offsets_above))) =
+            (tracks.split_first_mut(), offsets.split_first())
+        {
+            let is_by_own = is_below_measured && track.bend.is_some();
+            let mut is_measured = track.is_heading_read || is_by_own;
             if !track.is_heading_read {
-                let moved = track.theta + track.motion;
-                let pull = track.bend.map_or(F::zero(), |bend| bend.theta - *offset - moved);
-                let own = moved + share * pull;
-                let mut heading = below + own.to_turns();
-                if let Some(above) = above.first().filter(|above| above.is_heading_read) {
-                    let from_above = above.heading - (above.theta + above.motion).to_turns();
-                    let half: F = F::from_phase((from_above - heading).phase()).half();
-                    heading = heading + half.to_turns();
+                track.heading = below + track.carried(*offset, share).to_turns();
+                let read_above = above.first().zip(offsets_above.first()).filter(|(above, _)| above.is_heading_read);
+                if let Some((above, offset)) = read_above {
+                    let share = if is_by_own { F::zero() } else { share };
+                    let from_above = above.heading - above.carried(*offset, share).to_turns();
+                    let shift = from_above - track.heading;
+                    track.heading = match (is_by_own, above.bend) {
+                        (true, None) => track.heading,
+                        (false, Some(_)) => from_above,
+                        _ => track.heading + F::from_phase(shift.phase()).half().to_turns(),
+                    };
+                    is_measured |= above.bend.is_some();
                 }
-                track.heading = heading;
             }
-            below = track.heading;
-            tracks = above;
+            if is_measured {
+                track.heading_measured_at_us = time_us;
+            }
+            if track.bend.is_some() || is_below_measured && is_measured {
+                track.theta_measured_at_us = time_us;
+            }
+            (below, is_below_measured) = (track.heading, is_measured);
+            (tracks, offsets) = (above, offsets_above);
         }
     }
 }
 
 impl<F: Scalar> SegmentTrack<F> {
+    /// θ of the last sample, carried on by the motion of the bend sensors and drawn to their angle by a `share` of the way.
+    fn carried(&self, offset: F, share: F) -> F {
+        let moved = self.theta + self.motion;
+        self.bend.map_or(moved, |bend| moved + share * (bend.theta - offset - moved))
+    }
+
     /// Deviation of the reading from the heading predicted from the one `below`; `None` where it was not read.
     fn deviation_from(&self, below: Turns, bias: Turns, heading: &SegmentHeading, scale_error: i32) -> Option<Turns> {
         let predicted = below + (self.theta + self.motion).to_turns() + bias;

@@ -66,6 +66,7 @@ impl<F: Scalar, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
         let mut below = Turns::ZERO;
         let headings = sensed.headings.iter().zip(config.segments);
         for ((track, tare), (heading, segment)) in self.segments.iter_mut().zip(&self.tare.segments).zip(headings) {
+            (track.heading_measured_at_us, track.theta_measured_at_us) = (sensed.time_us, sensed.time_us);
             let excess = track.monitor.offset_excess(&segment.bend_error, true);
             track.session_offset = F::from_q(filter.offset);
             track.offset_prior = track.session_offset + excess;

@@ -50,6 +50,9 @@ pub(super) struct SegmentTrack<F> {
     pub motion: F,
     pub is_heading_read: bool,
     pub heading_read_at_us: u64,
+    /// When the heading was read last, or followed from another one by bend sensors; and the same for θ.
+    pub heading_measured_at_us: u64,
+    pub theta_measured_at_us: u64,
     /// θ and θ_bend up to which travel has been counted, and the travel since the last update, rad.
     pub counted_theta: F,
     pub counted_bend: F,
@@ -91,6 +94,8 @@ impl<F: Scalar> SegmentTrack<F> {
             motion: zero,
             is_heading_read: false,
             heading_read_at_us: 0,
+            heading_measured_at_us: 0,
+            theta_measured_at_us: 0,
             counted_theta: zero,
             counted_bend: zero,
             travelled: zero,

@@ -16,7 +16,9 @@ pub struct Present {
 /// Corrections of the bend angles, row after row.
 ///
 /// The filter takes an absent heading from below and above by the motion of the bend sensors, and draws it to
-/// θ_bend − o. The correction of such a heading follows the same rule, from that which it had when it was last read.
+/// θ_bend − o; a path without a bend sensor counts only where neither has one, and the path from above is drawn only
+/// where it is the only one. The correction of such a heading follows the same rule, from that which it had when it was
+/// last read.
 #[derive(Debug, Clone)]
 pub struct HeadingCorrections {
     /// Corrections of θ_i, rad.
@@ -31,27 +33,36 @@ impl HeadingCorrections {
 
     /// Corrections of the bend angles in a row, rad, `elapsed_s` after the last one.
     pub fn advance(&mut self, correction: &Correction, present: &[Present], elapsed_s: f64) -> &[f64] {
-        let mut below = 0.0;
+        let (mut below, mut is_below_measured) = (0.0, true);
         for i in 0..self.angles.len() {
-            let heading = if present[i].heading {
+            let mut is_measured = present[i].heading;
+            let heading = if is_measured {
                 -correction.biases[i]
             } else {
-                self.absent(i, below, correction, present, elapsed_s)
+                let own = below + self.carried(i, correction, present, elapsed_s);
+                let is_by_own = is_below_measured && present[i].bend;
+                let above = present.get(i + 1).filter(|above| above.heading);
+                is_measured = is_by_own || above.is_some_and(|above| above.bend);
+                above.map_or(own, |above| {
+                    let drawn_s = if is_by_own { 0.0 } else { elapsed_s };
+                    let from_above = -correction.biases[i + 1] - self.carried(i + 1, correction, present, drawn_s);
+                    match (is_by_own, above.bend) {
+                        (true, false) => own,
+                        (false, true) => from_above,
+                        _ => f64::midpoint(own, from_above),
+                    }
+                })
             };
             self.angles[i] = heading - below;
-            below = heading;
+            (below, is_below_measured) = (heading, is_measured);
         }
         &self.angles
     }
 
-    fn absent(&self, i: usize, below: f64, correction: &Correction, present: &[Present], elapsed_s: f64) -> f64 {
+    /// The last correction of θ_i, drawn to that of θ_bend.
+    fn carried(&self, i: usize, correction: &Correction, present: &[Present], elapsed_s: f64) -> f64 {
         let share = if present[i].bend { (elapsed_s / ABSENT_TIME_S).min(1.0) } else { 0.0 };
-        let own = below + self.angles[i] + share * (-correction.offsets[i] - self.angles[i]);
-        if present.get(i + 1).is_some_and(|above| above.heading) {
-            f64::midpoint(own, -correction.biases[i + 1] - self.angles[i + 1])
-        } else {
-            own
-        }
+        self.angles[i] + share * (-correction.offsets[i] - self.angles[i])
     }
 
     /// Follows an update, which has turned the filter's headings by its change of the `biases`, rad. Smoothed headings do
