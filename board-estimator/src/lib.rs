@@ -35,6 +35,8 @@ pub struct BoardEstimator {
     segments: usize,
     tare_epoch: u8,
     tared: bool,
+    /// The arm was not in its reference pose before the last tare, by its estimate.
+    is_bent_before_tare: bool,
     /// Contact that was reported last, one bit per segment.
     contact_mask: u32,
     /// Conditions of each segment that were reported last.
@@ -49,6 +51,7 @@ impl BoardEstimator {
             segments: table.segments.len(),
             tare_epoch: 0,
             tared: false,
+            is_bent_before_tare: false,
             contact_mask: 0,
             conditions: [Conditions(0); MAX_SEGMENTS],
         }
@@ -65,6 +68,7 @@ impl BoardEstimator {
     /// Restarts the estimator with the next sample: the arm is in its reference pose.
     #[inline]
     pub fn tare(&mut self) {
+        self.is_bent_before_tare = self.tared && self.estimator.is_off_reference();
         self.start();
         self.tare_epoch = self.tare_epoch.wrapping_add(1);
         self.tared = true;
@@ -99,7 +103,8 @@ impl BoardEstimator {
 
     /// Conditions of each segment's estimate.
     pub fn conditions(&self) -> Vec<Conditions, MAX_SEGMENTS> {
-        vector(self.estimator.conditions().iter().map(|condition| Conditions::from(*condition)))
+        let of_tare = if self.is_bent_before_tare { Conditions::BENT_BEFORE_TARE } else { Conditions(0) };
+        vector(self.estimator.conditions().iter().map(|condition| Conditions::from(*condition) | of_tare))
     }
 
     /// Reports the segments whose conditions have changed since they were reported last; compared every tenth tick.

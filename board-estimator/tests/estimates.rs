@@ -2,10 +2,10 @@
 
 use board_estimator::{BoardEstimator, TARE_TICKS};
 use estimator_core::{
-    ArmConfig, BendMap, BendSensorConfig, ContactConfig, Q, QuadraticMap, SegmentConfig, Turns, UncertaintyConfig,
-    VARIANCE_SCALE,
+    ArmConfig, BendMap, BendSensorConfig, BiasFilterConfig, ContactConfig, Q, QuadraticMap, SegmentConfig, Turns,
+    UncertaintyConfig, VARIANCE_SCALE,
 };
-use telemetry::{Event, Sample};
+use telemetry::{Conditions, Event, Sample};
 
 const SEGMENTS: usize = 6;
 
@@ -142,4 +142,31 @@ fn the_segment_that_is_bent_most_is_found_by_its_bend_sensors() {
     let (segment, angle) = estimator.most_bent().expect("all sensors were read");
     assert_eq!(segment, 1);
     assert!((Q::from_bits(angle).to_f64() - 0.595).abs() < 0.001);
+}
+
+/// An arm whose first segment is bent, by its IMUs and bend sensors.
+fn bent(tick: u32, degrees: f64) -> Sample {
+    let mut sample = turned(tick, degrees);
+    let counts = (1.5 + degrees.to_radians()) / 3.3 * 4095.0;
+    (sample.bend[0], sample.bend[1]) = (Some(counts as u16), Some(counts as u16));
+    sample
+}
+
+/// Whether the board reports that the arm was bent before a tare, which is requested at this angle.
+fn is_reported_after_a_tare_at(degrees: f64) -> bool {
+    let table = ArmConfig { bias_filter: Some(BiasFilterConfig::BNO055), ..*full_table() };
+    let mut estimator = BoardEstimator::new(Box::leak(Box::new(table)));
+    estimator.start();
+    estimator.tare();
+    (0..200).for_each(|tick| drop(estimator.update(&bent(tick, degrees))));
+    assert!(estimator.conditions().iter().all(|of| !of.is_degraded()), "nothing was known before the first tare");
+    estimator.tare();
+    (200..400).for_each(|tick| drop(estimator.update(&bent(tick, degrees))));
+    estimator.conditions().iter().all(|of| *of == Conditions::BENT_BEFORE_TARE)
+}
+
+#[test]
+fn a_tare_of_an_arm_that_is_bent_by_its_estimate_is_reported() {
+    assert!(is_reported_after_a_tare_at(10.0));
+    assert!(!is_reported_after_a_tare_at(0.5));
 }

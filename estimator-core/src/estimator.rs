@@ -1,5 +1,7 @@
 //! The pipeline: one [`Sample`] in, one [`Estimate`] or [`Shape`] out.
 
+mod off_reference;
+
 use heapless::Vec;
 
 use crate::config::{ArmConfig, ConfigError, UncertaintyConfig};

@@ -1,11 +1,13 @@
 //! Conditions that degrade the estimate of a segment, one bit each.
 
 use core::fmt;
+use core::ops::BitOr;
 
 use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
 
-/// Conditions of one segment, those of [`estimator_core::Condition`]. `Display` names them.
+/// Conditions of one segment: those of [`estimator_core::Condition`], and
+/// [`BENT_BEFORE_TARE`](Self::BENT_BEFORE_TARE). `Display` names them.
 ///
 /// ```
 /// use estimator_core::Condition;
@@ -20,19 +22,32 @@ use serde::{Deserialize, Serialize};
 pub struct Conditions(pub u8);
 
 /// Each bit, from the lowest, and its meaning.
-const NAMES: [(u8, &str); 5] = [
+const NAMES: [(u8, &str); 6] = [
     (1, "the arm was bent or moving in the tare"),
     (1 << 1, "the IMU is absent"),
     (1 << 2, "the IMU has a new zero"),
     (1 << 3, "a bend sensor is not trusted"),
     (1 << 4, "bend sensors and IMUs disagree"),
+    (Conditions::BENT_BEFORE_TARE.0, "the arm was bent before the tare, by its estimate"),
 ];
 
 impl Conditions {
+    /// The tip was away from its place in the reference pose when a tare was requested, by more than three stated standard
+    /// deviations: the arm was bent, or its estimate was wrong.
+    pub const BENT_BEFORE_TARE: Self = Self(1 << 5);
+
     /// Returns whether any condition holds.
     #[must_use]
     pub const fn is_degraded(self) -> bool {
         self.0 != 0
+    }
+}
+
+impl BitOr for Conditions {
+    type Output = Self;
+
+    fn bitor(self, other: Self) -> Self {
+        Self(self.0 | other.0)
     }
 }
 

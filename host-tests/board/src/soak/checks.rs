@@ -22,6 +22,8 @@ pub struct Excuse {
     pub lost: bool,
     /// Ticks are held up.
     pub held_up: bool,
+    /// An IMU is frozen, and need not be noticed yet.
+    pub unnoticed: bool,
 }
 
 /// The tip since the last question.
@@ -126,7 +128,7 @@ impl<'t> Checks<'t> {
                 self.sample(sample, time_s, excuse);
             }
             Message::Estimate(estimate) => self.estimate(estimate, time_s, truth),
-            Message::Uncertainty(uncertainty) => self.uncertainty(uncertainty, time_s),
+            Message::Uncertainty(uncertainty) => self.uncertainty(uncertainty, time_s, excuse),
             Message::Health(health) => self.health(health, time_s, excuse),
             Message::Event(event) => self.event(*event, time_s),
             _ => {}
@@ -173,7 +175,10 @@ impl<'t> Checks<'t> {
             self.replays += 1;
         }
         let is_tared = self.last.as_ref().is_some_and(|last| last.tare_epoch > 0);
-        let unknown = estimate.segments.iter().filter(|segment| segment.is_none()).count();
+        let bend = self.last.as_ref().map_or(&[][..], |sample| &sample.bend);
+        let is_bend_read = |i: usize| bend.iter().skip(2 * i).take(2).any(Option::is_some);
+        let unknown =
+            (0..).zip(&estimate.segments).filter(|(i, segment)| segment.is_none() && is_bend_read(*i)).count();
         if is_tared && unknown > 0 {
             self.find(Invariant::Known, time_s, format!("{unknown} segments are not known in tick {}", estimate.tick));
         }
@@ -191,12 +196,15 @@ impl<'t> Checks<'t> {
         }
     }
 
-    fn uncertainty(&mut self, uncertainty: &Uncertainty, time_s: f64) {
+    fn uncertainty(&mut self, uncertainty: &Uncertainty, time_s: f64, excuse: Excuse) {
         if let Some(expected) = self.replayed(uncertainty.tick)
             && expected.uncertainty != *uncertainty
         {
             let figure = format!("the board's {uncertainty:?}, the host's {:?}", expected.uncertainty);
             self.find(Invariant::Replay, time_s, figure);
+        }
+        if excuse.unnoticed {
+            return;
         }
         let Some((_, error_mm)) = self.errors_mm.iter().rev().find(|(tick, _)| *tick == uncertainty.tick) else {
             return;

@@ -16,7 +16,8 @@ pub struct Known {
 pub const KNOWN: &[Known] = &[Known {
     fault: OFFSET_TARE,
     invariant: Invariant::Tip,
-    reason: "the zero is that of the pose at the tare; an arm that rests bent after a swing is not flagged in it",
+    reason: "the zero is that of the pose at the tare; an arm that rests bent after a swing is flagged in it only where the \
+             estimate before the tare tells",
 }];
 
 /// A tare, or a boot with its tare, of an arm that was not straight.

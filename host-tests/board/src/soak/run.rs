@@ -42,6 +42,8 @@ const REST_MS: u64 = 3_000;
 const TARE_MS: u64 = 100;
 /// Time after a fault in which its effect is still on the line, cycles: 200 ms.
 const AFTERWARDS: Cycles = CYCLES_PER_SECOND / 5;
+/// Time after which a frozen IMU is noticed, cycles: 0.52 s.
+const FROZEN: Cycles = CYCLES_PER_SECOND * 52 / 100;
 /// Longest time without a sample, and time from a restart to the first, s.
 const SILENCE_S: f64 = 0.1;
 const BOOT_S: f64 = 1.0;
@@ -78,6 +80,7 @@ pub fn soak(seed: u64, seconds: u64, mut progress: impl FnMut(f64)) -> Report {
 /// A fault of the episode, while it is there and shortly after.
 struct Present {
     fault: Fault,
+    begun: Cycles,
     until: Cycles,
 }
 
@@ -233,7 +236,7 @@ impl<'t> Run<'t> {
             if !fault.is_instant() || is_flip {
                 self.ending.push((end, fault));
             }
-            self.present.push(Present { fault, until: end + AFTERWARDS });
+            self.present.push(Present { fault, begun: now, until: end + AFTERWARDS });
         }
         for (_, fault) in self.ending.extract_if(.., |(at, _)| *at <= now) {
             match fault {
@@ -265,7 +268,8 @@ impl<'t> Run<'t> {
         }
         let time_s = self.board.machine.seconds();
         let silence_s = time_s - self.checks.sampled_s;
-        let is_excused = self.excuse() != Excuse::default();
+        let excuse = self.excuse();
+        let is_excused = excuse.lost || excuse.held_up;
         if silence_s > SILENCE_S && time_s > self.restarted_s + BOOT_S && !is_excused {
             let figure = format!("no sample for {silence_s:.2} s");
             self.note(vec![Finding { size: silence_s, ..Finding::new(Invariant::EveryTick, time_s, figure) }]);
@@ -274,7 +278,10 @@ impl<'t> Run<'t> {
 
     fn excuse(&self) -> Excuse {
         let has = |explains: fn(Fault) -> bool| self.present.iter().any(|present| explains(present.fault));
-        Excuse { lost: has(loses_messages), held_up: has(|fault| matches!(fault, Fault::IrqMasked(_))) }
+        let unnoticed = self.present.iter().any(|present| {
+            matches!(present.fault, Fault::ImuFrozen(_)) && self.board.machine.now() < present.begun + FROZEN
+        });
+        Excuse { lost: has(loses_messages), held_up: has(|fault| matches!(fault, Fault::IrqMasked(_))), unnoticed }
     }
 
     /// Takes what the board has sent in a step, and its restarts.
