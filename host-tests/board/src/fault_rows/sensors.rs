@@ -27,6 +27,8 @@ pub(super) const ROWS: &[(&str, Row)] = &[
     ("imu_stretch", imu_stretch),
     ("two_imus_reset", two_imus_reset),
     ("reset_and_open", reset_and_open),
+    ("last_segment_lost", last_segment_lost),
+    ("segment_lost", segment_lost),
 ];
 
 fn bend_lost(row: &'static str, injected: &'static str) -> Measured {
@@ -281,6 +283,39 @@ fn two_imus_reset() -> Measured {
 fn reset_and_open() -> Measured {
     let injected = "bend2a:open imu3:reset";
     imu_restarted("IMU reset while a bend sensor is open", injected, &with(injected, 12_000))
+}
+
+fn last_segment_lost() -> Measured {
+    let injected = "imu6:unplugged bend6a:open bend6b:open";
+    let trial = with(injected, 4_000);
+    let known_ms = |segment: usize| {
+        let is_known = |message: &Message| match message {
+            Message::Estimate(estimate) => estimate.segments[segment].is_some(),
+            _ => false,
+        };
+        trial.timed(0.0, 4e3).filter(|(_, message)| is_known(message)).map(|(ms, _)| ms).last().unwrap_or(0.0)
+    };
+    let (tip_ms, below_ms) = (known_ms(5), known_ms(4));
+    Measured {
+        row: "all sensors of the last segment lost",
+        injected,
+        promise: "the segment is not known within 0.6 s, those below it are",
+        measured: format!("last estimate of it after {tip_ms:.1} ms, of the segment below after {below_ms:.1} ms"),
+        holds: tip_ms <= 600.0 && below_ms > 3_900.0,
+    }
+}
+
+fn segment_lost() -> Measured {
+    let injected = "imu3:unplugged bend3a:open bend3b:open";
+    let row = Reported {
+        row: "all sensors of another segment lost",
+        injected,
+        promise: "not ok within 50 ms, the estimate stays near by the sensors of the next segment",
+        word: "not ok",
+        limit_ms: 50.0,
+        measured_ms: 8_000,
+    };
+    row.measure(|trial| imu_noticed_ms(trial, 2))
 }
 
 impl Trial {

@@ -172,3 +172,13 @@ fn a_bend_sensor_that_drifts_is_named_and_the_tip_stays() {
 fn a_bend_sensor_with_another_scale_is_named_within_a_second_and_the_tip_stays() {
     assert_holds("bend_factor");
 }
+
+#[test]
+fn a_last_segment_without_any_sensor_is_not_known() {
+    assert_holds("last_segment_lost");
+}
+
+#[test]
+fn another_segment_without_any_sensor_follows_from_the_next_one() {
+    assert_holds("segment_lost");
+}
