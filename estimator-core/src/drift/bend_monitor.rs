@@ -194,6 +194,15 @@ impl<S: Scalar> BendMonitor<S> {
         self.check_stuck(angles, theta, time_us);
     }
 
+    /// Keeps sensors excluded while the IMUs, with which they would have to agree, are not read.
+    pub fn hold_exclusions(&mut self, time_us: u64) {
+        for until_us in &mut self.distrusted_until_us {
+            if time_us < *until_us {
+                *until_us = time_us.saturating_add(DISTRUST_US);
+            }
+        }
+    }
+
     /// Detects sensors that do not move while the segment does.
     fn check_stuck(&mut self, angles: [Option<S>; SENSORS_PER_SEGMENT], theta: S, time_us: u64) {
         let is_complete = time_us.saturating_sub(self.range_from_us) >= STUCK_US;

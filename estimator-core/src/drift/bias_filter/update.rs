@@ -174,6 +174,8 @@ impl<F: FusedOps, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
         if are_headings_read {
             let expected = track.theta + self.state.angle_offset(i);
             track.monitor.check(error, angles, expected, time_us);
+        } else {
+            track.monitor.hold_exclusions(time_us);
         }
         track.processed_theta = track.theta;
         // Without a sensor that has just stepped.
