@@ -7,7 +7,7 @@ use telemetry::{Command, Health, SetPressures};
 
 use super::DriveError;
 use crate::status::Status;
-use crate::{Link, LinkError};
+use crate::{Link, LinkError, RequestError};
 
 /// Time from one set of pressures to the next.
 pub const PERIOD: Duration = Duration::from_millis(50);
@@ -39,11 +39,14 @@ impl<'l> Driver<'l> {
     ///
     /// # Errors
     /// [`DriveError`]: the board has another number of regulators or another table, has restarted after a crash, reads no IMU, or
-    /// refuses.
+    /// refuses; another handle of the link drives it.
     pub fn arm(link: &'l Link, status: &Status, regulators: usize) -> Result<Self, DriveError> {
         check(link, status, regulators)?;
-        let driver = Self { link, requested_pa: VecDeque::new(), is_armed: true, restarts: link.state().restarts };
-        link.request(Command::Arm)?;
+        let mut driver = Self { link, requested_pa: VecDeque::new(), is_armed: true, restarts: link.state().restarts };
+        let armed = link.request(Command::Arm);
+        // Another program's arm is not vented.
+        driver.is_armed = !matches!(armed, Err(LinkError::Request(RequestError::Driven)));
+        armed?;
         Ok(driver)
     }
 
