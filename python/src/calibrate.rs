@@ -4,10 +4,10 @@ use std::path::{Path, PathBuf};
 
 use estimator_core::Method;
 use proprio::Help;
-use proprio_calibration::{Error, JudgedTruth};
 use proprio_calibration::calibrate::{
     Calibration, CalibrationOptions, HeldOut, HysteresisMode, MapKind, MapMode, calibrate as make_table,
 };
+use proprio_calibration::{Error, JudgedTruth};
 use proprio_session::{LoadedTable, today};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;

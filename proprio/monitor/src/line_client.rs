@@ -112,7 +112,10 @@ impl LineClient {
 
     /// The error of a connection that has ended.
     fn ended(&self) -> io::Error {
-        io::Error::other(format!("the monitor at http://{}, through which the board was reached, has ended", self.address))
+        io::Error::other(format!(
+            "the monitor at http://{}, through which the board was reached, has ended",
+            self.address
+        ))
     }
 }
 

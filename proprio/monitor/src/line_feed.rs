@@ -114,8 +114,7 @@ struct Left;
 impl Feed {
     fn begin(link: &Link, with_history: bool) -> Self {
         let line = link.state().port;
-        let (events, history) =
-            if with_history { link.subscribe_with_history() } else { (link.subscribe(), None) };
+        let (events, history) = if with_history { link.subscribe_with_history() } else { (link.subscribe(), None) };
         Self { line, events, is_in_frame: history.is_none(), history, dropped: 0 }
     }
 
