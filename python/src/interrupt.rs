@@ -21,7 +21,7 @@ impl Interruptible {
             return;
         }
         self.checked = Instant::now();
-        if let Err(raised) = Python::attach(Python::check_signals) {
+        if let Some(raised) = Python::attach(|py| py.check_signals().err()) {
             resume_unwind(Box::new(raised));
         }
     }

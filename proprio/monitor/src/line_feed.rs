@@ -165,7 +165,7 @@ impl Feed {
     fn message(&mut self, LinkEvent { at, kind, .. }: LinkEvent) -> Option<Message> {
         Some(match kind {
             EventKind::Bytes(bytes) => {
-                let bytes = self.from_a_frame_on(bytes)?;
+                let bytes = self.behind_frame_rest(bytes)?;
                 let mut message = Vec::new();
                 push_bytes(&mut message, &(at, bytes));
                 Message::Binary(message.into())
@@ -184,7 +184,7 @@ impl Feed {
     }
 
     /// The bytes without the rest of a frame whose begin the program does not have; `None` where nothing is left.
-    fn from_a_frame_on(&mut self, bytes: Arc<[u8]>) -> Option<Arc<[u8]>> {
+    fn behind_frame_rest(&mut self, bytes: Arc<[u8]>) -> Option<Arc<[u8]>> {
         if !self.is_in_frame {
             return Some(bytes);
         }

@@ -70,7 +70,9 @@ mod tests {
         let received: [ReceivedBytes; 3] =
             [(1, &[0, 7][..]), (u64::MAX, &[]), (2, &[1; 300])].map(|(at, bytes)| (HostNs(at), Arc::from(bytes)));
         let mut message = Vec::new();
-        received.iter().for_each(|one| push_bytes(&mut message, one));
+        for one in &received {
+            push_bytes(&mut message, one);
+        }
         assert_eq!(split_bytes(&message), Some(received.to_vec()));
         for length in [1, 11, message.len() - 1] {
             assert_eq!(split_bytes(&message[..length]), None, "cut at {length}");

@@ -223,8 +223,7 @@ fn done_after_the_end_of_the_program(command: Command) -> Vec<Command> {
     line.board().answers_lost = 0;
     // Requests are sent in their order.
     page.monitor.finish().expect("nothing was recorded");
-    let done = line.board().done.clone();
-    done
+    line.board().done.clone()
 }
 
 #[test]
