@@ -23,11 +23,11 @@ class Error(Exception):
 
 
 class SessionWarning(UserWarning):
-    """A defect of a session past which it was used, with the text of the program `proprio`."""
+    """A defect of a session past which it was used, or a finding of the session check, with the text of the program `proprio`."""
 
 
 def warn(texts: "list[str]", plain: "Callable[[str], str]" = str) -> None:
-    """Warns of defects, at the line that called the package."""
+    """Warns of defects and findings, at the line that called the package."""
     for text in texts:
         warnings.warn(plain(text), SessionWarning, stacklevel=3)
 

@@ -4,13 +4,15 @@ use std::path::PathBuf;
 
 use proprio_calibration::Error;
 use proprio_calibration::align::{AlignmentReport, ComparedSensors, align as align_clocks};
-use proprio_session::{Axis, BodySelection, Existing, NoProgress, OutputFile};
+use proprio_session::{Axis, BodySelection, Existing, OutputFile};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use serde_json::{Value, json};
 
 use crate::calibrate::{truth_report, truth_warnings};
 use crate::error::exception;
+use crate::findings;
+use crate::interrupt::{Interruptible, interruptible};
 use crate::table::TableText;
 
 /// Writes the session with truth to `output`; returns the report as JSON, and the warnings.
@@ -25,10 +27,12 @@ pub fn align(
     up: Option<&str>,
 ) -> PyResult<(String, Vec<String>)> {
     let selection = BodySelection { names: bodies, up: up.map(axis).transpose()? };
-    let run = || {
+    let run = |progress: &mut Interruptible| {
         let mut file = OutputFile::create(&output, &[&session, &camera], Existing::Keep)?;
-        let alignment = align_clocks(&session, &camera, &selection, &arm.load()?, &mut NoProgress)?;
-        let mut warnings = Vec::new();
+        let arm = arm.load()?;
+        let alignment = align_clocks(&session, &camera, &selection, &arm, progress)?;
+        let sessions = std::slice::from_ref(&session);
+        let mut warnings = findings::of_sessions(sessions, &arm, progress, |_| true)?;
         for (path, defects) in [&session, &camera].into_iter().zip(&alignment.defects) {
             warnings.extend(defects.warnings().map(|warning| format!("{}: {warning}", path.display())));
         }
@@ -42,7 +46,7 @@ pub fn align(
         report["truth"] = truth_report([alignment.truth()].into_iter());
         Ok::<_, Error>((report.to_string(), warnings))
     };
-    py.detach(run).map_err(|error| exception(py, error))
+    interruptible(py, run)?.map_err(|error| exception(py, error))
 }
 
 /// An axis by its letter.

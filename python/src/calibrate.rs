@@ -1,19 +1,21 @@
 //! Calibration.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use estimator_core::Method;
 use proprio::Help;
-use proprio_calibration::JudgedTruth;
 use proprio_calibration::calibrate::{
     Calibration, CalibrationOptions, HeldOut, HysteresisMode, MapKind, MapMode, calibrate as make_table,
 };
-use proprio_session::{NoProgress, today};
+use proprio_calibration::{Error, JudgedTruth};
+use proprio_session::{LoadedTable, today};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use serde_json::{Map, Value, json};
 
 use crate::error::exception;
+use crate::findings;
+use crate::interrupt::{Interruptible, interruptible};
 use crate::table::TableText;
 
 /// Makes a table; returns its text, the reports as JSON, and the warnings.
@@ -26,13 +28,17 @@ pub fn calibrate(
     hysteresis: &str,
 ) -> PyResult<(String, String, Vec<String>)> {
     let options = CalibrationOptions { maps: map_mode(maps)?, hysteresis: hysteresis_mode(hysteresis)? };
-    let run = || make_table(&sessions, &arm.load()?, options, &mut NoProgress);
-    let mut made = py.detach(run).map_err(|error| exception(py, error))?;
+    let run = |progress: &mut Interruptible| {
+        let made = make_table(&sessions, &arm.load()?, options, progress)?;
+        let table = LoadedTable { file: made.table.clone(), path: Path::new("the table") };
+        let found = findings::of_sessions(&sessions, &table, progress, |finding| !finding.is_later_tare())?;
+        Ok::<_, Error>((made, found))
+    };
+    let (mut made, mut warnings) = interruptible(py, run)?.map_err(|error| exception(py, error))?;
     if let Some(record) = &mut made.table.calibration {
         record.date = Some(today());
     }
     let names: Vec<String> = sessions.iter().map(|session| session.display().to_string()).collect();
-    let mut warnings = Vec::new();
     for (name, defects) in names.iter().zip(&made.defects) {
         warnings.extend(defects.warnings().map(|warning| format!("{name}: {warning}")));
     }

@@ -4,19 +4,19 @@ use std::path::PathBuf;
 
 use proprio::Help;
 use proprio_check::{CheckedSession, Finding, check as check_session};
-use proprio_session::NoProgress;
 use pyo3::prelude::*;
 use serde_json::{Value, json};
 
 use crate::error::exception;
+use crate::interrupt::{Interruptible, interruptible};
 use crate::table::TableText;
 
 /// Checks a session; returns the number of samples, the findings as JSON, and the warnings.
 #[pyfunction]
 pub fn check(py: Python<'_>, session: PathBuf, table: TableText) -> PyResult<(u64, String, Vec<String>)> {
-    let run = || check_session(&session, &table.load()?, &mut NoProgress);
+    let run = |progress: &mut Interruptible| check_session(&session, &table.load()?, progress);
     let CheckedSession { samples, missing_history, defects, findings } =
-        py.detach(run).map_err(|error| exception(py, error))?;
+        interruptible(py, run)?.map_err(|error| exception(py, error))?;
     let history = missing_history.is_any().then(|| missing_history.to_string());
     let warnings = defects.warnings().chain(history);
     let warnings = warnings.map(|warning| format!("{}: {warning}", session.display())).collect();

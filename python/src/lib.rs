@@ -12,6 +12,7 @@
 //! | `session.rs`, `rows.rs` | sessions as arrays; arrays as the rows of a session |
 //! | `estimates.rs`, `replay.rs`, `estimator.rs` | estimates as arrays, of a session or step by step |
 //! | `feed.rs` | the feed of a running monitor |
+//! | `findings.rs`, `interrupt.rs` | warnings of the session check; Ctrl-C during long work |
 //! | `check.rs`, `calibrate.rs`, `tune.rs`, `align.rs` | the other commands |
 
 #![expect(clippy::needless_pass_by_value, reason = "PyO3 gives a function arguments of its own")]
@@ -24,6 +25,8 @@ mod error;
 mod estimates;
 mod estimator;
 mod feed;
+mod findings;
+mod interrupt;
 mod program;
 mod replay;
 mod rows;

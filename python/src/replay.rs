@@ -1,6 +1,6 @@
 //! Replay of a session.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use estimator_core::{FusedOps, Q};
 use proprio_analysis::agreement::Comparison;
@@ -8,12 +8,15 @@ use proprio_analysis::metrics::ErrorMetrics;
 use proprio_analysis::replay::{NotComparable, SessionSummary, replay as replay_session};
 use proprio_analysis::session_metrics::{ByMethod, SessionMetrics};
 use proprio_analysis::{Error, Outcome, smooth};
-use proprio_session::{LoadedTable, NoProgress, Row};
+use proprio_check::SessionCheck;
+use proprio_session::{LoadedTable, Row};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::error::exception;
 use crate::estimates::Estimates;
+use crate::findings;
+use crate::interrupt::{Interruptible, interruptible};
 use crate::session::Truths;
 use crate::table::TableText;
 
@@ -37,15 +40,15 @@ pub fn replay(
     is_smoothed: bool,
     is_float: bool,
 ) -> PyResult<(Bound<'_, PyDict>, String, Vec<String>)> {
-    let run = || {
+    let run = |progress: &mut Interruptible| {
         let table = table.load()?;
         if is_float {
-            run::<f64>(session, &table, is_smoothed, None)
+            run::<f64>(&session, &table, is_smoothed, progress, None)
         } else {
-            run::<Q>(session, &table, is_smoothed, Some(Comparison::add))
+            run::<Q>(&session, &table, is_smoothed, progress, Some(Comparison::add))
         }
     };
-    let replayed = py.detach(run).map_err(|error| exception(py, error))?;
+    let replayed = interruptible(py, run)?.map_err(|error| exception(py, error))?;
     let mut arrays = replayed.estimates.into_arrays();
     replayed.truths.add_to(&mut arrays);
     let metrics = serde_json::to_string(&replayed.metrics).expect("numbers and names have a form in JSON");
@@ -53,18 +56,20 @@ pub fn replay(
 }
 
 fn run<S: FusedOps>(
-    path: PathBuf,
+    path: &Path,
     table: &LoadedTable,
     is_smoothed: bool,
+    progress: &mut Interruptible,
     compare: Option<Compare<S>>,
 ) -> Result<Replayed, Error> {
     let segments = table.file.segments.len();
     let (mut estimates, mut truths) = (Estimates::new(segments), Truths::new(segments));
     let mut errors = ErrorMetrics::new(table.file.length_mm());
-    let mut comparison = Comparison::default();
+    let (mut comparison, mut check) = (Comparison::default(), SessionCheck::new(table)?);
     let visit = |row: &Row, outcome: &Outcome<S>| {
         estimates.add(outcome);
         truths.add(row);
+        check.update(row);
         errors.add(row, outcome);
         if let Some(compare) = compare {
             compare(&mut comparison, row, outcome);
@@ -72,12 +77,13 @@ fn run<S: FusedOps>(
         Ok(())
     };
     let summary = if is_smoothed {
-        smooth::replay(&path, table, &mut NoProgress, visit)
+        smooth::replay(path, table, progress, visit)
     } else {
-        replay_session(&path, table, &mut NoProgress, visit)
+        replay_session(path, table, progress, visit)
     }?;
     let name = path.display().to_string();
     let mut warnings: Vec<String> = summary.defects.warnings().map(|warning| format!("{name}: {warning}")).collect();
+    warnings.extend(findings::warnings(path, &check.findings()));
     if summary.not_comparable > 0 {
         warnings.push(format!("{name}: {}", NotComparable(&summary)));
     }

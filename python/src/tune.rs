@@ -10,15 +10,17 @@ use serde_json::json;
 
 use crate::calibrate::{truth_report, truth_warnings};
 use crate::error::exception;
+use crate::findings;
+use crate::interrupt::{Interruptible, interruptible};
 use crate::table::TableText;
 
 /// Tunes a table; returns its text, the record as JSON, and the warnings. Ctrl-C keeps the best so far.
 #[pyfunction]
 pub fn tune(py: Python<'_>, sessions: Vec<PathBuf>, table: TableText) -> PyResult<(String, String, Vec<String>)> {
-    let run = || {
+    let run = |progress: &mut Interruptible| {
         let table = table.load()?;
-        let tuner = Tuner::new(&sessions, &table, &mut NoProgress)?;
-        let mut warnings = Vec::new();
+        let tuner = Tuner::new(&sessions, &table, progress)?;
+        let mut warnings = findings::of_sessions(&sessions, &table, progress, |_| true)?;
         for (path, defects) in tuner.defects() {
             warnings.extend(defects.warnings().map(|warning| format!("{}: {warning}", path.display())));
         }
@@ -32,5 +34,5 @@ pub fn tune(py: Python<'_>, sessions: Vec<PathBuf>, table: TableText) -> PyResul
         let report = json!({ "tuning": record, "truth": truth });
         Ok::<_, Error>((table.to_toml(), report.to_string(), warnings))
     };
-    py.detach(run).map_err(|error| exception(py, error))
+    interruptible(py, run)?.map_err(|error| exception(py, error))
 }

@@ -1,8 +1,11 @@
 """Calibration, tuning, alignment and check: those of the program."""
 
 import json
+import signal
 import tempfile
+import threading
 import unittest
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -42,6 +45,31 @@ class Calibration(unittest.TestCase):
         without = {name: values for name, values in session.items() if not name.startswith("truth")}
         with self.assertRaisesRegex(proprio.Error, r"^arrays-1\.csv, line 1: column truth1_x_mm is missing"):
             proprio.calibrate(without, ARM)
+
+
+    def test_ctrl_c_ends_it(self):
+        sessions = [self.folder / "sweep.csv"] * 8
+        threading.Timer(0.3, signal.raise_signal, [signal.SIGINT]).start()
+        with self.assertRaises(KeyboardInterrupt):
+            proprio.calibrate(sessions, ARM)
+
+
+class Findings(InFolder):
+    def setUp(self):
+        super().setUp()
+        self.session = proprio.read(SESSIONS / "scenario-1.csv")
+        self.session["bend_counts"][:, 2, 0] = 2000
+
+    def test_a_replay_warns_of_what_the_check_finds_with_the_remedy(self):
+        [finding] = proprio.check(self.session, TABLE)["findings"]
+        with self.assertWarns(proprio.SessionWarning) as warned:
+            proprio.replay(self.session, TABLE)
+        self.assertIn(f"{finding['text']}; {finding['help']}", str(warned.warning))
+
+    def test_nothing_is_warned_of_in_a_good_session(self):
+        with warnings.catch_warnings():
+            warnings.simplefilter("error", proprio.SessionWarning)
+            proprio.replay(SESSIONS / "scenario-1.csv", TABLE)
 
 
 class Tuning(InFolder):

@@ -20,6 +20,13 @@ pub struct Finding {
 }
 
 impl Finding {
+    /// True for a finding about the tare after a restart of the board, which does not matter to a calibration: the zeros of a sweep
+    /// are those of its truth.
+    #[must_use]
+    pub fn is_later_tare(&self) -> bool {
+        matches!(self.kind, Kind::TareBent | Kind::TareMoves) && self.rows.first > 1
+    }
+
     /// True for a finding about the bend sensors of a segment, from 1.
     fn is_about_bend(&self, number: usize) -> bool {
         match self.sensor {

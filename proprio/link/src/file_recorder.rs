@@ -7,7 +7,6 @@ use std::time::Duration;
 
 use proprio_session::recording::Recorder;
 use proprio_session::{Error, HostClock, HostNs, is_stdout};
-use telemetry::SetPressures;
 
 use crate::event::{EventKind, LinkEvent};
 use crate::handle::Link;
@@ -41,8 +40,8 @@ impl FileRecorder {
     ///
     /// # Errors
     /// [`Error::Output`].
-    pub fn history(&mut self, history: Vec<ReceivedBytes>) -> Result<(), Error> {
-        let written = history.into_iter().try_for_each(|(at, bytes)| self.recorder.history(at, &bytes));
+    pub fn history(&mut self, history: &[ReceivedBytes]) -> Result<(), Error> {
+        let written = history.iter().try_for_each(|(at, bytes)| self.recorder.history(*at, bytes));
         self.named(written)
     }
 
@@ -58,7 +57,7 @@ impl FileRecorder {
         self.recorder.samples()
     }
 
-    /// Writes an event, if it is of the kinds that are recorded: bytes and messages.
+    /// Writes an event, if it is of the kinds that are recorded: bytes, messages, and requested pressures.
     ///
     /// # Errors
     /// [`Error::Output`].
@@ -66,6 +65,7 @@ impl FileRecorder {
         let written = match &event.kind {
             EventKind::Bytes(bytes) => self.recorder.bytes(event.at, bytes),
             EventKind::Message(message) => self.recorder.message(event.at, message),
+            EventKind::SetPoints(requested) => self.recorder.set_points(event.at, requested),
             _ => Ok(()),
         };
         self.named(written)
@@ -80,15 +80,6 @@ impl FileRecorder {
             self.event(&event)?;
         }
         Ok(())
-    }
-
-    /// Writes the pressures that the host has requested.
-    ///
-    /// # Errors
-    /// [`Error::Output`].
-    pub fn set_points(&mut self, requested: &SetPressures) -> Result<(), Error> {
-        let written = self.recorder.set_points(self.clock.now(), requested);
-        self.named(written)
     }
 
     /// Writes a mark that a person has set.

@@ -10,6 +10,7 @@ use telemetry::Command;
 use crate::error::LinkError;
 use crate::event::EventKind;
 use crate::history::ReceivedBytes;
+use crate::relay::{Relay, RelayWorker};
 use crate::requests::{Answer, RequestError, TIME_LIMIT};
 use crate::shared::{LinkRequest, LinkState, SharedLink, Subscription};
 use crate::source::{OpenedLine, Source};
@@ -24,6 +25,8 @@ pub struct Link {
     requests: Sender<LinkRequest>,
     shared: Arc<SharedLink>,
     thread: Option<JoinHandle<()>>,
+    /// Identity of this handle: one handle drives the pressures at a time.
+    identity: Arc<()>,
 }
 
 impl Link {
@@ -65,15 +68,44 @@ impl Link {
         shared.state().port = opened.as_ref().map(|(name, _)| name.clone());
         let subscription = shared.subscribe();
         let worker = Worker::new(source, table, received, Arc::clone(&shared));
-        let thread = std::thread::Builder::new().name("link".to_owned());
-        let thread = thread.spawn(move || worker.run(opened)).map_err(LinkError::Thread)?;
-        Ok((Self { requests, shared, thread: Some(thread) }, subscription))
+        let link = Self::with_thread(requests, shared, move || worker.run(opened))?;
+        Ok((link, subscription))
     }
 
-    /// A second handle of the link, for another thread: the link ends with the first one.
+    /// Starts on a line that another program has. `line` is its name where it is open, and `history` are the bytes that were
+    /// received before those that are relayed, from the last start of the board's estimator on.
+    ///
+    /// # Errors
+    /// [`LinkError::Thread`].
+    pub fn start_relayed(
+        relay: Box<dyn Relay>,
+        line: Option<&str>,
+        history: &[ReceivedBytes],
+        table: Option<u32>,
+    ) -> Result<(Self, Subscription), LinkError> {
+        let shared = Arc::new(SharedLink::default());
+        let (requests, received) = channel();
+        let subscription = shared.subscribe();
+        let worker = RelayWorker::new(relay, line, history, table, received, Arc::clone(&shared));
+        let link = Self::with_thread(requests, shared, move || worker.run())?;
+        Ok((link, subscription))
+    }
+
+    fn with_thread(
+        requests: Sender<LinkRequest>,
+        shared: Arc<SharedLink>,
+        work: impl FnOnce() + Send + 'static,
+    ) -> Result<Self, LinkError> {
+        let thread = std::thread::Builder::new().name("link".to_owned()).spawn(work).map_err(LinkError::Thread)?;
+        Ok(Self { requests, shared, thread: Some(thread), identity: Arc::default() })
+    }
+
+    /// A second handle of the link, for another thread: the link ends with the first one. While one handle drives the pressures,
+    /// the requests of others to arm or to set them fail with [`RequestError::Driven`].
     #[must_use]
     pub fn second_handle(&self) -> Self {
-        Self { requests: self.requests.clone(), shared: Arc::clone(&self.shared), thread: None }
+        let (requests, shared) = (self.requests.clone(), Arc::clone(&self.shared));
+        Self { requests, shared, thread: None, identity: Arc::default() }
     }
 
     /// Subscribes to all events from now on.
@@ -155,7 +187,8 @@ impl Link {
         let (sender, answered) = channel();
         let answer = Answer { sender, asker, deadline: Instant::now() + TIME_LIMIT };
         // Without a thread the channel is closed, which is an interruption.
-        let _ = self.requests.send(LinkRequest::Command(Box::new(command), answer));
+        let handle = Arc::downgrade(&self.identity);
+        let _ = self.requests.send(LinkRequest::Command { command: Box::new(command), handle, answer });
         answered
     }
 }

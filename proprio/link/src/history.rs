@@ -4,6 +4,7 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 
 use proprio_session::{HostNs, RowAssembler};
+use telemetry::{Decoder, Message};
 
 use crate::event::{EventKind, LinkEvent};
 
@@ -15,6 +16,18 @@ const KEPT: usize = 4096;
 
 /// Bytes that were received at a time.
 pub type ReceivedBytes = (HostNs, Arc<[u8]>);
+
+/// Decodes the bytes of a history, and passes the event of each message to `take`.
+pub fn decoded(history: &[ReceivedBytes], mut take: impl FnMut(&LinkEvent)) {
+    let mut decoder = Decoder::<Message>::new();
+    for (at, bytes) in history {
+        for byte in bytes.iter() {
+            let Some(Ok(message)) = decoder.push(*byte) else { continue };
+            let gaps = decoder.counts().lost;
+            take(&LinkEvent { at: *at, gaps, kind: EventKind::Message(message) });
+        }
+    }
+}
 
 /// The bytes from the last start of the board's estimator on: its boot or a tare.
 ///
@@ -87,9 +100,9 @@ impl History {
 mod tests {
     use std::sync::Arc;
 
-    use telemetry::{Encoder, MAX_FRAME, Message, Sample};
+    use telemetry::{Encoder, MAX_FRAME, Sample};
 
-    use super::{EventKind, History, HostNs, KEPT, LinkEvent};
+    use super::{EventKind, History, HostNs, KEPT, LinkEvent, Message};
 
     /// A board that sends samples, and a history of its stream.
     struct Stream {

@@ -24,9 +24,10 @@
 //! | file | purpose |
 //! |---|---|
 //! | `handle.rs`, `shared.rs` | [`Link`]: its handle; the state that handle and thread share |
-//! | `worker.rs` | the thread |
+//! | `worker.rs`, `stream_publisher.rs` | the thread; the events of the stream |
 //! | `stream_decoder.rs` | bytes to messages; losses, mismatches and restarts |
-//! | `requests.rs` | ids, answers and repetitions |
+//! | `requests.rs`, `control.rs` | ids, answers and repetitions; one handle drives at a time |
+//! | `relay.rs` | a line that another program has |
 //! | `event.rs`, `queue.rs` | events with their time of arrival, and a queue for each subscription |
 //! | `file_recorder.rs`, `history.rs` | recording to a file; the bytes that one needs which begins later |
 //! | `drive/`, `status.rs`, `tare.rs` | pressures over time; the state of a board within seconds; its zero |
@@ -36,6 +37,7 @@
 //! | `companions.rs` | paths of the emulated board's program and of the firmware |
 
 mod companions;
+mod control;
 pub mod drive;
 mod error;
 mod event;
@@ -44,12 +46,14 @@ mod handle;
 mod history;
 mod ports;
 mod queue;
+mod relay;
 mod requests;
 mod serial;
 mod shared;
 mod source;
 pub mod status;
 mod stream_decoder;
+mod stream_publisher;
 pub mod table;
 mod tare;
 mod virtual_due;
@@ -60,8 +64,9 @@ pub use error::LinkError;
 pub use event::{EventKind, LinkEvent, Mismatch};
 pub use file_recorder::FileRecorder;
 pub use handle::{Link, PendingRequest};
-pub use history::ReceivedBytes;
+pub use history::{ReceivedBytes, decoded};
 pub use ports::{Port, PortKind, find_due, list, udev_rules};
+pub use relay::{Relay, Relayed};
 pub use requests::RequestError;
 pub use serial::{Baud, PortSource};
 pub use shared::{LinkState, Subscription};

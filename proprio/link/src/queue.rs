@@ -48,6 +48,11 @@ impl<T> Queue<T> {
         waited.unwrap_or_else(PoisonError::into_inner).0.items.pop_front()
     }
 
+    /// Counts items that were dropped before they came here.
+    pub fn add_dropped(&self, items: u64) {
+        self.state().dropped += items;
+    }
+
     /// Number of items that were dropped.
     pub fn dropped(&self) -> u64 {
         self.state().dropped

@@ -9,6 +9,7 @@ use std::sync::Weak;
 use std::sync::mpsc::Sender;
 use std::time::{Duration, Instant};
 
+use serde::{Deserialize, Serialize};
 use telemetry::{Command, Encoder, MAX_FRAME, PROTOCOL_VERSION, Refusal, Reply, Request, RequestOutcome};
 
 /// Time without an answer after which a request is sent again.
@@ -18,7 +19,7 @@ const AGAIN: Duration = Duration::from_millis(100);
 pub const TIME_LIMIT: Duration = Duration::from_secs(2);
 
 /// A request that was not acknowledged.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error, Serialize, Deserialize)]
 pub enum RequestError {
     /// The board has refused it.
     #[error("the board refuses: {0}")]
@@ -29,6 +30,9 @@ pub enum RequestError {
     /// It restarted, or its line was lost, before it answered.
     #[error("the board restarted or its line was lost before it answered")]
     Interrupted,
+    /// Another handle of the link drives the pressures.
+    #[error("the arm is driven by another program, or from the live page")]
+    Driven,
 }
 
 /// The way back to the asker of a request.
@@ -44,11 +48,12 @@ pub struct Answer {
 
 impl Answer {
     /// True while the asker waits.
-    fn is_awaited(&self, now: Instant) -> bool {
+    pub fn is_awaited(&self, now: Instant) -> bool {
         now < self.deadline && self.asker.strong_count() > 0
     }
 
-    fn send(&self, outcome: Result<(), RequestError>) {
+    /// Sends the outcome to the asker.
+    pub fn send(&self, outcome: Result<(), RequestError>) {
         // The asker may have left.
         let _ = self.sender.send(outcome);
     }

@@ -17,7 +17,12 @@ const CAPACITY: usize = 8192;
 #[derive(Debug)]
 pub(super) enum LinkRequest {
     /// Send a command to the board.
-    Command(Box<Command>, Answer),
+    Command {
+        command: Box<Command>,
+        /// Identity of the handle that asks.
+        handle: Weak<()>,
+        answer: Answer,
+    },
     /// End.
     Stop,
 }
@@ -45,7 +50,7 @@ pub struct LinkState {
     pub port: Option<String>,
     /// Reason why no line could be opened yet; `None` once one was.
     pub waiting: Option<String>,
-    /// True once the board has acknowledged a Ping since its start.
+    /// True once the board has acknowledged a Ping since its start; of a relayed line, any request of this link.
     pub is_connected: bool,
     /// The board's last `Hello`.
     pub hello: Option<Hello>,
@@ -80,6 +85,12 @@ impl SharedLink {
     pub fn subscribe_with_history(&self) -> (Subscription, Option<Vec<ReceivedBytes>>) {
         let mut subscribers = self.subscribers();
         (subscribers.add(), subscribers.history.as_ref().and_then(History::whole))
+    }
+
+    /// Counts events that were dropped before they came to this link.
+    pub fn add_dropped(&self, events: u64) {
+        let subscribers = self.subscribers();
+        subscribers.queues.iter().filter_map(Weak::upgrade).for_each(|queue| queue.add_dropped(events));
     }
 
     /// The state, locked.

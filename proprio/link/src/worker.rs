@@ -4,14 +4,16 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, TryRecvError};
 use std::time::{Duration, Instant};
 
-use proprio_session::{HostClock, HostNs};
+use proprio_session::HostClock;
 use telemetry::{Command, Message, SetPressures};
 
-use crate::event::{EventKind, LinkEvent};
-use crate::requests::Requests;
+use crate::control::Control;
+use crate::event::EventKind;
+use crate::requests::{RequestError, Requests};
 use crate::shared::{LinkRequest, SharedLink};
 use crate::source::{OpenedLine, Source, Transport};
-use crate::stream_decoder::{Received, StreamDecoder};
+use crate::stream_decoder::Received;
+use crate::stream_publisher::StreamPublisher;
 
 /// Time between two attempts to open a line that is gone.
 const RETRY_PERIOD: Duration = Duration::from_millis(300);
@@ -22,8 +24,9 @@ pub(super) struct Worker {
     received: Receiver<LinkRequest>,
     shared: Arc<SharedLink>,
     clock: HostClock,
-    decoder: StreamDecoder,
+    stream: StreamPublisher,
     requests: Requests,
+    control: Control,
 }
 
 /// The link was dropped.
@@ -36,8 +39,9 @@ impl Worker {
         received: Receiver<LinkRequest>,
         shared: Arc<SharedLink>,
     ) -> Self {
-        let (clock, decoder, requests) = (HostClock::new(), StreamDecoder::new(table), Requests::default());
-        Self { source, received, shared, clock, decoder, requests }
+        let stream = StreamPublisher::new(Arc::clone(&shared), table);
+        let (clock, requests, control) = (HostClock::new(), Requests::default(), Control::default());
+        Self { source, received, shared, clock, stream, requests, control }
     }
 
     /// Works until the link is dropped or its line is gone for good; waits for a line that is not there yet.
@@ -57,9 +61,7 @@ impl Worker {
 
     /// Works on an open line until it is lost; returns the reason.
     fn work(&mut self, name: &str, transport: &mut dyn Transport) -> Result<String, LinkDropped> {
-        self.decoder.open();
-        self.shared.state().port = Some(name.to_owned());
-        self.publish(EventKind::Opened(name.to_owned()));
+        self.stream.opened(self.clock.now(), name);
         let mut buffer = [0; 4096];
         loop {
             self.take_requests()?;
@@ -99,7 +101,11 @@ impl Worker {
     fn take_requests(&mut self) -> Result<(), LinkDropped> {
         loop {
             match self.received.try_recv() {
-                Ok(LinkRequest::Command(command, answer)) => {
+                Ok(LinkRequest::Command { command, handle, answer }) => {
+                    if !self.control.admits(&handle, &command, Instant::now()) {
+                        answer.send(Err(RequestError::Driven));
+                        continue;
+                    }
                     if let Some(requested) = set_points(&command) {
                         self.publish(EventKind::SetPoints(requested));
                     }
@@ -112,37 +118,18 @@ impl Worker {
     }
 
     fn decode(&mut self, bytes: &[u8]) {
-        let at = self.clock.now();
-        self.publish_at(at, EventKind::Bytes(bytes.into()));
-        let mut received = Vec::new();
-        for byte in bytes {
-            self.decoder.push(*byte, |part| received.push(part));
-            for part in received.drain(..) {
-                let kind = event_kind(part, &mut self.requests);
-                self.publish_at(at, kind);
-            }
-        }
-        let Self { decoder, requests, shared, .. } = self;
-        requests.set_version(decoder.version());
-        let mut state = shared.state();
-        state.bytes += bytes.len() as u64;
-        state.counts = decoder.counts();
-        state.is_connected = requests.is_connected();
-        state.restarts = decoder.restarts();
-        if state.hello.as_ref() != decoder.hello() {
-            state.hello = decoder.hello().cloned();
-        }
-        if state.mismatches.len() != decoder.mismatches().len() {
-            state.mismatches = decoder.mismatches().to_vec();
-        }
+        let Self { stream, requests, shared, clock, .. } = self;
+        stream.bytes(clock.now(), &bytes.into(), |part| match part {
+            Received::Message(Message::Reply(reply)) => requests.replied(*reply),
+            Received::Restarted => requests.interrupt(),
+            _ => {}
+        });
+        requests.set_version(stream.version());
+        shared.state().is_connected = requests.is_connected();
     }
 
     fn publish(&self, kind: EventKind) {
-        self.publish_at(self.clock.now(), kind);
-    }
-
-    fn publish_at(&self, at: HostNs, kind: EventKind) {
-        self.shared.publish(&LinkEvent { at, gaps: self.decoder.gaps(), kind });
+        self.stream.publish(self.clock.now(), kind);
     }
 }
 
@@ -152,23 +139,5 @@ fn set_points(command: &Command) -> Option<SetPressures> {
         Command::SetPressures(requested) => Some(requested.clone()),
         Command::Disarm => Some(SetPressures { pressures_pa: [].into_iter().collect(), valid_ms: 0 }),
         _ => None,
-    }
-}
-
-/// The event of a part of the stream; replies go to the requests first.
-fn event_kind(received: Received, requests: &mut Requests) -> EventKind {
-    match received {
-        Received::Message(message) => {
-            if let Message::Reply(reply) = message {
-                requests.replied(reply);
-            }
-            EventKind::Message(message)
-        }
-        Received::Undecoded(error) => EventKind::Undecoded(error),
-        Received::Restarted => {
-            requests.interrupt();
-            EventKind::Restarted
-        }
-        Received::Mismatch(mismatch) => EventKind::Mismatch(mismatch),
     }
 }

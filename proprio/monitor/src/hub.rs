@@ -5,9 +5,8 @@ use std::time::{Duration, Instant};
 
 use estimator_core::ArmConfig;
 use proprio_check::SessionCheck;
-use proprio_link::{EventKind, Link, LinkEvent, ReceivedBytes, Subscription};
+use proprio_link::{EventKind, Link, LinkEvent, ReceivedBytes, Subscription, decoded};
 use proprio_session::{HostNs, degradations};
-use telemetry::{Decoder, Message};
 
 use super::feed::{Batch, Feed, PageStatus};
 use super::history::History;
@@ -62,22 +61,18 @@ impl<'t> Hub<'t> {
     }
 
     /// Takes the bytes since the last start of the board's estimator, in place of the rows that the pages have.
-    pub fn take_history(&mut self, received: Vec<ReceivedBytes>) {
+    pub fn take_history(&mut self, received: &[ReceivedBytes]) {
         let mut size = self.shared.arm().size;
         let new = |size| History::new(page_row::names(size).len());
-        let (mut history, mut decoder) = (new(size), Decoder::<Message>::new());
-        for (at, bytes) in received {
-            for byte in bytes.iter() {
-                let Some(Ok(message)) = decoder.push(*byte) else { continue };
-                let event = LinkEvent { at, gaps: decoder.counts().lost, kind: EventKind::Message(message) };
-                let Some(TimedRow { row, .. }) = self.live.take(&event) else { continue };
-                if row.size != size {
-                    size = row.size;
-                    history = new(size);
-                }
-                history.push(&row);
+        let mut history = new(size);
+        decoded(received, |event| {
+            let Some(TimedRow { row, .. }) = self.live.take(event) else { return };
+            if row.size != size {
+                size = row.size;
+                history = new(size);
             }
-        }
+            history.push(&row);
+        });
         self.live.restart_rates();
         self.shared.replace(size, history);
     }

@@ -12,7 +12,8 @@
 //! | `latency.rs` | latency from a sample to the screen |
 //! | `recording.rs`, `sessions.rs` | recording and opening of sessions |
 //! | `server.rs`, `socket.rs`, `actions.rs`, `body.rs`, `access.rs` | HTTP: the page, the feed, handlers of requests, their limits, access control |
-//! | `running.rs` | a running monitor, for the user's other programs |
+//! | `running.rs`, `programs.rs` | a running monitor, for the user's other programs; handlers of their requests |
+//! | `line_feed.rs`, `line_client.rs`, `line_message.rs` | the board's line for them: server, client, messages |
 //! | `monitor_state.rs`, `app_state.rs` | state of the threads; state of the handlers |
 //! | `plain.rs` | one line per second instead, for a terminal |
 //! | `page/` | the page, embedded in the program |
@@ -28,6 +29,9 @@ mod history;
 mod host_replica;
 mod hub;
 mod latency;
+mod line_client;
+mod line_feed;
+mod line_message;
 mod live;
 mod monitor_state;
 mod page_row;
@@ -48,7 +52,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use calibration_tables::CompiledTable;
 use estimator_core::Q;
 use proprio_check::Finding;
-use proprio_link::{Link, Subscription};
+use proprio_link::{Link, ReceivedBytes, Subscription};
 use proprio_server::{LocalServer, serve_connection};
 use proprio_session::LoadedTable;
 use telemetry::{Command, TICK_HZ};
@@ -56,6 +60,7 @@ use tokio::io::{AsyncRead, AsyncWrite};
 
 pub use access::Token;
 pub use error::Error;
+pub use line_client::{LineClient, MonitoredLine};
 pub use plain::Plain;
 pub use running::{RunningMonitor, RunningMonitorError};
 
@@ -181,7 +186,7 @@ fn board(access: BoardAccess, announcement: Option<Announcement>, stop: &AtomicB
 /// Runs the hub, and starts it again with each table that is taken from the board.
 fn hub(shared: &Arc<MonitorState>, mut events: Subscription, stop: &AtomicBool) {
     let Some(link) = &shared.link else { return };
-    let mut received = None;
+    let mut received: Option<Vec<ReceivedBytes>> = None;
     loop {
         let tables = shared.board_tables();
         let table = shared.sessions.table();
@@ -189,8 +194,8 @@ fn hub(shared: &Arc<MonitorState>, mut events: Subscription, stop: &AtomicBool) 
         let compiled = table.and_then(|table| table.loaded().compile::<Q>(TICK_HZ).ok());
         let config = compiled.as_ref().map(CompiledTable::config);
         let mut hub = Hub::new(Arc::clone(shared), events, config.as_ref(), shared.sessions.check());
-        if let Some(received) = received {
-            hub.take_history(received);
+        if let Some(received) = received.take() {
+            hub.take_history(&received);
         }
         hub.run(link, || stop.load(Ordering::Relaxed) || shared.board_tables() != tables);
         if stop.load(Ordering::Relaxed) {

@@ -16,7 +16,8 @@ use super::actions::{Answer, TareOutcome, run_blocking, tare_board};
 use super::app_state::AppState;
 use crate::error::Error;
 
-fn check_token(state: &AppState, headers: &HeaderMap) -> Result<(), Refused> {
+/// Checks the token of the monitor's file.
+pub(super) fn check_token(state: &AppState, headers: &HeaderMap) -> Result<(), Refused> {
     state.monitor.program_token.as_ref().ok_or(Refused::Token)?.check(headers)
 }
 

@@ -8,7 +8,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-use proprio_link::{EventKind, FileRecorder, Link, ReceivedBytes, Subscription};
+use proprio_link::{FileRecorder, Link, ReceivedBytes, Subscription};
 use proprio_session::{HostClock, HostNs};
 use serde::Serialize;
 
@@ -135,7 +135,7 @@ struct Work {
 
 impl Work {
     fn run(mut self, history: Option<Vec<ReceivedBytes>>) -> Result<(), Error> {
-        let done = self.work(history.unwrap_or_default());
+        let done = self.work(&history.unwrap_or_default());
         if let Err(error) = &done {
             // The page shows the file's name with the reason.
             self.counts.fail(match error {
@@ -146,16 +146,11 @@ impl Work {
         done.and_then(|()| Ok(self.recorder.finish()?))
     }
 
-    fn work(&mut self, history: Vec<ReceivedBytes>) -> Result<(), Error> {
+    fn work(&mut self, history: &[ReceivedBytes]) -> Result<(), Error> {
         self.recorder.history(history)?;
         loop {
             match self.events.next(CHECK_PERIOD) {
-                Some(event) => {
-                    self.recorder.event(&event)?;
-                    if let EventKind::SetPoints(requested) = &event.kind {
-                        self.recorder.set_points(requested)?;
-                    }
-                }
+                Some(event) => self.recorder.event(&event)?,
                 None => self.recorder.flush_if_due()?,
             }
             self.count();

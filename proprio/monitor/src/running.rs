@@ -28,7 +28,7 @@ pub struct RunningMonitor {
     /// Name of the board's line.
     pub(super) line: String,
     pub(super) address: SocketAddr,
-    /// Token that permits this user's programs to change the board's tare and table.
+    /// Token that permits this user's programs to change the board's tare and table, and to drive its pressures.
     pub(super) token: String,
     /// Address of its stream to Foxglove, if there is one.
     pub(super) stream: Option<SocketAddr>,

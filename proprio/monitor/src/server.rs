@@ -17,7 +17,7 @@ use tokio::net::TcpListener;
 
 use super::access::{Refused, check_host, check_origin};
 use super::app_state::AppState;
-use super::{actions, body, programs, socket};
+use super::{actions, body, line_feed, programs, socket};
 
 /// The files of the page, embedded in this program.
 const FILES: [(&str, &str, &str); 19] = [
@@ -47,6 +47,9 @@ const SCRIPT: &str = "text/javascript; charset=utf-8";
 const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; img-src 'self' data: blob:; \
                       frame-ancestors 'none'; base-uri 'none'; form-action 'none'";
 
+/// Paths of WebSockets, which a script of another page could open.
+const SOCKETS: [&str; 2] = ["/feed", "/board/line"];
+
 const HEADERS: [(HeaderName, &str); 3] =
     [(CONTENT_SECURITY_POLICY, POLICY), (X_CONTENT_TYPE_OPTIONS, "nosniff"), (CACHE_CONTROL, "no-store")];
 
@@ -72,6 +75,7 @@ pub(super) fn router(state: AppState) -> Router {
         .route("/board/tare", post(programs::tare))
         .route("/board/table", get(programs::table).post(programs::push_table).delete(programs::erase_table))
         .route("/board/table.toml", get(programs::pull_table))
+        .route("/board/line", get(line_feed::line))
         .layer(middleware::from_fn_with_state(state.clone(), guard))
         .with_state(state)
 }
@@ -80,6 +84,8 @@ pub(super) fn router(state: AppState) -> Router {
 pub(super) async fn serve(listener: TcpListener, router: Router) -> io::Result<()> {
     loop {
         let (stream, _) = listener.accept().await?;
+        // Small messages are not held back for larger ones. A stream without this option is served as well.
+        let _ = stream.set_nodelay(true);
         tokio::spawn(serve_connection(stream, router.clone(), body::PART_TIMEOUT));
     }
 }
@@ -88,7 +94,7 @@ pub(super) async fn serve(listener: TcpListener, router: Router) -> io::Result<(
 async fn guard(State(state): State<AppState>, request: Request, next: Next) -> Response {
     let headers = request.headers();
     let mut checked = check_host(headers, state.port).map(drop);
-    if request.method() != Method::GET || request.uri().path() == "/feed" {
+    if request.method() != Method::GET || SOCKETS.contains(&request.uri().path()) {
         checked = check_origin(headers, state.port);
     }
     let received = match checked {

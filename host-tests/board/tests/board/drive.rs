@@ -15,22 +15,23 @@ const PROFILE: &str = "time_s,pressure1_kpa,pressure2_kpa,pressure3_kpa,pressure
 /// A step of the PWM, Pa.
 const STEP_PA: f64 = 67.0;
 
-fn start(folder: &Path, terminal: &Terminal, arguments: &[&str]) -> Running {
+/// Starts a drive on the terminal's port.
+pub fn start(folder: &Path, terminal: &Terminal, arguments: &[&str]) -> Running {
     fs::write(folder.join("profile.csv"), PROFILE).expect("there is room");
     let arguments = [&["drive", "--port", terminal.port()], arguments].concat();
     Running(proprio(folder, &arguments).stderr(Stdio::piped()).spawn().expect("the tool starts"))
 }
 
 /// Lets the board run until the drive has ended; the set-points of every slice go to `see`.
-fn run(terminal: &mut Terminal, child: &mut Child, mut see: impl FnMut(&[f64])) {
+pub fn run(terminal: &mut Terminal, child: &mut Child, mut see: impl FnMut(&[f64])) {
     terminal.run_until(|machine| {
         see(&machine.world().set_points_pa());
         child.try_wait().expect("its state is readable").is_some()
     });
 }
 
-/// Its exit status and its messages.
-fn ended(mut drive: Running) -> (Option<i32>, String) {
+/// The exit status of a drive that has ended, and its messages.
+pub fn ended(mut drive: Running) -> (Option<i32>, String) {
     let mut messages = String::new();
     drive.0.stderr.take().expect("a pipe").read_to_string(&mut messages).expect("the tool writes UTF-8");
     (drive.0.wait().expect("it has ended").code(), messages)
@@ -40,7 +41,8 @@ fn inject(terminal: &mut Terminal, fault: &str) {
     terminal.machine.inject(fault.parse().expect("a fault")).expect("the board can have it");
 }
 
-fn is_vented(terminal: &Terminal) -> bool {
+/// True where no regulator has a set-point.
+pub fn is_vented(terminal: &Terminal) -> bool {
     terminal.machine.world().set_points_pa().iter().all(|pressure_pa| *pressure_pa < 1.0)
 }
 

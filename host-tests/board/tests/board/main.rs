@@ -16,6 +16,7 @@ mod late_recording;
 #[cfg(unix)]
 mod link;
 #[cfg(unix)]
+mod monitored_line;
 mod noise;
 mod page;
 mod page_table;

@@ -32,11 +32,7 @@ fn the_table_command_reaches_the_board_through_the_monitor_that_has_its_port() {
     let folder = folder("table through a monitor");
     let due = DueProcess::start(&folder);
     let table = table();
-    let command = |arguments: &[&str]| {
-        let mut command = proprio(&folder, &[arguments, &["--port", &due.port]].concat());
-        command.env("XDG_RUNTIME_DIR", &folder);
-        command
-    };
+    let command = |arguments: &[&str]| proprio(&folder, &[arguments, &["--port", &due.port]].concat());
     let page = Page::of(&mut command(&["monitor", "--listen", "0", "--table", &table]));
     page.wait_for_status(|status| status["board"]["table"].is_string());
     let run = |arguments: &[&str]| {

@@ -17,8 +17,10 @@ pub fn folder(name: &str) -> PathBuf {
     folder
 }
 
+/// The tool in a folder, in which it finds the monitors that run there.
 pub fn proprio(folder: &Path, arguments: &[&str]) -> Command {
     let mut command = Command::new(tool("proprio"));
+    command.env("XDG_RUNTIME_DIR", folder);
     command.current_dir(folder).args(arguments).stdin(Stdio::null()).env("PROPRIO_VIRTUAL_DUE", tool("virtual-due"));
     command
 }

@@ -4,7 +4,6 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use proprio_calibration::calibrate::{Calibration, CalibrationOptions, HysteresisMode, MapMode, calibrate};
-use proprio_check::{Finding, Kind};
 use proprio_session::{LoadedTable, OutputFile, today};
 
 use super::truth;
@@ -25,7 +24,7 @@ pub fn run(args: &CalibrateArgs) -> Result<(), Error> {
         Some(Calibration { table, .. }) => LoadedTable { file: table.clone(), path: &args.output },
         None => arm,
     };
-    let mut calibration = checked(calibration, &args.sessions, table, |finding| !is_later_tare(finding))?;
+    let mut calibration = checked(calibration, &args.sessions, table, |finding| !finding.is_later_tare())?;
     for (path, defects) in args.sessions.iter().zip(&calibration.defects) {
         warn_of_defects(path, defects);
     }
@@ -46,11 +45,6 @@ pub fn run(args: &CalibrateArgs) -> Result<(), Error> {
     }
     terminal::eprint_line(&file.finish()?);
     Ok(())
-}
-
-/// True for the tare after a restart of the board: the zeros of a sweep are those of its truth.
-fn is_later_tare(finding: &Finding) -> bool {
-    matches!(finding.kind, Kind::TareBent | Kind::TareMoves) && finding.rows.first > 1
 }
 
 impl From<MapName> for MapMode {

@@ -31,18 +31,18 @@ pub fn run(args: &DriveArgs) -> Result<(), Error> {
     {
         warn_of_slope(path, pa_per_s / 1e3, row, args.ramp);
     }
-    let (table, link, events) = link::open(&args.link)?;
+    let board = link::open_shared(&args.link, args.output.is_some())?;
     let shutdown = ShutdownGuard::new();
-    let status = link::status(&link, &link.subscribe(), table.is_some())?;
+    let status = link::status(&board.link, &board.link.subscribe(), board.table.is_some())?;
     // The recording begins only with an armed board, which stays vented until the first set-points.
-    let mut driver = Driver::arm(&link, &status, profile.regulators())?;
-    let recorder = args.output.as_deref().map(|path| link::recorder(path, &link, table.as_ref()));
-    let mut drive = Session { recorder: recorder.transpose()?, events, screen: StatusLine::new(), board_kpa: None };
+    let mut driver = Driver::arm(&board.link, &status, profile.regulators())?;
+    let recorder = args.output.as_deref().map(|path| link::recorder(path, &board)).transpose()?;
+    let mut drive = Session { recorder, events: &board.events, screen: StatusLine::new(), board_kpa: None };
     drive.catch_up()?;
     let driven = drive.follow(&mut driver, &profile, Ramp::new(profile.regulators(), args.ramp * 1e3), &shutdown);
     // Vent first, also after an error.
     let vented = driver.vent();
-    drop(link);
+    drop(board.link);
     let driven = drive.finish(driven)?;
     vented.map_err(DriveError::from)?;
     let early = if driven.is_whole { "" } else { ", interrupted before the end" };
@@ -78,9 +78,9 @@ fn check_new(path: &Path) -> Result<(), Error> {
 }
 
 /// A running drive.
-struct Session {
+struct Session<'b> {
     recorder: Option<FileRecorder>,
-    events: Subscription,
+    events: &'b Subscription,
     screen: StatusLine,
     /// The board's last reported set-points.
     board_kpa: Option<String>,
@@ -92,11 +92,11 @@ struct Driven {
     is_whole: bool,
 }
 
-impl Session {
+impl Session<'_> {
     /// Takes the events until the board's status was known: they are recorded, and were checked already.
     fn catch_up(&mut self) -> Result<(), Error> {
         if let Some(recorder) = &mut self.recorder {
-            return Ok(recorder.remaining_events(&self.events)?);
+            return Ok(recorder.remaining_events(self.events)?);
         }
         while self.events.next(Duration::ZERO).is_some() {}
         Ok(())
@@ -122,9 +122,6 @@ impl Session {
             last = now;
             let pressures_pa = ramp.step(&profile.at(passed.as_secs_f64()), step.as_secs_f64());
             let requested = driver.set(pressures_pa)?;
-            if let Some(recorder) = &mut self.recorder {
-                recorder.set_points(&requested)?;
-            }
             self.show(passed, profile.end_s(), &requested.pressures_pa);
             self.receive(driver, now + PERIOD)?;
         }
@@ -161,7 +158,7 @@ impl Session {
         drop(self.screen);
         if let Some(mut recorder) = self.recorder {
             let path = recorder.path().to_owned();
-            let written = recorder.remaining_events(&self.events).and_then(|()| {
+            let written = recorder.remaining_events(self.events).and_then(|()| {
                 let samples = recorder.samples();
                 recorder.finish().map(|()| samples)
             });

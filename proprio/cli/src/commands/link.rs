@@ -8,15 +8,39 @@ use proprio_foxglove::FoxgloveServer;
 use proprio_link::status::{Status, TIMEOUT_S};
 use proprio_link::table::{StoredTable, TableImageError};
 use proprio_link::{
-    FileRecorder, Flash, Link, LinkError, PortSource, Source, Subscription, VirtualDue, find_due, list,
+    FileRecorder, Flash, Link, LinkError, PortSource, ReceivedBytes, Source, Subscription, VirtualDue, find_due, list,
 };
-use proprio_monitor::RunningMonitor;
+use proprio_monitor::{MonitoredLine, RunningMonitor};
 use proprio_session::{HostClock, LoadedTable};
 use telemetry::TICK_HZ;
 
 use crate::args::{FoxgloveArgs, LinkArgs};
 use crate::error::Error;
 use crate::terminal;
+
+/// A link to a board, on its line or through the running monitor that has it.
+pub struct Board<'a> {
+    /// The table that was given.
+    pub table: Option<LoadedTable<'a>>,
+    pub link: Link,
+    /// Its events: from the first byte on, or behind the history.
+    pub events: Subscription,
+    /// The bytes from the last start of the board's estimator on, of a monitor that holds them.
+    pub history: Option<Vec<ReceivedBytes>>,
+}
+
+/// A link to the given board, through the running monitor that has its line if there is one. `with_history`: for a recording.
+pub fn open_shared(args: &LinkArgs, with_history: bool) -> Result<Board<'_>, Error> {
+    let Some(monitor) = monitor(args) else {
+        let (table, link, events) = open(args)?;
+        return Ok(Board { table, link, events, history: None });
+    };
+    let (table, checksum) = given_table(args)?;
+    let MonitoredLine { client, name, history } = monitor.line(with_history)?;
+    let received = history.as_deref().unwrap_or_default();
+    let (link, events) = Link::start_relayed(Box::new(client), name.as_deref(), received, checksum)?;
+    Ok(Board { table, link, events, history })
+}
 
 /// The given table, a link to the given board, and a subscription to its events.
 pub fn open(args: &LinkArgs) -> Result<(Option<LoadedTable<'_>>, Link, Subscription), Error> {
@@ -32,8 +56,7 @@ pub fn open_waiting(args: &LinkArgs) -> Result<(Option<LoadedTable<'_>>, Link, S
 type Start = fn(Box<dyn Source>, Option<u32>) -> Result<(Link, Subscription), LinkError>;
 
 fn open_by(args: &LinkArgs, start: Start) -> Result<(Option<LoadedTable<'_>>, Link, Subscription), Error> {
-    let table = args.table.as_deref().map(LoadedTable::load).transpose()?;
-    let checksum = table.as_ref().map(checksum).transpose()?;
+    let (table, checksum) = given_table(args)?;
     let source: Box<dyn Source> = if args.emulated {
         let flash = args.flash.clone().map_or_else(|| flash_with(table.as_ref()), |path| Ok(Flash::File(path)))?;
         let arm = args.arm.clone().or_else(|| args.table.clone());
@@ -43,6 +66,13 @@ fn open_by(args: &LinkArgs, start: Start) -> Result<(Option<LoadedTable<'_>>, Li
     };
     let (link, events) = start(source, checksum)?;
     Ok((table, link, events))
+}
+
+/// The given table, and its checksum.
+fn given_table(args: &LinkArgs) -> Result<(Option<LoadedTable<'_>>, Option<u32>), Error> {
+    let table = args.table.as_deref().map(LoadedTable::load).transpose()?;
+    let checksum = table.as_ref().map(checksum).transpose()?;
+    Ok((table, checksum))
 }
 
 fn checksum(table: &LoadedTable) -> Result<u32, Error> {
@@ -100,10 +130,12 @@ pub fn stored(table: &LoadedTable) -> Result<StoredTable, Error> {
         .map_err(|source| Error::TableImage { name: table.path.display().to_string(), source })
 }
 
-/// Begins a recording of the link in a new file, with the table attached.
-pub fn recorder(path: &Path, link: &Link, table: Option<&LoadedTable>) -> Result<FileRecorder, Error> {
-    let toml = table.map(LoadedTable::toml).transpose()?;
-    Ok(FileRecorder::create(path, link, HostClock::new(), toml.as_deref())?)
+/// Begins a recording of the board in a new file, with the table attached, behind the history.
+pub fn recorder(path: &Path, board: &Board) -> Result<FileRecorder, Error> {
+    let toml = board.table.as_ref().map(LoadedTable::toml).transpose()?;
+    let mut recorder = FileRecorder::create(path, &board.link, HostClock::new(), toml.as_deref())?;
+    recorder.history(board.history.as_deref().unwrap_or_default())?;
+    Ok(recorder)
 }
 
 /// Starts the live stream for other viewers, where it is asked for, and prints its address.

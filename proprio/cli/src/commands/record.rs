@@ -2,11 +2,11 @@
 
 use std::time::{Duration, Instant};
 
-use proprio_link::{EventKind, FileRecorder, Link, LinkError, LinkEvent, Subscription};
+use proprio_link::{EventKind, FileRecorder, Link, LinkError, LinkEvent, ReceivedBytes, Subscription, decoded};
 use proprio_session::{RowAssembler, check_seconds};
 use telemetry::Counts;
 
-use super::link;
+use super::link::{self, Board};
 use crate::args::RecordArgs;
 use crate::error::Error;
 use crate::interrupt::ShutdownGuard;
@@ -18,10 +18,12 @@ const STATUS_PERIOD: Duration = Duration::from_millis(500);
 
 pub fn run(args: &RecordArgs) -> Result<(), Error> {
     args.seconds.map_or(Ok(()), check_seconds)?;
-    let (table, link, events) = link::open(&args.link)?;
+    let board = link::open_shared(&args.link, true)?;
     let shutdown = ShutdownGuard::new();
-    let _stream = link::stream(&args.foxglove, &link, table.as_ref())?;
-    let mut session = Session::new(link::recorder(&args.output, &link, table.as_ref())?);
+    let _stream = link::stream(&args.foxglove, &board.link, board.table.as_ref())?;
+    let mut session = Session::new(link::recorder(&args.output, &board)?);
+    session.follow_history(board.history.as_deref().unwrap_or_default());
+    let Board { link, events, .. } = board;
     let end = args.seconds.map(|seconds| Instant::now() + Duration::from_secs_f64(seconds));
     while session.ended.is_none() && !shutdown.is_requested() && end.is_none_or(|end| Instant::now() < end) {
         session.step(&link, &events)?;
@@ -78,6 +80,12 @@ impl Session {
             self.screen.show(self.line(link.state().counts, events, rate_hz));
         }
         Ok(())
+    }
+
+    /// Follows the starts of the board's estimator before the recording.
+    fn follow_history(&mut self, history: &[ReceivedBytes]) {
+        decoded(history, |event| self.follow(event));
+        self.not_comparable = 0;
     }
 
     /// Follows the starts of the board's estimator.

@@ -31,6 +31,7 @@ impl Help for LinkError {
                 "check that the firmware is on the board (docs/how-to/flashing.md) and that this is its programming port"
             }
             Self::Request(RequestError::Refused(_)) => "remove the reason that the board gives, and try again",
+            Self::Request(RequestError::Driven) => "end that, or vent the arm there, and try again",
             Self::Request(_) => "try again; `proprio status` shows the state of the board",
         };
         help.to_owned()

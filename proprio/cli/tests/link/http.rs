@@ -122,12 +122,18 @@ impl Page {
 
     /// The WebSocket, from a page of this origin; or the status with which it is refused.
     pub fn socket(&self, origin: Option<&str>) -> Result<Socket, u16> {
+        self.socket_at("/feed", origin, "")
+    }
+
+    /// The WebSocket at a path, with a token.
+    pub fn socket_at(&self, path: &str, origin: Option<&str>, token: &str) -> Result<Socket, u16> {
         let stream = TcpStream::connect(self.monitor.address()).expect("it listens");
         stream.set_read_timeout(Some(PATIENCE)).expect("a timeout");
-        let mut request = format!("ws://{}/feed", self.host()).into_client_request().expect("an address");
+        let mut request = format!("ws://{}{path}", self.host()).into_client_request().expect("an address");
         if let Some(origin) = origin {
             request.headers_mut().insert("Origin", origin.parse().expect("a header's value"));
         }
+        request.headers_mut().insert("Authorization", format!("Bearer {token}").parse().expect("a header's value"));
         match tungstenite::client(request, stream) {
             Ok((socket, _)) => Ok(Socket(socket)),
             Err(tungstenite::HandshakeError::Failure(tungstenite::Error::Http(refused))) => {

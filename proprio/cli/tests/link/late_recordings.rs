@@ -19,12 +19,12 @@ use super::line::{Line, hello, wait_for};
 /// Segments of the reference arm.
 const SEGMENTS: usize = 6;
 
-fn table() -> PathBuf {
+pub fn table() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../calibration-tables/planar-6.toml")
 }
 
 /// Sends the samples and the estimates of a board with the reference table, which is tared at `tare`.
-struct Arm<'t> {
+pub struct Arm<'t> {
     simulation: Simulation,
     estimator: Box<Estimator<'t, Q, SEGMENTS, 100>>,
     tare: u32,
@@ -32,13 +32,13 @@ struct Arm<'t> {
 }
 
 impl<'t> Arm<'t> {
-    fn new(config: &'t estimator_core::ArmConfig<'t, Q>, tare: u32) -> Self {
+    pub fn new(config: &'t estimator_core::ArmConfig<'t, Q>, tare: u32) -> Self {
         let simulation = Simulation::new(Scenario::Push, 7, 60.0, TICK_HZ).expect("a valid run");
         let estimator = Box::new(Estimator::new(config).expect("the reference table"));
         Self { simulation, estimator, tare, tick: 0 }
     }
 
-    fn run(&mut self, line: &Line, ticks: u32) {
+    pub fn run(&mut self, line: &Line, ticks: u32) {
         for _ in 0..ticks {
             let read = self.simulation.next().expect("the run is long");
             if self.tick == self.tare {
@@ -58,7 +58,7 @@ impl<'t> Arm<'t> {
     }
 }
 
-fn compiled() -> CompiledTable<Q> {
+pub fn compiled() -> CompiledTable<Q> {
     ArmFile::load(&table()).and_then(|file| file.compile::<Q>(TICK_HZ)).expect("the reference table")
 }
 
@@ -73,7 +73,7 @@ fn recorded(page: &Page, line: &Line, arm: &mut Arm<'_>, ticks: u32) -> (PathBuf
 }
 
 /// Figures of `proprio replay --json` and its standard error.
-fn replayed(file: &Path) -> (Value, String) {
+pub fn replayed(file: &Path) -> (Value, String) {
     let mut command = Command::new(env!("CARGO_BIN_EXE_proprio"));
     let run = command.arg("replay").arg(file).arg("--table").arg(table()).arg("--json").output().expect("it starts");
     let stderr = String::from_utf8_lossy(&run.stderr).into_owned();

@@ -38,6 +38,8 @@ pub struct Board {
     /// All received requests, executed or not.
     pub received: Vec<Request>,
     to_host: VecDeque<u8>,
+    /// All bytes that the host has read.
+    pub read: Vec<u8>,
     /// The cable is out.
     pub unplugged: bool,
     began: Instant,
@@ -133,6 +135,7 @@ impl Line {
             done: Vec::new(),
             received: Vec::new(),
             to_host: VecDeque::new(),
+            read: Vec::new(),
             unplugged: false,
             began: Instant::now(),
         };
@@ -167,7 +170,9 @@ impl Transport for Line {
         if count == 0 {
             std::thread::sleep(Duration::from_millis(1));
         }
-        buffer.iter_mut().zip(self.board().to_host.drain(..count)).for_each(|(place, byte)| *place = byte);
+        let mut board = self.board();
+        buffer.iter_mut().zip(board.to_host.drain(..count)).for_each(|(place, byte)| *place = byte);
+        board.read.extend(&buffer[..count]);
         Ok(count)
     }
 

@@ -9,6 +9,7 @@ mod http;
 mod late_recordings;
 mod line;
 mod mismatches;
+mod monitored_line;
 mod noise;
 mod older;
 mod page;

@@ -1,6 +1,6 @@
 //! Programs of the user that reach the board through a running monitor.
 
-use proprio_monitor::{RunningMonitor, RunningMonitorError};
+use proprio_monitor::{RunningMonitor, RunningMonitorError, Token};
 use telemetry::{Command, Message, Refusal, SensorState, TareMode, TareReport};
 
 use super::http::{Page, STREAM};
@@ -8,8 +8,13 @@ use super::line::{Line, sample};
 use super::page::health;
 
 /// The page of a board that answers, and its monitor as the user's programs find it.
-fn running(line: &Line) -> (Page, RunningMonitor) {
-    let page = Page::of(line, None);
+pub fn running(line: &Line) -> (Page, RunningMonitor) {
+    running_with(line, None)
+}
+
+/// The same of a page that may drive.
+pub fn running_with(line: &Line, token: Option<Token>) -> (Page, RunningMonitor) {
+    let page = Page::of(line, token);
     line.board().restart(1);
     page.wait_for_status(|status| status["answers"] == true);
     let monitor = RunningMonitor::find(page.runtime_folder.path(), "line 1").expect("it is announced");

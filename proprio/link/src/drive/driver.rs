@@ -7,7 +7,7 @@ use telemetry::{Command, Health, SetPressures};
 
 use super::DriveError;
 use crate::status::Status;
-use crate::{Link, LinkError};
+use crate::{EventKind, Link, LinkError, RequestError};
 
 /// Time from one set of pressures to the next.
 pub const PERIOD: Duration = Duration::from_millis(50);
@@ -39,24 +39,24 @@ impl<'l> Driver<'l> {
     ///
     /// # Errors
     /// [`DriveError`]: the board has another number of regulators or another table, has restarted after a crash, reads no IMU, or
-    /// refuses.
+    /// refuses; another handle of the link drives it.
     pub fn arm(link: &'l Link, status: &Status, regulators: usize) -> Result<Self, DriveError> {
         check(link, status, regulators)?;
-        let driver = Self { link, requested_pa: VecDeque::new(), is_armed: true, restarts: link.state().restarts };
-        link.request(Command::Arm)?;
+        let mut driver = Self { link, requested_pa: VecDeque::new(), is_armed: true, restarts: link.state().restarts };
+        let armed = link.request(Command::Arm);
+        // Another program's arm is not vented.
+        driver.is_armed = !matches!(armed, Err(LinkError::Request(RequestError::Driven)));
+        armed?;
         Ok(driver)
     }
 
     /// Sets the pressures of all regulators, Pa, waits until the board has acknowledged them, and returns the request.
     ///
     /// # Errors
-    /// [`DriveError::Restarted`], after which the board is not armed; [`DriveError::Link`].
+    /// [`DriveError::Restarted`], after which the board is not armed; [`DriveError::Lost`]; [`DriveError::Link`].
     pub fn set(&mut self, pressures_pa: Vec<u32>) -> Result<SetPressures, DriveError> {
         let requested = SetPressures { pressures_pa: pressures_pa.iter().copied().collect(), valid_ms: VALID_MS };
-        match self.link.request(Command::SetPressures(requested.clone())) {
-            Err(LinkError::Request(_)) if self.has_restarted() => return Err(DriveError::Restarted),
-            done => done?,
-        }
+        self.link.request(Command::SetPressures(requested.clone())).map_err(|error| self.cause_of(error))?;
         if self.requested_pa.len() == STORED {
             self.requested_pa.pop_front();
         }
@@ -64,18 +64,19 @@ impl<'l> Driver<'l> {
         Ok(requested)
     }
 
-    /// True where the board has restarted since it was armed. It replies to a request before its first `Hello`, which shows the
-    /// restart.
-    fn has_restarted(&self) -> bool {
+    /// The cause of a failed request, where there is one behind it: the board has restarted since it was armed, or its line is
+    /// gone. The board replies to a request before its first `Hello`, which shows the restart.
+    fn cause_of(&self, error: LinkError) -> DriveError {
         let (start, events) = (Instant::now(), self.link.subscribe());
         while self.link.state().restarts == self.restarts {
-            if start.elapsed() >= FIRST_HELLO {
-                return false;
-            }
             // The state changes with the events.
-            let _ = events.next(Duration::from_millis(10));
+            match events.next(Duration::from_millis(10)).map(|event| event.kind) {
+                Some(EventKind::Lost(reason) | EventKind::Ended(reason)) => return DriveError::Lost(reason),
+                _ if start.elapsed() >= FIRST_HELLO => return error.into(),
+                _ => {}
+            }
         }
-        true
+        DriveError::Restarted
     }
 
     /// Checks that the board follows the requested pressures.
