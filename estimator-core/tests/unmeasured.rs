@@ -85,3 +85,20 @@ fn estimates_do_not_change_where_microseconds_pass_32_bits() {
     let late = run(120.0, |_, sample| sample.time_us += (1 << 32) - 60_000_000 - arm_starts_at_us);
     assert_eq!(early.theta_deg, late.theta_deg);
 }
+
+#[test]
+fn a_bend_sensor_that_was_left_out_stays_so_while_its_imu_is_absent() {
+    let arm = Arm::default();
+    let run = run(90.0, |k, sample| {
+        if (300..310).contains(&k) {
+            sample.bend[1][0] = sample.bend[1][0].map(|counts| counts + 400);
+        }
+        if k >= 305 {
+            sample.imu[1] = None;
+        }
+    });
+    for (k, theta) in run.theta_deg.iter().enumerate().skip(300) {
+        let error = theta[1].expect("it is known") - arm.theta(arm.seconds(k as u64))[1];
+        assert!(error.abs() < 6.0, "{error} degrees in sample {k}");
+    }
+}
