@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{Arm, N, config, counts, segments};
+use common::{Arm, N, config, counts, segments, turned};
 use estimator_core::{Conditions, Estimator, ImuReading, Phase, Q, Sample};
 
 /// Errors of the bend angles and conditions in the last sample of a run.
@@ -34,12 +34,6 @@ fn run(mut arm: Arm, seconds: f64, mut edit: impl FnMut(u64, &mut Sample<N>)) ->
     let variances = estimator.uncertainties();
     let variance = variances.iter().filter_map(|of| of.theta).map(Q::to_f64).fold(0.0, f64::max);
     Run { worst_deg, variance, conditions: estimator.conditions() }
-}
-
-fn turned(reading: Option<ImuReading>, degrees: f64) -> Option<ImuReading> {
-    let Some(ImuReading::Heading(heading)) = reading else { return reading };
-    let by = Phase::from_degrees(degrees).bits();
-    Some(ImuReading::Heading(Phase::from_bits(heading.bits().wrapping_add(by))))
 }
 
 #[test]

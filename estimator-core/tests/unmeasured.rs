@@ -1,8 +1,8 @@
-//! Segments that lose all of their own sensors.
+//! Segments that lose sensors: all of their own, or an IMU while the tare ends.
 
 mod common;
 
-use common::{Arm, N, config, segments};
+use common::{Arm, N, config, segments, turned};
 use estimator_core::{Estimator, Q, Sample, VARIANCE_SCALE};
 
 /// Bend angles in degrees, whether the tip is known, and the deviations of the bend angles in degrees, sample after sample.
@@ -98,6 +98,22 @@ fn a_bend_sensor_that_was_left_out_stays_so_while_its_imu_is_absent() {
         }
     });
     for (k, theta) in run.theta_deg.iter().enumerate().skip(300) {
+        let error = theta[1].expect("it is known") - arm.theta(arm.seconds(k as u64))[1];
+        assert!(error.abs() < 6.0, "{error} degrees in sample {k}");
+    }
+}
+
+#[test]
+fn an_imu_that_restarts_across_the_end_of_the_tare_has_its_new_zero() {
+    let run = run(90.0, |k, sample| {
+        if (3..10).contains(&k) {
+            sample.imu[1] = None;
+        } else if k >= 10 {
+            sample.imu[1] = turned(sample.imu[1], 100.0);
+        }
+    });
+    let arm = Arm::default();
+    for (k, theta) in run.theta_deg.iter().enumerate().skip(20) {
         let error = theta[1].expect("it is known") - arm.theta(arm.seconds(k as u64))[1];
         assert!(error.abs() < 6.0, "{error} degrees in sample {k}");
     }

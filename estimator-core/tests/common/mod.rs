@@ -37,6 +37,13 @@ pub struct Arm {
     pub noise: u64,
 }
 
+/// A heading, turned by this.
+pub fn turned(reading: Option<ImuReading>, degrees: f64) -> Option<ImuReading> {
+    let Some(ImuReading::Heading(heading)) = reading else { return reading };
+    let by = Phase::from_degrees(degrees).bits();
+    Some(ImuReading::Heading(Phase::from_bits(heading.bits().wrapping_add(by))))
+}
+
 impl Default for Arm {
     fn default() -> Self {
         Self {

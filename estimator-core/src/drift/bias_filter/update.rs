@@ -101,7 +101,8 @@ impl<F: FusedOps, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
     }
 
     /// Returns `true` if the headings of segment `i` and of the one below are read, and `None` if one is missing in
-    /// this sample but was read recently: the segment is then repeated, lest a periodic gap hits each of its updates.
+    /// this sample but was read recently: the segment is then repeated, lest a periodic gap hits each of its updates. The
+    /// update by the tare does not wait: an IMU that has restarted since has another zero.
     fn are_headings_read(&self, i: usize, time_us: u64) -> Option<bool> {
         let track = self.segments.get(i)?;
         let below = i.checked_sub(1).and_then(|below| self.segments.get(below));
@@ -109,7 +110,7 @@ impl<F: FusedOps, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
         let is_recent = |track: &SegmentTrack<F>| time_us.saturating_sub(track.heading_read_at_us) < RETRY_US;
         let are_read = is_read(track) && below.is_none_or(is_read);
         let are_recent = || is_recent(track) && below.is_none_or(is_recent);
-        (are_read || !are_recent()).then_some(are_read)
+        (are_read || track.tare_bend.is_some() || !are_recent()).then_some(are_read)
     }
 
     /// Updates all states by the measurements of segment `i`.
