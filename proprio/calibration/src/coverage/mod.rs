@@ -64,6 +64,7 @@ impl Heading {
 #[derive(Debug, Clone)]
 struct Segment {
     angle: SeenRange,
+    now_deg: Option<f64>,
     passes: Passes,
     counts: [Option<[u16; 2]>; SENSORS_PER_SEGMENT],
     /// The bend angle over the readings of each sensor.
@@ -207,6 +208,7 @@ impl Segment {
     fn new() -> Self {
         Self {
             angle: SeenRange::default(),
+            now_deg: None,
             passes: Passes::default(),
             counts: Default::default(),
             follows: Default::default(),
@@ -244,8 +246,8 @@ impl Segment {
 
     /// Adds the bend angle; where there never was one, passes are those of bend sensor a.
     fn bend(&mut self, step_s: f64, angle_deg: Option<f64>, counts: Option<u16>) {
-        if let Some(angle_deg) = angle_deg {
-            let angle_deg = angle_deg - self.drift_deg();
+        self.now_deg = angle_deg.map(|angle_deg| angle_deg - self.drift_deg());
+        if let Some(angle_deg) = self.now_deg {
             self.angle.update(step_s, angle_deg);
             self.passes.update(angle_deg, LEAST_RANGE_DEG);
         } else if let Some(counts) = counts.filter(|_| self.angle.ends_deg().is_none()) {
@@ -262,6 +264,7 @@ impl Segment {
     fn coverage(&self) -> SegmentCoverage {
         SegmentCoverage {
             ends_deg: self.angle.ends_deg(),
+            now_deg: self.now_deg,
             seen_deg: self.angle.parts_deg(),
             passes: self.passes.count,
             counts: self.counts,

@@ -1,5 +1,6 @@
 //! What a sweep has covered so far, and what a calibration needs.
 
+use proprio_check::TARE_MOVES_DEG;
 use serde::Serialize;
 
 use super::fault::SweepFault;
@@ -38,6 +39,8 @@ pub struct SegmentCoverage {
     /// Smallest and largest bend angle by the IMUs at both its ends, from the pose at the begin of the sweep, degrees; `None`
     /// where one of them was not read.
     pub ends_deg: Option<[f64; 2]>,
+    /// The bend angle in the last row.
+    pub now_deg: Option<f64>,
     /// The parts of that range in which it was for half a second or longer.
     pub seen_deg: Vec<[f64; 2]>,
     /// Ways from one end of the range to the other.
@@ -53,6 +56,8 @@ pub struct SweepGoal {
     pub seconds: f64,
     /// Passes of each segment: there and back in each tenth of the sweep, as each tenth is predicted from the others.
     pub passes: u32,
+    /// Turn of an IMU in the first second from which on the tare is bad, degrees.
+    pub still_deg: f64,
     /// Range of bending below which `calibrate` refuses the sweep, degrees.
     pub least_range_deg: f64,
     /// Range of bending below which it warns, degrees.
@@ -64,6 +69,7 @@ impl SweepGoal {
     pub(super) const CALIBRATE: Self = Self {
         seconds: 600.0,
         passes: 20,
+        still_deg: TARE_MOVES_DEG,
         least_range_deg: LEAST_RANGE_DEG,
         good_range_deg: GOOD_RANGE_DEG,
     };

@@ -13,8 +13,8 @@ import { Delay } from './delay.js';
 import { BoardPanel } from './board_panel.js';
 import { SessionPicker, load } from './sessions.js';
 import { Control } from './control.js';
-import { csv, save } from './export.js';
-import { picture, toPng, toSvg } from './picture.js';
+import { Saver } from './saver.js';
+import { SweepGuide } from './sweep.js';
 
 const $ = (id) => document.getElementById(id);
 
@@ -47,6 +47,8 @@ const boardPanel = new BoardPanel($('facts'), $('notes'));
 const control = new Control($('control'), showError, showNotice);
 const sessionPicker = new SessionPicker($('sessions'), openSession);
 const figures = new Figures($('figures'), $('add-plot'), app);
+const sweepGuide = new SweepGuide($('sweep'), $('calibrate'), () => record());
+const saver = new Saver(app, figures, armSpec, { canvas: $('arm-canvas'), moment: $('moment') });
 const delay = new Delay();
 
 const feed = new Feed({
@@ -56,7 +58,7 @@ const feed = new Feed({
       app.live = new Store(arm.columns);
       build();
     }
-    for (const id of ['record', 'mark', 'board']) $(id).hidden = !arm.is_live;
+    for (const id of ['record', 'mark', 'calibrate', 'board']) $(id).hidden = !arm.is_live;
     linkState(arm.is_live ? 'wait' : 'ok', arm.is_live ? 'waiting for a board' : 'sessions only');
     if (arm.session && !app.session) load(arm.session, {}).then(openSession, (error) => showError(error.message));
   },
@@ -290,9 +292,10 @@ function drawPeriodic() {
   $('key-ellipse').hidden = shown < 0 || !covariances(store, shown).flat().some(Number.isFinite);
   $('key-contact').hidden = shown < 0 || !contacts(store, shown).some(Boolean);
   boardPanel.show(app.status, app.delivery);
-  const wrong = app.session ? '' : faults(app.status, sensorList.states(app.status?.sensors));
+  const found = faults(app.status, sensorList.states(app.status?.sensors)), wrong = app.session ? '' : found;
   text($('wrong'), wrong);
   $('wrong').hidden = !wrong;
+  sweepGuide.show(app.status, found);
   findingList.show((app.session ?? app.status)?.findings ?? []);
 }
 
@@ -325,30 +328,6 @@ setInterval(() => {
 
 // Input
 
-/** Name of a file: the session and the part of it, or the arm and the time of day, UTC. */
-function fileName(ending) {
-  const [from, to] = app.view.window(app.store).map((time) => Math.min(Math.max(time, app.store.first), app.view.last(app.store)).toFixed(2));
-  const session = app.session?.name.replace(/\.\w+$/, '');
-  const name = session ?? `${app.status?.board?.arm || 'arm'}-${new Date().toISOString().slice(0, 19).replaceAll(':', '-')}Z`;
-  return `${name}-${from}s-${to}s.${ending}`;
-}
-
-function exportCsv() {
-  if (app.store?.count) save(fileName('csv'), 'text/csv', csv(app.store, ...app.view.window(app.store), app.view.limit));
-}
-
-/** Saves a picture of the arm and all plots, one below the other, as they are seen. */
-async function exportPicture(ending) {
-  if (!app.store?.count) return;
-  const { table } = (app.session ? app.session.arm : app.arm) ?? {};
-  const what = app.session ? `session ${app.session.name}` : `arm ${app.status?.board?.arm || 'without a name'}`;
-  const head = [what, `table ${table ?? 'none'}`, `${$('moment').textContent}; saved ${new Date().toISOString().slice(0, 19)}Z`];
-  const arm = armSpec();
-  const drawn = picture({ head, arm, armTitle: `Arm, ${$('arm-values').textContent}`, armSize: $('arm-canvas'), figures, row: arm.row, colours: app.palette });
-  if (ending === 'svg') save(fileName('svg'), 'image/svg+xml', toSvg(drawn));
-  else save(fileName('png'), 'image/png', await toPng(drawn));
-}
-
 async function attempt(work) {
   showError('');
   try {
@@ -367,7 +346,7 @@ const mark = () => attempt(async () => {
   app.changed();
 });
 
-const BUTTONS = { pause, record, mark, open: () => attempt(() => sessionPicker.show()), 'close-session': closeSession, reset, csv: exportCsv, svg: () => exportPicture('svg'), png: () => exportPicture('png'), 'in-full': inFull };
+const BUTTONS = { pause, record, mark, open: () => attempt(() => sessionPicker.show()), 'close-session': closeSession, reset, csv: () => saver.csv(), svg: () => saver.picture('svg'), png: () => saver.picture('png'), 'in-full': inFull };
 for (const [id, act] of Object.entries(BUTTONS)) $(id).addEventListener('click', act);
 $('fixed').addEventListener('change', ({ target }) => app.fix(target.checked));
 $('span').addEventListener('change', ({ target }) => {
@@ -383,7 +362,7 @@ $('scrub').addEventListener('input', ({ target }) => {
   app.changed();
 });
 
-const KEYS = { ' ': 'pause', r: 'record', m: 'mark', t: 'tare', o: 'open', 0: 'reset', c: 'csv', s: 'svg', p: 'png', f: 'fixed' };
+const KEYS = { ' ': 'pause', r: 'record', m: 'mark', t: 'tare', k: 'calibrate', o: 'open', 0: 'reset', c: 'csv', s: 'svg', p: 'png', f: 'fixed' };
 document.addEventListener('keydown', (event) => {
   if (event.key === 'Escape' && app.arm?.allows_control) control.vent();
   const isTyping = event.target.closest('input:not([type=checkbox], [type=range]), select, dialog');
