@@ -32,6 +32,8 @@ const app = {
   isDirty: true, isNew: false, newest_us: 0, drawn: 0, delivery: { latency: null, skipped: 0 }, palette: null,
   /** The rows that are shown: of a session, or live. */
   get store() { return this.session?.store ?? this.live; },
+  /** Another session, or the same by another table, which is drawn over the one that is open. */
+  get overlay() { return this.session?.overlay; },
   changed() { this.isDirty = true; },
   point(share) { Object.assign(this, { pointer: share, isPointerNew: true }); },
   fix(isFixed) {
@@ -45,10 +47,10 @@ const sensorList = new SensorList($('strips'));
 const findingList = new FindingList($('findings'));
 const boardPanel = new BoardPanel($('facts'), $('notes'));
 const control = new Control($('control'), showError, showNotice);
-const sessionPicker = new SessionPicker($('sessions'), openSession);
+const sessionPicker = new SessionPicker($('sessions'), openSession, layOver);
 const figures = new Figures($('figures'), $('add-plot'), app);
 const sweepGuide = new SweepGuide($('sweep'), $('calibrate'), () => record());
-const saver = new Saver(app, figures, armSpec, { canvas: $('arm-canvas'), moment: $('moment') });
+const saver = new Saver(app, figures, armSpec, { canvas: $('arm-canvas'), moment: $('moment'), overlay: $('overlay').firstElementChild });
 const delay = new Delay();
 
 const feed = new Feed({
@@ -174,6 +176,7 @@ function openSession(session) {
   $('close-session').hidden = !app.arm?.is_live;
   text($('arm-name'), session.name);
   $('thinned').hidden = session.every === 1;
+  showOverlay();
   text($('thinned').firstElementChild, `Every ${session.every}th of ${session.samples} samples is shown.`);
   build();
   // The time slider has the session's range at once.
@@ -187,13 +190,29 @@ function closeSession() {
   $('span').value = '30';
   $('close-session').hidden = true;
   $('thinned').hidden = true;
+  showOverlay();
   build();
+}
+
+/** Draws another session over the one that is open, or none. */
+function layOver(session) {
+  app.session.overlay = session;
+  showOverlay();
+  figures.build();
+  app.changed();
+}
+
+function showOverlay() {
+  const named = ({ name, arm: { table } }) => `${name} by table ${table}`;
+  $('overlay').hidden = !app.overlay;
+  if (app.overlay) text($('overlay').firstElementChild, `Solid: ${named(app.session)}. Dashed: ${named(app.overlay)}.`);
 }
 
 async function inFull() {
   const [from_s, to_s] = app.view.window(app.store);
   try {
-    openSession(await load(app.session.name, { from_s, to_s }));
+    const { name, table, overlay } = app.session;
+    openSession({ ...await load(name, { from_s, to_s }, table), overlay });
   } catch (error) {
     showError(error.message);
   }
@@ -241,7 +260,9 @@ function armSpec() {
   const { store } = app;
   const row = store?.count ? store.rowAt(app.view.cursor ?? store.last) : 0;
   const geometry = (app.session ? app.session.arm : app.arm)?.geometry;
-  return { store, row, geometry, colours: app.palette };
+  const time = store?.count ? store.times[row] : 0, { overlay } = app;
+  const over = overlay?.store.count && { store: overlay.store, row: overlay.store.rowAt(time), geometry: overlay.arm.geometry };
+  return { store, row, geometry, colours: app.palette, overlay: over };
 }
 
 /** Draws the arm, and the plots where they have changed or the newest row is in another column of pixels. */
@@ -346,7 +367,7 @@ const mark = () => attempt(async () => {
   app.changed();
 });
 
-const BUTTONS = { pause, record, mark, open: () => attempt(() => sessionPicker.show()), 'close-session': closeSession, reset, csv: () => saver.csv(), svg: () => saver.picture('svg'), png: () => saver.picture('png'), 'in-full': inFull };
+const BUTTONS = { pause, record, mark, open: () => attempt(() => sessionPicker.show(Boolean(app.session))), 'close-session': closeSession, 'remove-overlay': () => layOver(null), reset, csv: () => saver.csv(), svg: () => saver.picture('svg'), png: () => saver.picture('png'), 'in-full': inFull };
 for (const [id, act] of Object.entries(BUTTONS)) $(id).addEventListener('click', act);
 $('fixed').addEventListener('change', ({ target }) => app.fix(target.checked));
 $('span').addEventListener('change', ({ target }) => {

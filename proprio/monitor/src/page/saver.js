@@ -5,7 +5,7 @@ import { csv, save } from './export.js';
 import { picture, toPng, toSvg } from './picture.js';
 
 export class Saver {
-  /** `armSpec()` returns what the arm is drawn with; `elements` are the arm's canvas and the text of the moment. */
+  /** `armSpec()` returns what the arm is drawn with; `elements` are the arm's canvas, the text of the moment, and that of what is laid over. */
   constructor(app, figures, armSpec, elements) { Object.assign(this, { app, figures, armSpec, elements }); }
 
   /** Name of a file: the session and the part of it, or the arm and the time of day, UTC. */
@@ -29,6 +29,7 @@ export class Saver {
     const { table } = (app.session ? app.session.arm : app.arm) ?? {};
     const what = app.session ? `session ${app.session.name}` : `arm ${app.status?.board?.arm || 'without a name'}`;
     const head = [what, `table ${table ?? 'none'}`, `${elements.moment.textContent}; saved ${new Date().toISOString().slice(0, 19)}Z`];
+    if (app.overlay) head.push(elements.overlay.textContent);
     const arm = this.armSpec();
     const armTitle = `Arm, ${armValues(arm.store, arm.row)}`;
     const drawn = picture({ head, arm, armTitle, armSize: elements.canvas, figures, row: arm.row, colours: app.palette });

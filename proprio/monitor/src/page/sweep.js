@@ -25,12 +25,10 @@ export function missing(seen, reach) {
   return found;
 }
 
-/** What a segment lacks, in words. `number` is counted from 1. */
-function lacks({ ends_deg, seen_deg, passes }, number, goal, reach) {
-  const found = [];
-  if (ends_deg) found.push(...missing(seen_deg, reach).map((gap) => `segment ${number} from ${part(gap)}`));
-  if (passes < goal.passes) found.push(`${goal.passes - passes} more passes of segment ${number}`);
-  return found;
+/** In words, the segments that lack something; nothing where none does. */
+function more(what, segments, isLacking) {
+  const numbers = segments.flatMap((segment, i) => (isLacking(segment) ? [i + 1] : []));
+  return numbers.length ? [`more ${what} of segment${numbers.length > 1 ? 's' : ''} ${numbers.join(', ')}`] : [];
 }
 
 /** The sentences about a sweep that is not as it should be: sensors, pose, and what `calibrate` will refuse or warn of. */
@@ -57,9 +55,11 @@ export function step(sweep, reach, hasCamera) {
   if (phase === 'before') {
     return { now: `Let the arm lie straight and still. ${hasCamera ? 'Start the camera, then record the sweep' : 'Record the sweep'}, and leave the arm still for five seconds.`, left: '' };
   }
-  const lacking = segments.flatMap((segment, i) => lacks(segment, i + 1, goal, reach));
-  const time = seconds < goal.seconds ? [`${clock(goal.seconds - seconds, 1)} to go`] : [];
-  const left = [...time, ...lacking].join('; ');
+  const left = [
+    ...(seconds < goal.seconds ? [`${clock(goal.seconds - seconds, 1)} to go`] : []),
+    ...more('range', segments, ({ ends_deg, seen_deg }) => ends_deg && missing(seen_deg, reach).length),
+    ...more('passes', segments, ({ passes }) => passes < goal.passes),
+  ].join('; ');
   if (phase === 'recorded') return { now: left ? 'The recording has ended before all was covered.' : 'The sweep is complete.', left };
   if (seconds < REST) return { now: 'Leave the arm still.', left: `${Math.ceil(REST - seconds)} s` };
   if (left) return { now: 'Move each module slowly through its whole range and back, a swing in 20 to 40 s, modules at different pace.', left };
@@ -70,7 +70,11 @@ export function step(sweep, reach, hasCamera) {
 export function commands(file, hasCamera) {
   const name = /^[\w./-]+$/.test(file) ? file : `"${file}"`;
   if (!hasCamera) {
-    return [[`proprio check ${name} --table arm.toml`, 'checks times, tare and IMUs of the recording'], ['proprio table push OTHER.toml', 'gives this board the table of another arm of the same build']];
+    return [
+      [`proprio replay ${name} --table imus.toml`, 'the shape by the IMUs alone: an arm description whose segments have bend = []'],
+      [`proprio check ${name} --table OTHER.toml`, 'whether the maps of another arm of the same build fit this one'],
+      ['proprio table push OTHER.toml', 'stores them on the board, if they do'],
+    ];
   }
   return [
     [`proprio align ${name} --camera CAMERA.csv --arm arm.toml -o sweep.csv`, 'brings the camera\'s poses and the recording to one clock'],
@@ -132,8 +136,9 @@ export class SweepGuide {
     const { now, left } = step(sweep, reach, hasCamera);
     text(parts.step, now);
     text(parts.left, left);
-    const rest = sweep.rest ? `, ${sweep.phase === 'before' ? 'then' : 'at the begin of the recording'} still within ${sweep.rest.turned_deg.toFixed(1)}° (imu${sweep.rest.segment})` : '';
-    text(parts.tare, `Tare: ${sweep.tare ?? 'by the board\'s start; tare the straight, still arm for its pose'}${rest}.`);
+    const tare = sweep.tare ? `Board ${sweep.tare}.` : 'Board not tared since its start.';
+    const begin = sweep.phase === 'before' ? 'since then' : 'of the recording';
+    text(parts.tare, sweep.rest ? `${tare} First second ${begin}: still within ${sweep.rest.turned_deg.toFixed(1)}° (imu${sweep.rest.segment}).` : tare);
     this.list(parts.warnings, warnings(sweep, bad).map((sentence) => [sentence]));
     this.table(sweep, reach);
     this.next(sweep, hasCamera);
@@ -195,7 +200,7 @@ export class SweepGuide {
     next.hidden = !isShown;
     if (!isShown) return;
     const [about, list] = next.children;
-    const limits = 'Without a camera there is no truth, and calibrate cannot fit the maps of the bend sensors. What can be done: tare, this check of the sensors, and the maps of another arm of the same build, whose strips differ from these.';
+    const limits = 'Without a camera there is no truth, and calibrate cannot fit the maps of the bend sensors. What can be done: tare, this check of the sensors, the shape by the IMUs alone, which drifts, and the maps of another arm of the same build, if its strips are like these.';
     text(about, hasCamera ? `Recorded: ${file}. Next, in a terminal, with the camera's file and the arm description:` : limits);
     this.list(list, commands(file ?? 'SESSION.mcap', hasCamera));
   }
