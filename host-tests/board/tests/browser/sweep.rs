@@ -50,8 +50,8 @@ fn a_sweep_is_recorded_and_the_next_commands_have_its_file() {
     let left = "9:\\d\\d to go; more range of segments 1, 2, 3, 4, 5, 6; more passes of segments 1, 2, 3, 4, 5, 6";
     browser.wait_for(&format!("/^{left}$/.test(document.getElementById('sweep-left').textContent)"));
     swing(&mut browser);
-    browser.wait_for(&format!("/^−[1-9]\\d° .* [1-9]\\d°$/.test({}) && /^[2-9] of 20$/.test({})", cell(5, 2), cell(5, 4)));
-    browser.picture("sweep.png");
+    browser.wait_for(&format!("/^−[1-9]\\d° to [1-9]\\d°$/.test({}) && /^[2-9] of 20$/.test({})", cell(5, 2), cell(5, 4)));
+    browser.picture("sweep-running.png");
     browser.screen([390, 844], "light");
     browser.picture("sweep-phone.png");
     assert_eq!(browser.value("document.documentElement.scrollWidth"), 390);

@@ -66,6 +66,8 @@ struct Segment {
     angle: SeenRange,
     now_deg: Option<f64>,
     passes: Passes,
+    /// Those of the readings of sensor a, which are reported where the bend angle is never known.
+    passes_of_counts: Passes,
     counts: [Option<[u16; 2]>; SENSORS_PER_SEGMENT],
     /// The bend angle over the readings of each sensor.
     follows: [Relation; SENSORS_PER_SEGMENT],
@@ -210,6 +212,7 @@ impl Segment {
             angle: SeenRange::default(),
             now_deg: None,
             passes: Passes::default(),
+            passes_of_counts: Passes::default(),
             counts: Default::default(),
             follows: Default::default(),
             drift: [DriftFilter::new(); SENSORS_PER_SEGMENT],
@@ -244,14 +247,15 @@ impl Segment {
         }
     }
 
-    /// Adds the bend angle; where there never was one, passes are those of bend sensor a.
+    /// Adds the bend angle, and a reading of sensor a.
     fn bend(&mut self, step_s: f64, angle_deg: Option<f64>, counts: Option<u16>) {
         self.now_deg = angle_deg.map(|angle_deg| angle_deg - self.drift_deg());
         if let Some(angle_deg) = self.now_deg {
             self.angle.update(step_s, angle_deg);
             self.passes.update(angle_deg, LEAST_RANGE_DEG);
-        } else if let Some(counts) = counts.filter(|_| self.angle.ends_deg().is_none()) {
-            self.passes.update(counts.into(), BENDS_COUNTS);
+        }
+        if let Some(counts) = counts {
+            self.passes_of_counts.update(counts.into(), BENDS_COUNTS);
         }
     }
 
@@ -266,7 +270,7 @@ impl Segment {
             ends_deg: self.angle.ends_deg(),
             now_deg: self.now_deg,
             seen_deg: self.angle.parts_deg(),
-            passes: self.passes.count,
+            passes: self.angle.ends_deg().map_or(self.passes_of_counts, |_| self.passes).count,
             counts: self.counts,
         }
     }

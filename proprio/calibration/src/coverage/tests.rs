@@ -97,6 +97,16 @@ fn an_imu_that_turns_with_another_segment_is_named() {
 }
 
 #[test]
+fn imus_that_are_read_later_than_the_bend_sensors_have_their_passes() {
+    let report = swept(0, 300.0, |now| {
+        if now.time_us < 1_000_000 {
+            now.quaternions.fill(None);
+        }
+    });
+    assert!(report.segments.iter().all(|segment| segment.passes >= 10), "{report:?}");
+}
+
+#[test]
 fn without_imus_passes_are_those_of_the_bend_sensors_and_no_angle_is_reported() {
     let report = swept(0, 300.0, |now| now.quaternions.fill(None));
     assert_eq!((report.rest, report.faults), (None, Vec::new()));
