@@ -160,7 +160,7 @@ impl<'t> Hub<'t> {
         status.clock = self.live.board_time();
         status.least_delay_ms = self.live.min_delay_us().map(|delay_us| f64::from(delay_us) / 1e3);
         status.recording = self.shared.recording();
-        status.sweep = self.live.sweep.status();
+        status.sweep = self.live.sweep.status(self.live.health.as_ref());
         status.findings.clone_from(&self.findings);
         status.notes.extend(self.notes.iter().rev().cloned());
         self.shared.publish(&Feed::Status(Box::new(status)));

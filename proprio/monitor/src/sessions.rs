@@ -184,12 +184,7 @@ impl Sessions {
         })
     }
 
-    fn rows_of(
-        &self,
-        path: &Path,
-        table: Option<&str>,
-        times_s: &RangeInclusive<f64>,
-    ) -> Result<Vec<u8>, Error> {
+    fn rows_of(&self, path: &Path, table: Option<&str>, times_s: &RangeInclusive<f64>) -> Result<Vec<u8>, Error> {
         // The board's own estimates are those of its own table.
         let is_of_board = table.is_none();
         let table = self.table_of(path, table)?;

@@ -4,7 +4,7 @@ use proprio_calibration::coverage::{SweepCoverage, SweepReport};
 use proprio_link::Tared;
 use proprio_session::Row;
 use serde::Serialize;
-use telemetry::{Message, RequestOutcome};
+use telemetry::{Health, Message, RequestOutcome};
 
 /// Phase of a sweep.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -38,6 +38,8 @@ pub(super) struct SweepStatus {
     phase: Phase,
     file: Option<String>,
     tare: Option<String>,
+    /// Segments, from 1, whose estimate has a tare in which the arm was bent or moved.
+    bad_tare: Vec<usize>,
     #[serde(flatten)]
     report: SweepReport,
     /// Sensors that do not follow, each with its remedy.
@@ -99,12 +101,14 @@ impl Sweep {
         self.coverage = SweepCoverage::new(self.segments);
     }
 
-    /// Its state; `None` before the first row.
-    pub fn status(&self) -> Option<SweepStatus> {
+    /// Its state, with the last health of the board; `None` before the first row.
+    pub fn status(&self, health: Option<&Health>) -> Option<SweepStatus> {
+        let conditions = (1..).zip(health.iter().flat_map(|health| &health.conditions));
+        let bad_tare = conditions.filter(|(_, conditions)| conditions.tare_bad()).map(|(segment, _)| segment).collect();
         let report = self.coverage.report();
         let faults = report.faults.iter().map(ToString::to_string).collect();
         let (file, tare) = (self.file.clone(), self.tare.clone());
-        (self.segments > 0).then_some(SweepStatus { phase: self.phase, file, tare, report, faults })
+        (self.segments > 0).then_some(SweepStatus { phase: self.phase, file, tare, bad_tare, report, faults })
     }
 }
 
@@ -127,7 +131,7 @@ mod tests {
     }
 
     fn status(sweep: &Sweep) -> serde_json::Value {
-        serde_json::to_value(sweep.status().expect("there were rows")).expect("it has a form in JSON")
+        serde_json::to_value(sweep.status(None).expect("there were rows")).expect("it has a form in JSON")
     }
 
     #[test]

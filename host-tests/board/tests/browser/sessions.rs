@@ -44,7 +44,8 @@ fn a_session_is_opened_scrubbed_and_played_with_its_truth() {
 /// Opens the list of sessions and clicks a button of the file with this name.
 fn choose(browser: &mut Browser, name: &str, button: usize) {
     browser.press("o");
-    let item = format!("[...document.querySelectorAll('#files li')].find((item) => item.textContent.startsWith('{name}'))");
+    let item =
+        format!("[...document.querySelectorAll('#files li')].find((item) => item.textContent.startsWith('{name}'))");
     browser.wait_for(&format!("Boolean({item}?.children[{button}])"));
     browser.value(&format!("{item}.children[{button}].click()"));
     browser.wait_for("!document.getElementById('sessions').open");
@@ -62,7 +63,8 @@ fn two_sessions_or_two_tables_are_drawn_over_one_another() {
     }
     let table = std::fs::read_to_string(sessions.join("../../calibration-tables/planar-6.toml")).expect("a table");
     // An arm that is longer by a tenth, by this table.
-    std::fs::write(folder.join("longer.toml"), table.replace("length_mm = 80.0", "length_mm = 89.7")).expect("there is room");
+    std::fs::write(folder.join("longer.toml"), table.replace("length_mm = 80.0", "length_mm = 89.7"))
+        .expect("there is room");
     let mut browser = Browser::start();
     browser.screen([1400, 1000], "light");
     browser.open(&run.address);
@@ -89,7 +91,8 @@ fn two_sessions_or_two_tables_are_drawn_over_one_another() {
     browser.press("o");
     browser.wait_for("document.querySelectorAll('#with-table option').length === 2");
     browser.value("document.getElementById('with-table').value = 'longer.toml'");
-    let item = "[...document.querySelectorAll('#files li')].find((item) => item.textContent.startsWith('scenario-2.csv'))";
+    let item =
+        "[...document.querySelectorAll('#files li')].find((item) => item.textContent.startsWith('scenario-2.csv'))";
     browser.value(&format!("{item}.children[1].click()"));
     browser.wait_for("!document.getElementById('sessions').open");
     assert_eq!(browser.text("arm-name"), "scenario-2.csv");

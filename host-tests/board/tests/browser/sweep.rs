@@ -50,7 +50,11 @@ fn a_sweep_is_recorded_and_the_next_commands_have_its_file() {
     let left = "9:\\d\\d to go; more range of segments 1, 2, 3, 4, 5, 6; more passes of segments 1, 2, 3, 4, 5, 6";
     browser.wait_for(&format!("/^{left}$/.test(document.getElementById('sweep-left').textContent)"));
     swing(&mut browser);
-    browser.wait_for(&format!("/^−[1-9]\\d° to [1-9]\\d°$/.test({}) && /^[2-9] of 20$/.test({})", cell(5, 2), cell(5, 4)));
+    browser.wait_for(&format!(
+        "/^−[1-9]\\d° to [1-9]\\d°$/.test({}) && /^[2-9] of 20$/.test({})",
+        cell(5, 2),
+        cell(5, 4)
+    ));
     browser.picture("sweep-running.png");
     browser.screen([390, 844], "light");
     browser.picture("sweep-phone.png");
@@ -61,7 +65,9 @@ fn a_sweep_is_recorded_and_the_next_commands_have_its_file() {
     browser.wait_for("document.getElementById('sweep-step').textContent.startsWith('The recording has ended before')");
     let commands = browser.text("sweep-next");
     let mut files = run.folder.path().read_dir().expect("a folder").flatten().map(|file| file.file_name());
-    let file = files.find_map(|name| name.into_string().ok().filter(|name| name.ends_with(".mcap"))).expect("a recording");
+    let file = files
+        .find_map(|name| name.into_string().ok().filter(|name| name.starts_with("session-")))
+        .expect("a recording");
     let align = format!("{file} --camera CAMERA.csv --arm arm.toml -o sweep.csv");
     assert!(commands.contains(&align) && commands.contains("proprio calibrate sweep.csv --arm arm.toml"), "{commands}");
     browser.picture("sweep-recorded.png");
@@ -75,7 +81,9 @@ fn a_bend_sensor_that_does_not_follow_its_segment_is_named() {
     let mut browser = opened(&run);
     run.inject_fault("bend2a:stuck");
     swing(&mut browser);
-    browser.wait_for("document.getElementById('sweep-warnings').textContent.includes('bend2a stays while segment 2 bends')");
+    browser.wait_for(
+        "document.getElementById('sweep-warnings').textContent.includes('bend2a stays while segment 2 bends')",
+    );
     browser.picture("sweep-stuck.png");
     assert_eq!(errors(&browser), Vec::<&String>::new());
 }
@@ -125,9 +133,10 @@ fn the_guide_counts_gaps_time_and_passes() {
     let run = MonitorRun::without_table();
     let mut browser = Browser::start();
     browser.open(&run.address);
-    let gaps = of_module(&mut browser, "[missing([[-50, -10], [0, 43]], 45), missing([], 45), missing([[-60, 60]], 45)]");
+    let gaps =
+        of_module(&mut browser, "[missing([[-50, -10], [0, 43]], 45), missing([], 45), missing([[-60, 60]], 45)]");
     assert_eq!(gaps, json!([[[-10, 0]], [[-45, 45]], []]));
-    let sweep = "phase: 'recording', faults: [], coupled: [], rest: null, \
+    let sweep = "phase: 'recording', bad_tare: [], faults: [], coupled: [], rest: null, \
                  goal: {seconds: 600, passes: 20, still_deg: 3, least_range_deg: 10, good_range_deg: 45}";
     let left = |seconds: u32, segment: &str, phase: &str| {
         format!("step({{{sweep}, seconds: {seconds}, segments: [{segment}], {phase}}}, 45, true)")
@@ -142,7 +151,10 @@ fn the_guide_counts_gaps_time_and_passes() {
     assert_eq!(text, "The sweep is complete.");
     let few = "{ends_deg: [-2, 4], seen_deg: [[-2, 4]], passes: 0}";
     let warned = format!("warnings({{{sweep}, seconds: 601, segments: [{few}], phase: 'recorded'}}, '')");
-    assert_eq!(of_module(&mut browser, &warned), json!(["Segment 1 bends by 6° in all: calibrate refuses less than 10°."]));
+    assert_eq!(
+        of_module(&mut browser, &warned),
+        json!(["Segment 1 bends by 6° in all: calibrate refuses less than 10°."])
+    );
     let quoted = of_module(&mut browser, "commands('a b.mcap', true)[0][0]");
     assert_eq!(quoted, "proprio align \"a b.mcap\" --camera CAMERA.csv --arm arm.toml -o sweep.csv");
 }

@@ -28,7 +28,7 @@ pub(crate) const UNRELATED: f64 = 0.5;
 /// [`GOOD_ENOUGH`].
 const SWAPPED: f64 = 4.0;
 /// Share of the variance that a poor but correctly placed sensor leaves.
-const GOOD_ENOUGH: f64 = 0.1;
+pub(crate) const GOOD_ENOUGH: f64 = 0.1;
 
 /// One sensor's map.
 pub(super) struct FittedSensor {

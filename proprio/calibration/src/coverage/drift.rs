@@ -7,8 +7,8 @@ use nalgebra::{Matrix4, Vector4};
 
 /// Power spectral density of the error of a quadratic map, degrees² s: 5° that lasts for a second.
 const NOISE_DEG2_S: f64 = 50.0;
-/// Time within which the drift is followed, s: two swings of a sweep.
-const FOLLOWED_S: f64 = 60.0;
+/// Time within which the drift is followed, s: about a swing of a sweep.
+const FOLLOWED_S: f64 = 30.0;
 /// Standard deviation of offset, slope and curvature before the first reading, degrees.
 const UNKNOWN_DEG: f64 = 3000.0;
 /// Middle of the converter's counts.

@@ -50,7 +50,10 @@ impl fmt::Display for SweepFault {
                 write!(f, "bend{segment}{name} does not follow segment {segment}: check its mount and its plug")
             }
             Self::ImuStays { segment } => {
-                write!(f, "imu{segment} stays while the bend sensors of segment {segment} move: check its plug and mount")
+                write!(
+                    f,
+                    "imu{segment} stays while the bend sensors of segment {segment} move: check its plug and mount"
+                )
             }
             Self::ImuUnrelated { segment } => {
                 write!(f, "imu{segment} does not turn with the bend sensors on both sides of it: check its mount")

@@ -9,7 +9,7 @@ mod range;
 mod relation;
 mod report;
 
-use std::array;
+use std::{array, mem};
 
 use calibration_tables::MAX_SEGMENTS;
 use estimator_core::{HeadingTracker, ImuReading, SENSORS_PER_SEGMENT, Turns};
@@ -21,13 +21,15 @@ pub use report::{Rest, SegmentCoverage, SweepGoal, SweepReport};
 use self::drift::DriftFilter;
 use self::range::{Passes, RecentRange, SeenRange, widened};
 use self::relation::Relation;
-use crate::calibrate::{COUPLED, DEAD_COUNTS, LEAST_RANGE_DEG, UNRELATED};
+use crate::calibrate::{COUPLED, DEAD_COUNTS, GOOD_ENOUGH, LEAST_RANGE_DEG, UNRELATED};
 
 /// Longest step of the time that is no gap, s.
 const GAP_S: f64 = 0.5;
 /// Time at the begin in which the arm should rest, s: the tare of a session.
 const REST_S: f64 = 1.0;
-/// Time of a step of the bend angles, s.
+/// Time for which a fault must hold before it is reported, s.
+const HOLDS_S: f64 = 10.0;
+/// Time of a step of the bend angles, and from one judgement of the sensors to the next, s.
 const STEP_S: f64 = 1.0;
 /// Standard deviation of a bend angle from which on sensors are compared with it, degrees.
 const BENDS_DEG: f64 = 3.0;
@@ -71,12 +73,19 @@ struct Segment {
     counts: [Option<[u16; 2]>; SENSORS_PER_SEGMENT],
     /// The bend angle over the readings of each sensor.
     follows: [Relation; SENSORS_PER_SEGMENT],
+    /// Whether it follows; `None` where neither has moved yet.
+    is_followed: [Option<bool>; SENSORS_PER_SEGMENT],
     drift: [DriftFilter; SENSORS_PER_SEGMENT],
     /// The readings of sensor b over those of a.
     twins: Relation,
     recent_counts: [RecentRange; SENSORS_PER_SEGMENT],
+    /// The readings of a sensor stay while the segment bends.
+    stays: [bool; SENSORS_PER_SEGMENT],
+    recent_angle: RecentRange,
     /// Heading of its end, degrees.
     recent_heading: RecentRange,
+    /// The IMU at its end stays while sensor a moves.
+    imu_stays: bool,
 }
 
 /// Coverage of a sweep, row by row.
@@ -90,6 +99,8 @@ pub struct SweepCoverage {
     second: (f64, [Option<f64>; MAX_SEGMENTS]),
     /// Sums of the products of the steps of two bend angles over a second, in which there is no drift, degrees².
     products: [[f64; MAX_SEGMENTS]; MAX_SEGMENTS],
+    /// The faults of the last judgement, and since when each of them holds, s of the sweep.
+    faults: Vec<(SweepFault, f64)>,
 }
 
 impl SweepCoverage {
@@ -103,6 +114,7 @@ impl SweepCoverage {
             segments: vec![Segment::new(); segments.min(MAX_SEGMENTS)],
             second: (f64::NEG_INFINITY, [None; MAX_SEGMENTS]),
             products: [[0.0; MAX_SEGMENTS]; MAX_SEGMENTS],
+            faults: Vec::new(),
         }
     }
 
@@ -126,6 +138,7 @@ impl SweepCoverage {
         }
         if time_s - self.second.0 >= STEP_S {
             self.add_products(&angles_deg);
+            self.judge();
             self.second = (time_s, angles_deg);
         }
     }
@@ -166,13 +179,14 @@ impl SweepCoverage {
             rest: rest.filter(|_| self.seconds > REST_S),
             segments: self.segments.iter().map(Segment::coverage).collect(),
             coupled: self.coupled(),
-            faults: self.faults(),
+            faults: self.lasting_faults().collect(),
             goal: SweepGoal::CALIBRATE,
         }
     }
 
     fn coupled(&self) -> Vec<[usize; 2]> {
-        let bends = |i: usize| self.segments[i].angle.ends_deg().is_some_and(|[low, high]| high - low > LEAST_RANGE_DEG);
+        let bends =
+            |i: usize| self.segments[i].angle.ends_deg().is_some_and(|[low, high]| high - low > LEAST_RANGE_DEG);
         let n = self.segments.len();
         let pairs = (0..n).flat_map(|i| (i + 1..n).map(move |j| (i, j))).filter(|(i, j)| bends(*i) && bends(*j));
         let product = |i: usize, j: usize| self.products[i][j];
@@ -180,30 +194,48 @@ impl SweepCoverage {
         alike.map(|(i, j)| [i + 1, j + 1]).collect()
     }
 
-    fn faults(&self) -> Vec<SweepFault> {
+    /// Judges all sensors.
+    fn judge(&mut self) {
+        self.segments.iter_mut().for_each(Segment::judge);
+        let since = |fault: SweepFault| {
+            let known = self.faults.iter().find(|(known, _)| *known == fault);
+            known.map_or(self.seconds, |(_, since_s)| *since_s)
+        };
+        self.faults = self.faults_now().into_iter().map(|fault| (fault, since(fault))).collect();
+    }
+
+    fn lasting_faults(&self) -> impl Iterator<Item = SweepFault> {
+        let lasting = self.faults.iter().filter(|(_, since_s)| self.seconds - since_s >= HOLDS_S);
+        lasting.map(|(fault, _)| *fault)
+    }
+
+    fn faults_now(&self) -> Vec<SweepFault> {
         let is_astray = |i: usize| self.segments.get(i).is_some_and(Segment::is_astray);
         let mut faults = Vec::new();
         // The IMU before a segment is why the segment is astray.
         let mut is_explained = false;
         for (i, segment) in self.segments.iter().enumerate() {
             let number = i + 1;
-            let is_before = std::mem::take(&mut is_explained);
-            if segment.imu_stays() {
+            let is_before = mem::take(&mut is_explained);
+            if segment.imu_stays {
                 is_explained = true;
                 faults.push(SweepFault::ImuStays { segment: number });
-            } else if is_before {
-                continue;
-            } else if !is_astray(i) {
+            } else if !is_before && !is_astray(i) {
                 faults.extend(segment.lost_sensors(number));
-            } else if is_astray(number) {
+            } else if !is_before && is_astray(number) {
                 is_explained = true;
                 faults.push(SweepFault::ImuUnrelated { segment: number });
-            } else {
+            } else if !is_before {
                 faults.push(SweepFault::Segment { segment: number });
             }
         }
         faults
     }
+}
+
+/// True where a value stays within `least` while another one moves; where that does not move either, as before.
+fn stays_while(other_moves: bool, before: bool, value: &RecentRange, least: f64) -> bool {
+    value.is_narrower(least) && (before || other_moves)
 }
 
 impl Segment {
@@ -215,10 +247,14 @@ impl Segment {
             passes_of_counts: Passes::default(),
             counts: Default::default(),
             follows: Default::default(),
+            is_followed: [None; SENSORS_PER_SEGMENT],
             drift: [DriftFilter::new(); SENSORS_PER_SEGMENT],
             twins: Relation::default(),
             recent_counts: Default::default(),
+            stays: [false; SENSORS_PER_SEGMENT],
+            recent_angle: RecentRange::default(),
             recent_heading: RecentRange::default(),
+            imu_stays: false,
         }
     }
 
@@ -251,6 +287,7 @@ impl Segment {
     fn bend(&mut self, step_s: f64, angle_deg: Option<f64>, counts: Option<u16>) {
         self.now_deg = angle_deg.map(|angle_deg| angle_deg - self.drift_deg());
         if let Some(angle_deg) = self.now_deg {
+            self.recent_angle.update(step_s, angle_deg);
             self.angle.update(step_s, angle_deg);
             self.passes.update(angle_deg, LEAST_RANGE_DEG);
         }
@@ -261,7 +298,7 @@ impl Segment {
 
     /// Drift of the bend angle by the first sensor that is not known to follow it badly, degrees; 0 without one.
     fn drift_deg(&self) -> f64 {
-        let place = (0..SENSORS_PER_SEGMENT).find(|place| self.is_followed(*place) != Some(false));
+        let place = (0..SENSORS_PER_SEGMENT).find(|place| self.is_followed[*place] != Some(false));
         place.map_or(0.0, |place| self.drift[place].drift_deg())
     }
 
@@ -275,41 +312,41 @@ impl Segment {
         }
     }
 
-    /// Whether the bend angle follows a sensor; `None` where neither moves, or it is too early.
-    fn is_followed(&self, place: usize) -> Option<bool> {
-        let relation = &self.follows[place];
-        let moves = relation.value_deviation()? > BENDS_DEG || relation.counts_deviation()? > BENDS_COUNTS;
-        moves.then(|| relation.unexplained()).flatten().map(|unexplained| unexplained < UNRELATED)
+    /// Judges whether the bend angle follows each sensor. Between the limits, and at rest, it is as before: swings of other segments
+    /// are alike by chance.
+    fn judge(&mut self) {
+        let bends = self.recent_angle.is_wider(LEAST_RANGE_DEG);
+        let turns = self.recent_counts[0].is_wider(TURNS_COUNTS);
+        for (counts, stays) in self.recent_counts.iter().zip(&mut self.stays) {
+            *stays = stays_while(bends, *stays, counts, DEAD_COUNTS.into());
+        }
+        self.imu_stays = stays_while(turns, self.imu_stays, &self.recent_heading, STAYS_DEG);
+        for (relation, is_followed) in self.follows.iter().zip(&mut self.is_followed) {
+            let deviations = relation.value_deviation().zip(relation.counts_deviation());
+            let moves = deviations.is_some_and(|(angle, counts)| angle > BENDS_DEG || counts > BENDS_COUNTS);
+            match relation.unexplained().filter(|_| moves) {
+                Some(unexplained) if unexplained > UNRELATED => *is_followed = Some(false),
+                Some(unexplained) if unexplained < GOOD_ENOUGH => *is_followed = Some(true),
+                _ => {}
+            }
+        }
     }
 
     /// True where both bend sensors agree with each other, and the bend angle by the IMUs with none of them; of a segment with one
     /// sensor, where that moves.
     fn is_astray(&self) -> bool {
-        let followed = [0, 1].map(|place| self.is_followed(place));
+        let followed = self.is_followed;
         let is_alone = self.counts[1].is_none();
         let agree = self.twins.unexplained().is_some_and(|unexplained| unexplained < UNRELATED);
-        followed[0] == Some(false) && (followed[1] == Some(false) && agree || is_alone && !self.stays(0))
-    }
-
-    /// True where the IMU at its end stays, and sensor a moves.
-    fn imu_stays(&self) -> bool {
-        let widths = self.recent_heading.width().zip(self.recent_counts[0].width());
-        widths.is_some_and(|(heading_deg, counts)| heading_deg < STAYS_DEG && counts > TURNS_COUNTS)
-    }
-
-    /// True of a sensor whose readings hardly change.
-    fn stays(&self, place: usize) -> bool {
-        self.recent_counts[place].width().is_some_and(|counts| counts < DEAD_COUNTS.into())
+        followed[0] == Some(false) && (followed[1] == Some(false) && agree || is_alone && !self.stays[0])
     }
 
     fn lost_sensors(&self, segment: usize) -> impl Iterator<Item = SweepFault> {
-        let lost = (0..SENSORS_PER_SEGMENT).filter(|place| self.is_followed(*place) == Some(false));
-        lost.map(move |place| {
-            if self.stays(place) {
-                SweepFault::BendStays { segment, place }
-            } else {
-                SweepFault::BendUnrelated { segment, place }
+        (0..SENSORS_PER_SEGMENT).filter_map(move |place| {
+            if self.stays[place] {
+                return Some(SweepFault::BendStays { segment, place });
             }
+            (self.is_followed[place] == Some(false)).then_some(SweepFault::BendUnrelated { segment, place })
         })
     }
 }

@@ -71,8 +71,18 @@ impl RecentRange {
         self.now = Some(widened(self.now, value));
     }
 
+    /// True where the values are further apart than this.
+    pub fn is_wider(&self, width: f64) -> bool {
+        self.width().is_some_and(|own| own > width)
+    }
+
+    /// True where all values are within this of each other.
+    pub fn is_narrower(&self, width: f64) -> bool {
+        self.width().is_some_and(|own| own < width)
+    }
+
     /// The largest less the smallest value; `None` in the first block.
-    pub fn width(&self) -> Option<f64> {
+    fn width(&self) -> Option<f64> {
         let [low, high] = self.now?;
         let before = self.before?;
         Some(high.max(before[1]) - low.min(before[0]))

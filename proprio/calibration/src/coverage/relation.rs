@@ -3,14 +3,14 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-/// Time constant of the forgetting, s: about a swing of a sweep.
-const MEMORY_S: f64 = 30.0;
+/// Time constant of the forgetting, s: two swings of a sweep, as one alone is like that of another segment by chance.
+const MEMORY_S: f64 = 60.0;
 /// Time that the sums need before they are judged, s.
 const LEAST_S: f64 = 10.0;
 /// Middle of the converter's counts, for well conditioned sums.
 const MIDDLE_COUNTS: f64 = 2048.0;
 
-/// Sums over the last swing of a sensor's counts and a value that should follow them.
+/// Sums over the last swings of a sensor's counts and a value that should follow them.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Relation {
     /// Sums of 1, u, u², u³, u⁴, with u the counts about the middle, as a share of it; in seconds.

@@ -33,9 +33,10 @@ function more(what, segments, isLacking) {
 
 /** The sentences about a sweep that is not as it should be: sensors, pose, and what `calibrate` will refuse or warn of. */
 export function warnings(sweep, bad) {
-  const { goal, rest, segments, coupled, phase } = sweep;
+  const { goal, rest, segments, coupled, phase, bad_tare } = sweep;
   const found = [bad, ...sweep.faults].filter(Boolean);
   if (rest?.turned_deg > goal.still_deg) found.push(`The arm moved in the first second, imu${rest.segment} by ${degrees(rest.turned_deg)}, which is its tare: let it rest, and begin again.`);
+  if (bad_tare.length) found.push(`The arm was bent or moving in the board's tare, by segment ${bad_tare.join(', ')}: tare it straight and still.`);
   if (phase === 'before' || sweep.seconds < REST) return found;
   if (phase === 'recorded') {
     segments.forEach(({ ends_deg }, i) => {
