@@ -41,6 +41,12 @@ impl Conditions {
     pub const fn is_degraded(self) -> bool {
         self.0 != 0
     }
+
+    /// Returns whether the arm was bent or moving in the tare.
+    #[must_use]
+    pub const fn tare_bad(self) -> bool {
+        self.0 & NAMES[0].0 != 0
+    }
 }
 
 impl BitOr for Conditions {

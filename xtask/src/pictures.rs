@@ -5,7 +5,7 @@ use std::fs;
 use crate::board::{ANY_RUST, add_target};
 use crate::tool::{cargo, root, target};
 
-const PICTURES: [&str; 3] = ["live-page.png", "arm.png", "report.png"];
+const PICTURES: [&str; 4] = ["live-page.png", "arm.png", "sweep.png", "report.png"];
 
 /// Runs the browser tests that make the pictures, and copies these to `docs/pictures`. The variable `CHROMIUM` names another
 /// browser than `chromium`.

@@ -29,16 +29,29 @@ pub struct DueProcess {
 }
 
 impl DueProcess {
-    /// Starts one in a folder, in which it leaves the firmware.
+    /// Starts one with the reference arm's table in a folder, in which it leaves the firmware.
     ///
     /// # Panics
     /// If it is not built, or does not start.
     #[must_use]
     pub fn start(folder: &Path) -> Self {
-        fs::write(folder.join("firmware"), firmware()).expect("there is room");
         fs::write(folder.join("flash"), flash_with(&stored_table())).expect("there is room");
+        Self::run(folder, &["--flash", "flash"])
+    }
+
+    /// Starts one without a table.
+    ///
+    /// # Panics
+    /// As [`DueProcess::start`].
+    #[must_use]
+    pub fn without_table(folder: &Path) -> Self {
+        Self::run(folder, &[])
+    }
+
+    fn run(folder: &Path, arguments: &[&str]) -> Self {
+        fs::write(folder.join("firmware"), firmware()).expect("there is room");
         let mut command = Command::new(tool("virtual-due"));
-        command.current_dir(folder).args(["run", "firmware", "--flash", "flash", "--speed", "real", "--serial", "pty"]);
+        command.current_dir(folder).args(["run", "firmware", "--speed", "real", "--serial", "pty"]).args(arguments);
         let mut child = command.stdin(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("the emulator starts");
         let mut lines = BufReader::new(child.stderr.take().expect("a pipe")).lines().map_while(Result::ok);
         let first = lines.next().expect("the emulator prints its port");

@@ -59,6 +59,7 @@ use calibration_tables::ArmFile;
 use proprio_session::{Error, FileDefects, LoadedTable, MissingHistory, Progress, RequiredColumns, Row, SessionReader};
 
 pub use finding::{Finding, Kind, Rows, Source};
+pub use tare::TARE_MOVES_DEG;
 
 use self::bend_range::BendRange;
 use self::clock::Clock;

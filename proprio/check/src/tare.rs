@@ -7,8 +7,8 @@ use super::frame::{Frame, difference, wrapped};
 
 /// Limit of a segment's bend angle against the reference pose, deg.
 const BENT: f64 = 12.0;
-/// Limit of the range of a heading, deg.
-const MOVES: f64 = 3.0;
+/// Range of a heading within a tare from which on the arm moved in it, degrees.
+pub const TARE_MOVES_DEG: f64 = 3.0;
 
 /// Begin of a session without a tare, s, and limit of the angle between an IMU and its bend sensors there, deg.
 const ABSOLUTE_S: f64 = 1.0;
@@ -145,7 +145,7 @@ impl Tare {
             // The noise of an IMU that shows no heading is no motion.
             let seen = (1..).zip(moves).filter(|(i, _)| !is_imu_blamed(findings, *i));
             let moves = seen.fold(0.0, |most: f64, (_, range)| most.max(range));
-            if moves > MOVES {
+            if moves > TARE_MOVES_DEG {
                 self.findings.push(Finding { sensor, rows, kind: Kind::TareMoves, figure: moves });
             }
             if bent > BENT && !is_any_blamed {

@@ -45,7 +45,7 @@ pub(super) async fn status(State(state): State<AppState>) -> impl IntoResponse {
     ([(CONTENT_TYPE, "application/json")], state.monitor.status().to_string())
 }
 
-/// The sessions that can be opened.
+/// The sessions that can be opened, and the tables for them.
 pub(super) async fn list(State(state): State<AppState>) -> Answer<Json<Vec<SessionEntry>>> {
     run_blocking(move || Json(state.monitor.sessions.list())).await
 }
@@ -53,6 +53,8 @@ pub(super) async fn list(State(state): State<AppState>) -> Answer<Json<Vec<Sessi
 #[derive(Debug, Deserialize)]
 pub(super) struct SessionPart {
     name: String,
+    /// File of the folder that is the table, in place of the session's own.
+    table: Option<String>,
     from_s: Option<f64>,
     to_s: Option<f64>,
 }
@@ -67,7 +69,7 @@ pub(super) async fn session(
     };
     let times_s = part.from_s.unwrap_or(f64::NEG_INFINITY)..=part.to_s.unwrap_or(f64::INFINITY);
     let shared = Arc::clone(&state.monitor);
-    let rows = run_blocking(move || shared.sessions.rows(&part.name, &path, times_s)).await?;
+    let rows = run_blocking(move || shared.sessions.rows(&part.name, &path, part.table.as_deref(), times_s)).await?;
     Ok((BYTES, rows.map_err(|error| state.failure(&error))?))
 }
 

@@ -12,6 +12,9 @@ pub enum Error {
     /// A session without a table, and no other is known.
     #[error("is shown with the estimates of a replay, which needs a table, and none is in it, on the board, or given")]
     NoTable,
+    /// A table that is not in the folder.
+    #[error("{0}: there is no such table in the folder of this monitor")]
+    NoSuchTable(String),
     /// The recorder's thread has panicked.
     #[error("{}: is incomplete: the recorder has stopped by a fault of proprio", .0.display())]
     RecorderPanicked(PathBuf),

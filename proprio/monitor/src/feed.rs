@@ -11,6 +11,7 @@ use telemetry::{Actuation, Health, SensorHealth, SensorState, TICK_HZ};
 use super::latency::Percentiles;
 use super::page_row::{self, ArmSize};
 use super::recording::RecordingProgress;
+use super::sweep::SweepStatus;
 
 /// A message to the page.
 #[derive(Debug, Serialize)]
@@ -132,6 +133,8 @@ pub(super) struct PageStatus {
     /// The part of the latency from the sample to the screen that is computed and not measured: the board's latency and the frame on the line.
     pub least_delay_ms: Option<f64>,
     pub recording: Option<RecordingProgress>,
+    /// The sweep for a calibration; `None` before the first row.
+    pub sweep: Option<SweepStatus>,
     /// Warnings for people.
     pub notes: Vec<String>,
     /// Findings of the session check since the board's last tare, with their remedies.
@@ -245,6 +248,7 @@ impl PageStatus {
             clock: None,
             least_delay_ms: None,
             recording: None,
+            sweep: None,
             findings: Vec::new(),
             notes: link.mismatches.iter().map(ToString::to_string).collect(),
         }

@@ -88,6 +88,7 @@ impl<'t> Hub<'t> {
             }
             if self.batch_sent.elapsed() >= PERIOD {
                 self.batch_sent = Instant::now();
+                self.follow_recording();
                 self.send_rows();
             }
             if self.checked.elapsed() >= CHECK {
@@ -131,6 +132,11 @@ impl<'t> Hub<'t> {
         self.notes.push(format!("{hour:02}:{minute:02}:{second:02} UTC: {text}"));
     }
 
+    fn follow_recording(&mut self) {
+        let recording = self.shared.recording().filter(|recording| recording.failed.is_none());
+        self.live.sweep.record(recording.as_ref().map(|recording| recording.file.as_str()));
+    }
+
     fn send_rows(&mut self) {
         let mut batch = std::mem::take(&mut self.batch);
         if !batch.rows.is_empty() {
@@ -149,6 +155,7 @@ impl<'t> Hub<'t> {
         status.clock = self.live.board_time();
         status.least_delay_ms = self.live.min_delay_us().map(|delay_us| f64::from(delay_us) / 1e3);
         status.recording = self.shared.recording();
+        status.sweep = self.live.sweep.status(self.live.health.as_ref());
         status.findings.clone_from(&self.findings);
         status.notes.extend(self.notes.iter().rev().cloned());
         self.shared.publish(&Feed::Status(Box::new(status)));

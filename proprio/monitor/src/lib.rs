@@ -9,6 +9,7 @@
 //! | `live.rs`, `host_replica.rs`, `page_row.rs` | the link's events as rows; drift and innovations by a replica of the board's estimator |
 //! | `board_access.rs`, `table.rs` | waits for a board, and takes its table where none was given |
 //! | `hub.rs`, `feed.rs`, `history.rs` | batches and status; the last ten minutes |
+//! | `sweep.rs` | coverage of a sweep for a calibration, while it is recorded |
 //! | `latency.rs` | latency from a sample to the screen |
 //! | `recording.rs`, `sessions.rs` | recording and opening of sessions |
 //! | `server.rs`, `socket.rs`, `actions.rs`, `body.rs`, `access.rs` | HTTP: the page, the feed, handlers of requests, their limits, access control |
@@ -42,6 +43,7 @@ mod running;
 mod server;
 mod sessions;
 mod socket;
+mod sweep;
 mod table;
 
 use std::net::SocketAddr;

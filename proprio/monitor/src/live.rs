@@ -11,6 +11,7 @@ use telemetry::{FrameLengths, Health, LINE_BYTES_PER_SECOND, Message, SensorHeal
 use super::feed::BoardTime;
 use super::host_replica::HostReplica;
 use super::page_row::{ArmSize, ColumnGroup, PageRow};
+use super::sweep::Sweep;
 
 /// Time over which rates are measured, ns.
 const RATES_NS: u64 = 2_000_000_000;
@@ -36,6 +37,7 @@ struct Totals {
 pub(super) struct Live<'t> {
     replica: Option<HostReplica<'t>>,
     check: Option<SessionCheck>,
+    pub sweep: Sweep,
     assembler: RowAssembler,
     clock: ClockSync,
     /// The board's time 0 on the host's clock, ns.
@@ -56,6 +58,7 @@ impl<'t> Live<'t> {
         Self {
             replica,
             check,
+            sweep: Sweep::default(),
             assembler: RowAssembler::default(),
             clock: ClockSync::default(),
             zero_ns: None,
@@ -83,6 +86,7 @@ impl<'t> Live<'t> {
             EventKind::Opened(_) => self.assembler.line_opened(),
             EventKind::Restarted | EventKind::Lost(_) | EventKind::Ended(_) => {
                 (self.health, self.uncertainty) = (None, None);
+                self.sweep.board_lost();
                 self.requested_pa.clear();
             }
             EventKind::SetPoints(requested) => self.requested_pa = requested.pressures_pa.to_vec(),
@@ -92,6 +96,7 @@ impl<'t> Live<'t> {
     }
 
     fn message(&mut self, message: &Message) {
+        self.sweep.take(message);
         match message {
             Message::Sample(_) => self.totals.samples += 1,
             Message::Estimate(_) => self.totals.estimates += 1,
@@ -148,6 +153,7 @@ impl<'t> Live<'t> {
             }
             check.update(row);
         }
+        self.sweep.update(row, segments);
         // The page shows the board's own estimate.
         let estimate = board.and_then(|board| board.estimate.as_ref());
         page_row.set_estimate(estimate.map_or(&vec![None; segments], |estimate| &estimate.segments));

@@ -20,7 +20,7 @@ use super::app_state::AppState;
 use super::{actions, body, line_feed, programs, socket};
 
 /// The files of the page, embedded in this program.
-const FILES: [(&str, &str, &str); 19] = [
+const FILES: [(&str, &str, &str); 21] = [
     ("/", "text/html; charset=utf-8", include_str!("page/index.html")),
     ("/style.css", "text/css; charset=utf-8", include_str!("page/style.css")),
     ("/main.js", SCRIPT, include_str!("page/main.js")),
@@ -39,6 +39,8 @@ const FILES: [(&str, &str, &str); 19] = [
     ("/findings.js", SCRIPT, include_str!("page/findings.js")),
     ("/sensors.js", SCRIPT, include_str!("page/sensors.js")),
     ("/sessions.js", SCRIPT, include_str!("page/sessions.js")),
+    ("/saver.js", SCRIPT, include_str!("page/saver.js")),
+    ("/sweep.js", SCRIPT, include_str!("page/sweep.js")),
     ("/control.js", SCRIPT, include_str!("page/control.js")),
 ];
 const SCRIPT: &str = "text/javascript; charset=utf-8";

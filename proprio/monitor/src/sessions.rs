@@ -121,18 +121,22 @@ impl Sessions {
         self.table.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// The table of a session: the given one, that in the recording, or the board's.
-    fn table_of(&self, path: &Path) -> Result<Arc<OwnedTable>, Error> {
+    /// The table of a session: the one of this name in the folder; else the given one, that in the recording, or the board's.
+    fn table_of(&self, path: &Path, name: Option<&str>) -> Result<Arc<OwnedTable>, Error> {
+        if let Some(name) = name {
+            let path = self.in_folder(name, is_table).ok_or_else(|| Error::NoSuchTable(name.to_owned()))?;
+            return Ok(Arc::new(OwnedTable::given(&LoadedTable::load(&path)?)));
+        }
         let recorded = if self.is_given { None } else { recorded_table(path)? };
         let recorded = recorded.map(|file| Arc::new(OwnedTable::given(&LoadedTable { file, path })));
         recorded.or_else(|| self.table()).ok_or(Error::NoTable)
     }
 
-    /// The files of the folder, by name.
+    /// The sessions and tables of the folder, by name.
     pub fn list(&self) -> Vec<SessionEntry> {
         let entries = fs::read_dir(&self.folder).into_iter().flatten().flatten();
         let file = |entry: fs::DirEntry| {
-            let name = entry.file_name().into_string().ok().filter(|name| is_session(name))?;
+            let name = entry.file_name().into_string().ok().filter(|name| is_session(name) || is_table(name))?;
             let bytes = entry.metadata().ok().filter(fs::Metadata::is_file)?.len();
             Some(SessionEntry { name, bytes })
         };
@@ -155,21 +159,35 @@ impl Sessions {
         if self.given().is_some_and(|given| given == name) {
             return self.given.clone();
         }
-        let is_plain = Path::new(name).file_name().is_some_and(|plain| plain == name);
-        Some(self.folder.join(name)).filter(|path| is_plain && is_session(name) && path.is_file())
+        self.in_folder(name, is_session)
     }
 
-    /// Replays a session and returns its rows between two times, decimated to as many as a page holds. Errors have its name in
-    /// place of its path, which is that of a copy where a browser has sent it.
-    pub fn rows(&self, name: &str, path: &Path, times_s: RangeInclusive<f64>) -> Result<Vec<u8>, Error> {
-        self.rows_of(path, &times_s).map_err(|error| match error {
+    /// The path of a file of the folder, by its plain name.
+    fn in_folder(&self, name: &str, is_kind: fn(&str) -> bool) -> Option<PathBuf> {
+        let is_plain = Path::new(name).file_name().is_some_and(|plain| plain == name);
+        Some(self.folder.join(name)).filter(|path| is_plain && is_kind(name) && path.is_file())
+    }
+
+    /// Replays a session and returns its rows between two times, decimated to as many as a page holds; with the name of a table, by
+    /// that in place of its own. Errors have the session's name in place of its path, which is that of a copy where a browser has
+    /// sent it.
+    pub fn rows(
+        &self,
+        name: &str,
+        path: &Path,
+        table: Option<&str>,
+        times_s: RangeInclusive<f64>,
+    ) -> Result<Vec<u8>, Error> {
+        self.rows_of(path, table, &times_s).map_err(|error| match error {
             Error::File(proprio_session::Error::Session(error)) => SessionError { path: name.into(), ..error }.into(),
             other => other,
         })
     }
 
-    fn rows_of(&self, path: &Path, times_s: &RangeInclusive<f64>) -> Result<Vec<u8>, Error> {
-        let table = self.table_of(path)?;
+    fn rows_of(&self, path: &Path, table: Option<&str>, times_s: &RangeInclusive<f64>) -> Result<Vec<u8>, Error> {
+        // The board's own estimates are those of its own table.
+        let is_of_board = table.is_none();
+        let table = self.table_of(path, table)?;
         let (table, file) = (table.loaded(), &table.file);
         let mut reader = SessionReader::open(path, &table.required_columns()?)?;
         let compiled = table.compile::<Q>(reader.rate_hz(file.rate_hz)?)?;
@@ -194,7 +212,10 @@ impl Sessions {
                 continue;
             }
             check.update(&read);
-            held.set(&read, &mut row);
+            if is_of_board {
+                held.set_estimate(&read, &mut row);
+            }
+            held.set_pressures(&mut row);
             row.set_sample(&read.sample);
             row.set_truth(&read.truth);
             if !times_s.contains(&row.time_s) {
@@ -247,14 +268,17 @@ impl BoardState {
         }
     }
 
-    /// Sets the board's own values in a row, in place of the replica's.
-    fn set(&self, read: &Row, row: &mut PageRow) {
+    /// Sets the board's own estimate and its uncertainty in a row, in place of the replica's.
+    fn set_estimate(&self, read: &Row, row: &mut PageRow) {
         if let Some(estimate) = read.board.as_ref().and_then(|board| board.estimate.as_ref()) {
             row.set_estimate(&estimate.segments);
         }
         if let Some(uncertainty) = &self.uncertainty {
             row.set_uncertainty(uncertainty);
         }
+    }
+
+    fn set_pressures(&self, row: &mut PageRow) {
         row.set_pressures(ColumnGroup::PressureRequested, &self.requested_pa);
         row.set_pressures(ColumnGroup::PressureSet, &self.set_pa);
     }
@@ -262,8 +286,15 @@ impl BoardState {
 
 /// True for a name with the ending of a session.
 fn is_session(name: &str) -> bool {
+    has_ending(name, &["csv", "mcap", "bin"])
+}
+
+/// True for a name with the ending of a table.
+fn is_table(name: &str) -> bool {
+    has_ending(name, &["toml"])
+}
+
+fn has_ending(name: &str, endings: &[&str]) -> bool {
     let extension = Path::new(name).extension();
-    ["csv", "mcap", "bin"]
-        .iter()
-        .any(|ending| extension.is_some_and(|extension| extension.eq_ignore_ascii_case(ending)))
+    endings.iter().any(|ending| extension.is_some_and(|extension| extension.eq_ignore_ascii_case(ending)))
 }

@@ -38,8 +38,21 @@ impl MonitorRun {
     /// As [`MonitorRun::live`].
     #[must_use]
     pub fn of_board(arguments: &[&str]) -> Self {
+        Self::with_due(DueProcess::start, arguments)
+    }
+
+    /// A live board without a table.
+    ///
+    /// # Panics
+    /// As [`MonitorRun::live`].
+    #[must_use]
+    pub fn without_table() -> Self {
+        Self::with_due(DueProcess::without_table, &[])
+    }
+
+    fn with_due(start: impl FnOnce(&Path) -> DueProcess, arguments: &[&str]) -> Self {
         let folder = tempfile::tempdir().expect("there is room for a temporary folder");
-        let due = DueProcess::start(folder.path());
+        let due = start(folder.path());
         let port = due.port.clone();
         let arguments = [&["--port", &port], arguments].concat();
         Self::start(folder, Some(due), &arguments)

@@ -4,6 +4,7 @@
 //! `target/browser`.
 #![cfg(unix)]
 
+mod accessibility;
 mod first;
 mod live;
 mod modules;
@@ -11,4 +12,5 @@ mod page;
 mod pictures;
 mod sessions;
 mod slow;
+mod sweep;
 mod values;

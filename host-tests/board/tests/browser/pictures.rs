@@ -46,6 +46,9 @@ fn pictures_of_the_documents_live_page_and_arm() {
     }
     browser.picture_of_screen("live-page.png");
     browser.picture_of("arm.png", "document.getElementById('arm-canvas')");
+    browser.press("k");
+    browser.wait_for("document.querySelectorAll('#sweep .seen').length >= 6");
+    browser.picture_of("sweep.png", "document.getElementById('sweep')");
 }
 
 #[test]

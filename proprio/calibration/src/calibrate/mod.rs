@@ -46,6 +46,8 @@ pub use error::{CalibrationError, Warning};
 pub use held_out::HeldOut;
 pub use options::{CalibrationOptions, HysteresisMode, MapKind, MapMode};
 pub use report::{SegmentReport, SensorReport};
+pub(crate) use sensors::{DEAD_COUNTS, GOOD_ENOUGH, UNRELATED};
+pub(crate) use sweep::{COUPLED, GOOD_RANGE_DEG, LEAST_RANGE_DEG};
 
 use crate::error::Error;
 use crate::truth::JudgedTruth;

@@ -13,7 +13,7 @@ use super::report::SensorReport;
 use super::sweep::{LEAST_ROWS, SensorColumn, Sweep, range};
 
 /// A sensor whose readings stay within this range is dead: ten times the noise of a good one.
-const DEAD_COUNTS: u16 = 20;
+pub(crate) const DEAD_COUNTS: u16 = 20;
 /// Readings this close to the sensor's lowest or highest count as its end: the noise of a good one.
 const END_COUNTS: u16 = 2;
 /// Share of the rows at one end, and bending meanwhile, that make a sensor saturated.
@@ -23,12 +23,12 @@ const SATURATED_AT_RAIL: (f64, f64) = (0.01, 5.0 * std::f64::consts::PI / 180.0)
 /// Error of an outlier, in RMSE of the map.
 const OUTLIER: f64 = 6.0;
 /// Unexplained share of the variance above which a sensor follows no segment.
-const UNRELATED: f64 = 0.5;
+pub(crate) const UNRELATED: f64 = 0.5;
 /// A sensor is swapped where another segment explains it this many times better, and its own does it worse than
 /// [`GOOD_ENOUGH`].
 const SWAPPED: f64 = 4.0;
 /// Share of the variance that a poor but correctly placed sensor leaves.
-const GOOD_ENOUGH: f64 = 0.1;
+pub(crate) const GOOD_ENOUGH: f64 = 0.1;
 
 /// One sensor's map.
 pub(super) struct FittedSensor {

@@ -15,11 +15,11 @@ use crate::error::Error;
 use crate::truth::{self, JudgedTruth};
 
 /// Smallest range of bending to which a quadratic can be fitted, degrees.
-const LEAST_RANGE_DEG: f64 = 10.0;
+pub(crate) const LEAST_RANGE_DEG: f64 = 10.0;
 /// Range of bending that a good sweep exceeds, degrees.
-const GOOD_RANGE_DEG: f64 = 45.0;
+pub(crate) const GOOD_RANGE_DEG: f64 = 45.0;
 /// Squared correlation from which on two segments are coupled: a sensor's error is a few percent of its signal.
-const COUPLED: f64 = 0.98;
+pub(crate) const COUPLED: f64 = 0.98;
 /// Largest difference of two sessions' sample rates that count as equal, as a share.
 const SAME_RATE: f64 = 0.02;
 /// Fewest rows of a fit.

@@ -108,6 +108,7 @@ impl Help for proprio_monitor::Error {
             Self::TableImage(error) => error.help(),
             Self::Transfer(error) => error.help(),
             Self::NoTable => "give the arm's table with --table".to_owned(),
+            Self::NoSuchTable(_) => "copy it there, or start the monitor with --folder".to_owned(),
             Self::RecorderPanicked(_) => {
                 "save it with `proprio recover`, and report the fault, with the message above and the command"
                     .to_owned()

@@ -72,6 +72,22 @@ fn a_session_of_the_folder_is_listed_and_opened_with_its_truth() {
 }
 
 #[test]
+fn a_session_is_replayed_with_a_table_of_the_folder_and_no_other_file_is_one() {
+    let page = page(None);
+    let text = std::fs::read_to_string(table()).expect("a committed file");
+    let longer = text.replacen("length_mm = 80.0", "length_mm = 90.0", 1);
+    std::fs::write(page.folder.path().join("longer.toml"), longer).expect("there is room");
+    assert!(page.get("/sessions").text().contains(r#""name":"longer.toml""#), "{}", page.get("/sessions").text());
+    let about = page.get("/session?name=a%20b.csv&table=longer.toml").about();
+    assert_eq!((&about["arm"]["geometry"][0]["length_mm"], &about["rows"]), (&90.0.into(), &600.into()));
+    for name in ["a%20b.csv", "missing.toml", "..%2Flonger.toml"] {
+        let answer = page.get(&format!("/session?name=a%20b.csv&table={name}"));
+        assert_eq!(answer.status, 409, "{name}");
+        assert!(answer.text().contains("there is no such table in the folder"), "{}", answer.text());
+    }
+}
+
+#[test]
 fn a_part_of_a_session_is_what_is_between_two_times() {
     let page = page(None);
     let about = page.get("/session?name=a%20b.csv&from_s=10&to_s=19.95").about();

@@ -65,7 +65,7 @@ export function covariances(store, row) {
 export const contacts = (store, row) => store.series('in_contact', '').map((column) => column[row] === 1);
 
 /** Draws the arm in one row onto a canvas or an SVG of this size. */
-export function drawArm(c, width, height, { store, row, geometry, colours }) {
+export function drawArm(c, width, height, { store, row, geometry, colours, overlay }) {
   const length = geometry?.reduce((sum, { length_mm, offset_mm }) => sum + length_mm + offset_mm, 0) ?? LENGTH * Math.max(1, store?.series('theta', '_deg').length ?? 0);
   const scale = Math.min(width / (2.1 * length), height / (1.6 * length));
   const to = ([x, y]) => [width / 2 + x * scale, height - 0.42 * length * scale - y * scale];
@@ -92,6 +92,21 @@ export function drawArm(c, width, height, { store, row, geometry, colours }) {
     c.stroke();
   });
   truth(c, store, row, to, colours);
+  if (overlay) drawOverlay(c, to, scale, overlay, colours);
+}
+
+/** Draws the arm of another session as a dashed line through its middle, with its ends. */
+function drawOverlay(c, to, scale, { store, row, geometry }, colours) {
+  const width = Math.max(2.5, 8 * scale);
+  for (const { line, end } of shape(store, row, geometry)) {
+    path(c, line.map(to), { colour: colours.ink, width, alpha: 0.75, dash: [8, 8] });
+    const [x, y] = to(end);
+    c.beginPath();
+    c.ellipse(x, y, width / 2, width / 2, 0, 0, 2 * Math.PI);
+    c.strokeStyle = colours.ink;
+    c.lineWidth = width;
+    c.stroke();
+  }
 }
 
 function path(c, points, { colour, width, alpha = 1, dash = [] }) {

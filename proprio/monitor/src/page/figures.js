@@ -87,9 +87,10 @@ export class Figures {
   }
 
   buildCurves(figure) {
-    const { store } = this.app;
-    const curves = store ? figure.kind.curves(store) : [];
-    figure.curves = curves.map((curve) => ({ ...curve, column: store.column(curve.column) })).filter(({ column }) => column);
+    const { store, overlay } = this.app;
+    const of = (from) => (from ? figure.kind.curves(from) : []).map((curve) => ({ ...curve, store: from, column: from.column(curve.column) })).filter(({ column }) => column);
+    figure.curves = of(store);
+    figure.overlay = of(overlay?.store).map((curve) => ({ ...curve, isOverlay: true }));
     for (const readings of [figure.moment, figure.pointer]) {
       const values = figure.curves.map((curve) => {
         const value = element('span', { className: curve.isSecond ? 'second' : '' });
@@ -107,15 +108,15 @@ export class Figures {
   get width() { return this.figures.length ? innerWidth(this.figures[0].canvas) : 1; }
 
   /** Curves of a figure that are seen. */
-  seen(figure) { return figure.curves.filter(({ segment }) => !this.app.hidden.has(segment)); }
+  seen(curves) { return curves.filter(({ segment }) => !this.app.hidden.has(segment)); }
 
   /** What `drawPlot` takes of a figure. */
   spec(figure) {
     const { store, view, palette, session, arm, isFixed } = this.app, { range, kind, canvas } = figure;
     const [from, to] = wholePixels(view.window(store), innerWidth(canvas));
-    const curves = this.seen(figure);
-    const columns = curves.map(({ column }) => column);
-    const [low, high] = store?.count ? extent(columns, ...visible(store, from, to, view.limit)) : [NaN, NaN];
+    const curves = this.seen([...figure.curves, ...figure.overlay]);
+    const extents = curves.map(({ store: own, column }) => extent([column], ...visible(own, from, to, view.limit)));
+    const [low, high] = store?.count ? [Math.min(...extents.map(([least]) => least)), Math.max(...extents.map(([, most]) => most))] : [NaN, NaN];
     if (!isFixed) range.follow(low, high);
     const empty = low <= high ? '' : reason(kind.needs, { store, isSession: Boolean(session), hasTable: Boolean(session || arm?.table) });
     const marks = (session ?? this.app).marks;
@@ -154,7 +155,7 @@ export class Figures {
 
   /** Names and values of the curves that are seen, at one row. */
   legend(figure, row) {
-    return this.seen(figure).filter(({ column, isOptional }) => !isOptional || Number.isFinite(column[row])).map(({ name, column, colour, isSecond }) => ({ name, colour, isSecond, value: shownValue(column[row], figure.kind.digits) }));
+    return this.seen(figure.curves).filter(({ column, isOptional }) => !isOptional || Number.isFinite(column[row])).map(({ name, column, colour, isSecond }) => ({ name, colour, isSecond, value: shownValue(column[row], figure.kind.digits) }));
   }
 }
 

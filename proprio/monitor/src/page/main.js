@@ -13,8 +13,8 @@ import { Delay } from './delay.js';
 import { BoardPanel } from './board_panel.js';
 import { SessionPicker, load } from './sessions.js';
 import { Control } from './control.js';
-import { csv, save } from './export.js';
-import { picture, toPng, toSvg } from './picture.js';
+import { Saver } from './saver.js';
+import { SweepGuide } from './sweep.js';
 
 const $ = (id) => document.getElementById(id);
 
@@ -32,6 +32,8 @@ const app = {
   isDirty: true, isNew: false, newest_us: 0, drawn: 0, delivery: { latency: null, skipped: 0 }, palette: null,
   /** The rows that are shown: of a session, or live. */
   get store() { return this.session?.store ?? this.live; },
+  /** Another session, or the same by another table, which is drawn over the one that is open. */
+  get overlay() { return this.session?.overlay; },
   changed() { this.isDirty = true; },
   point(share) { Object.assign(this, { pointer: share, isPointerNew: true }); },
   fix(isFixed) {
@@ -45,8 +47,10 @@ const sensorList = new SensorList($('strips'));
 const findingList = new FindingList($('findings'));
 const boardPanel = new BoardPanel($('facts'), $('notes'));
 const control = new Control($('control'), showError, showNotice);
-const sessionPicker = new SessionPicker($('sessions'), openSession);
+const sessionPicker = new SessionPicker($('sessions'), openSession, layOver);
 const figures = new Figures($('figures'), $('add-plot'), app);
+const sweepGuide = new SweepGuide($('sweep'), $('calibrate'), () => record());
+const saver = new Saver(app, figures, armSpec, { canvas: $('arm-canvas'), moment: $('moment'), overlay: $('overlay').firstElementChild });
 const delay = new Delay();
 
 const feed = new Feed({
@@ -56,7 +60,7 @@ const feed = new Feed({
       app.live = new Store(arm.columns);
       build();
     }
-    for (const id of ['record', 'mark', 'board']) $(id).hidden = !arm.is_live;
+    for (const id of ['record', 'mark', 'calibrate', 'board']) $(id).hidden = !arm.is_live;
     linkState(arm.is_live ? 'wait' : 'ok', arm.is_live ? 'waiting for a board' : 'sessions only');
     if (arm.session && !app.session) load(arm.session, {}).then(openSession, (error) => showError(error.message));
   },
@@ -172,6 +176,7 @@ function openSession(session) {
   $('close-session').hidden = !app.arm?.is_live;
   text($('arm-name'), session.name);
   $('thinned').hidden = session.every === 1;
+  showOverlay();
   text($('thinned').firstElementChild, `Every ${session.every}th of ${session.samples} samples is shown.`);
   build();
   // The time slider has the session's range at once.
@@ -185,13 +190,29 @@ function closeSession() {
   $('span').value = '30';
   $('close-session').hidden = true;
   $('thinned').hidden = true;
+  showOverlay();
   build();
+}
+
+/** Draws another session over the one that is open, or none. */
+function layOver(session) {
+  app.session.overlay = session;
+  showOverlay();
+  figures.build();
+  app.changed();
+}
+
+function showOverlay() {
+  const named = ({ name, arm: { table } }) => `${name} by table ${table}`;
+  $('overlay').hidden = !app.overlay;
+  if (app.overlay) text($('overlay').firstElementChild, `Solid: ${named(app.session)}. Dashed: ${named(app.overlay)}.`);
 }
 
 async function inFull() {
   const [from_s, to_s] = app.view.window(app.store);
   try {
-    openSession(await load(app.session.name, { from_s, to_s }));
+    const { name, table, overlay } = app.session;
+    openSession({ ...await load(name, { from_s, to_s }, table), overlay });
   } catch (error) {
     showError(error.message);
   }
@@ -239,7 +260,9 @@ function armSpec() {
   const { store } = app;
   const row = store?.count ? store.rowAt(app.view.cursor ?? store.last) : 0;
   const geometry = (app.session ? app.session.arm : app.arm)?.geometry;
-  return { store, row, geometry, colours: app.palette };
+  const time = store?.count ? store.times[row] : 0, { overlay } = app;
+  const over = overlay?.store.count && { store: overlay.store, row: overlay.store.rowAt(time), geometry: overlay.arm.geometry };
+  return { store, row, geometry, colours: app.palette, overlay: over };
 }
 
 /** Draws the arm, and the plots where they have changed or the newest row is in another column of pixels. */
@@ -290,9 +313,10 @@ function drawPeriodic() {
   $('key-ellipse').hidden = shown < 0 || !covariances(store, shown).flat().some(Number.isFinite);
   $('key-contact').hidden = shown < 0 || !contacts(store, shown).some(Boolean);
   boardPanel.show(app.status, app.delivery);
-  const wrong = app.session ? '' : faults(app.status, sensorList.states(app.status?.sensors));
+  const found = faults(app.status, sensorList.states(app.status?.sensors)), wrong = app.session ? '' : found;
   text($('wrong'), wrong);
   $('wrong').hidden = !wrong;
+  sweepGuide.show(app.status, found);
   findingList.show((app.session ?? app.status)?.findings ?? []);
 }
 
@@ -325,30 +349,6 @@ setInterval(() => {
 
 // Input
 
-/** Name of a file: the session and the part of it, or the arm and the time of day, UTC. */
-function fileName(ending) {
-  const [from, to] = app.view.window(app.store).map((time) => Math.min(Math.max(time, app.store.first), app.view.last(app.store)).toFixed(2));
-  const session = app.session?.name.replace(/\.\w+$/, '');
-  const name = session ?? `${app.status?.board?.arm || 'arm'}-${new Date().toISOString().slice(0, 19).replaceAll(':', '-')}Z`;
-  return `${name}-${from}s-${to}s.${ending}`;
-}
-
-function exportCsv() {
-  if (app.store?.count) save(fileName('csv'), 'text/csv', csv(app.store, ...app.view.window(app.store), app.view.limit));
-}
-
-/** Saves a picture of the arm and all plots, one below the other, as they are seen. */
-async function exportPicture(ending) {
-  if (!app.store?.count) return;
-  const { table } = (app.session ? app.session.arm : app.arm) ?? {};
-  const what = app.session ? `session ${app.session.name}` : `arm ${app.status?.board?.arm || 'without a name'}`;
-  const head = [what, `table ${table ?? 'none'}`, `${$('moment').textContent}; saved ${new Date().toISOString().slice(0, 19)}Z`];
-  const arm = armSpec();
-  const drawn = picture({ head, arm, armTitle: `Arm, ${$('arm-values').textContent}`, armSize: $('arm-canvas'), figures, row: arm.row, colours: app.palette });
-  if (ending === 'svg') save(fileName('svg'), 'image/svg+xml', toSvg(drawn));
-  else save(fileName('png'), 'image/png', await toPng(drawn));
-}
-
 async function attempt(work) {
   showError('');
   try {
@@ -367,7 +367,7 @@ const mark = () => attempt(async () => {
   app.changed();
 });
 
-const BUTTONS = { pause, record, mark, open: () => attempt(() => sessionPicker.show()), 'close-session': closeSession, reset, csv: exportCsv, svg: () => exportPicture('svg'), png: () => exportPicture('png'), 'in-full': inFull };
+const BUTTONS = { pause, record, mark, open: () => attempt(() => sessionPicker.show(Boolean(app.session))), 'close-session': closeSession, 'remove-overlay': () => layOver(null), reset, csv: () => saver.csv(), svg: () => saver.picture('svg'), png: () => saver.picture('png'), 'in-full': inFull };
 for (const [id, act] of Object.entries(BUTTONS)) $(id).addEventListener('click', act);
 $('fixed').addEventListener('change', ({ target }) => app.fix(target.checked));
 $('span').addEventListener('change', ({ target }) => {
@@ -383,7 +383,7 @@ $('scrub').addEventListener('input', ({ target }) => {
   app.changed();
 });
 
-const KEYS = { ' ': 'pause', r: 'record', m: 'mark', t: 'tare', o: 'open', 0: 'reset', c: 'csv', s: 'svg', p: 'png', f: 'fixed' };
+const KEYS = { ' ': 'pause', r: 'record', m: 'mark', t: 'tare', k: 'calibrate', o: 'open', 0: 'reset', c: 'csv', s: 'svg', p: 'png', f: 'fixed' };
 document.addEventListener('keydown', (event) => {
   if (event.key === 'Escape' && app.arm?.allows_control) control.vent();
   const isTyping = event.target.closest('input:not([type=checkbox], [type=range]), select, dialog');

@@ -158,15 +158,16 @@ export function drawPlot(c, width, height, spec) {
     c.fillText(text, toX(time_s) + 3, inner.y + 2);
   }
   if (store?.count) {
-    const [first, last] = visible(store, from, to, limit);
     // Where rows are dense, lines of one pixel: browsers draw them twenty times as fast as wider ones.
-    c.lineWidth = last - first > inner.w ? 1 : 1.6;
     c.lineJoin = 'bevel';
-    for (const { column, colour, isSecond } of curves) {
+    for (const { store: own, column, colour, isSecond, isOverlay } of curves) {
+      const [first, last] = visible(own, from, to, limit);
+      c.lineWidth = last - first > inner.w ? 1 : 1.6;
+      c.setLineDash(isOverlay ? [6, 4] : []);
       c.strokeStyle = colours.series[colour % colours.series.length];
       c.globalAlpha = isSecond ? SECOND : 1;
       c.beginPath();
-      for (const piece of pieces(store.times, column, first, last, toX, toY)) {
+      for (const piece of pieces(own.times, column, first, last, toX, toY)) {
         c.moveTo(piece[0], piece[1]);
         if (piece.length === 4 && piece[0] === piece[2]) c.lineTo(piece[0] + 1, piece[1]);
         for (let k = 2; k < piece.length; k += 2) c.lineTo(piece[k], piece[k + 1]);
@@ -174,6 +175,7 @@ export function drawPlot(c, width, height, spec) {
       c.stroke();
     }
     c.globalAlpha = 1;
+    c.setLineDash([]);
   }
   if (Number.isFinite(cursor)) vertical(c, toX(cursor), inner, colours.ink, []);
   c.restore();
