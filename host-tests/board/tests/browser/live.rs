@@ -36,12 +36,25 @@ fn a_sensor_that_is_unplugged_turns_its_strip_red_within_a_second() {
         let strip = browser.text(&format!("strip-{sensor}"));
         assert!(strip.contains("Off") && strip.contains("does not answer"), "{strip}");
         assert_eq!(browser.value(&look(others)), "ok");
+        browser.wait_for(&format!("document.getElementById('strip-{sensor}').textContent.includes('for 1 s')"));
         if sensor == "imu3" {
             browser.picture("unplugged.png");
         }
         rig.inject_fault(&format!("plug {sensor}"));
         browser.wait_for(&format!("{} === 'ok'", look(sensor)));
     }
+    assert!(browser.errors.is_empty(), "{:?}", browser.errors);
+}
+
+#[test]
+#[ignore = "needs Chromium: .ci/browser runs it"]
+fn the_tip_is_shown_with_its_uncertainty_and_without_sensors_is_not_known() {
+    let (mut rig, mut browser) = opened(&[]);
+    browser.wait_for(r"/^tip x .* mm, y .* mm, ±\d+\.\d mm \(95 %\), heading/.test(document.getElementById('arm-values').textContent)");
+    ["imu6", "bend6a", "bend6b"].iter().for_each(|sensor| rig.inject_fault(&format!("unplug {sensor}")));
+    browser.wait_for(
+        "document.getElementById('arm-values').textContent === 'tip not known: no sensor tells the angle of segment 6'",
+    );
     assert!(browser.errors.is_empty(), "{:?}", browser.errors);
 }
 

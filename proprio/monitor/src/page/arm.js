@@ -169,12 +169,18 @@ function truth(c, store, row, to, colours) {
 /** The values next to the arm. */
 export function armValues(store, row) {
   const value = (name) => store.column(name)?.[row];
-  const n = store.series('x', '_mm').length;
+  const thetas = store.series('theta', '_deg').map((column) => column[row]);
+  const n = thetas.length;
   const [x, y] = [value(`x${n}_mm`), value(`y${n}_mm`)];
-  if (!Number.isFinite(x)) return 'no estimate yet';
-  const heading = store.series('theta', '_deg').reduce((sum, column) => sum + column[row], 0);
+  if (!Number.isFinite(x)) {
+    const unknown = thetas.findIndex((theta) => !Number.isFinite(theta));
+    return thetas.some(Number.isFinite) && unknown >= 0 ? `tip not known: no sensor tells the angle of segment ${unknown + 1}` : 'no estimate yet';
+  }
+  const heading = thetas.reduce((sum, theta) => sum + theta, 0);
   const [shownX, shownY, shownHeading] = [x, y, heading].map((number) => minus(number.toFixed(1)));
-  const text = `tip x ${shownX} mm, y ${shownY} mm, heading ${shownHeading}°`;
+  const { major } = ellipse(covariances(store, row)[n - 1] ?? [NaN, NaN, NaN]);
+  const within = Number.isFinite(major) ? `, ±${major.toFixed(1)} mm (95 %)` : '';
+  const text = `tip x ${shownX} mm, y ${shownY} mm${within}, heading ${shownHeading}°`;
   const error = Math.hypot(x - value(`truth${n}_x_mm`), y - value(`truth${n}_y_mm`));
   return Number.isFinite(error) ? `${text}, ${error.toFixed(1)} mm from truth` : text;
 }

@@ -38,16 +38,42 @@ export class SensorList {
       const value = store.count && (status || !health) ? store.column(sensor.column)[row] : NaN;
       const isRead = Number.isFinite(value);
       const state = status?.state ?? (!store.count || health ? '–' : isRead ? 'read' : 'missing');
-      const reason = status ? [status.reason, status.missed ? `${status.missed} missed` : ''].filter(Boolean).join(', ') : '';
+      const look = LOOKS[state] ?? 'bad';
+      const lost = store.count ? lostFor(sensor, store, row, look, isRead) : '';
+      const reason = [status?.reason, lost, status?.missed ? `${status.missed} missed` : ''].filter(Boolean).join(', ');
       text(sensor.value, !isRead ? '–' : sensor.kind === 'imu' ? `${minus(value.toFixed(1))}°` : `${value} counts`);
       text(sensor.state, state);
       text(sensor.reason, reason);
       // The board has no such sensor.
       sensor.item.hidden = state === 'NotWired';
-      const look = LOOKS[state] ?? 'bad';
       if (sensor.item.dataset.look !== look) sensor.item.dataset.look = look;
     });
   }
+}
+
+/** How long a lost sensor has not been read, or, where its readings are not used, has been seen so; else empty. */
+function lostFor(sensor, store, row, look, isRead) {
+  if (look !== 'bad') {
+    sensor.lostAt = NaN;
+    return '';
+  }
+  if (!isRead) sensor.lostAt = lastRead(store, sensor.column, row);
+  else if (!(sensor.lostAt <= store.times[row])) sensor.lostAt = store.times[row];
+  return `for ${duration(store.times[row] - sensor.lostAt)}`;
+}
+
+/** Time of the last reading up to a row, or of the first row. */
+function lastRead(store, column, row) {
+  const values = store.column(column);
+  let last = row;
+  while (last > store.begin && !Number.isFinite(values[last])) last--;
+  return store.times[last];
+}
+
+/** A time in s, for people. */
+function duration(seconds) {
+  const whole = Math.floor(seconds);
+  return whole < 60 ? `${whole} s` : `${Math.floor(whole / 60)} min ${whole % 60} s`;
 }
 
 /** Sets a text where it has changed. */
