@@ -12,6 +12,22 @@ struct Run {
     deviation_deg: Vec<[Option<f64>; N]>,
 }
 
+impl Run {
+    /// Errors of the angle of segment `i` in degrees, from a sample on, with the numbers of the samples.
+    fn errors_deg(&self, i: usize, from: usize) -> impl Iterator<Item = (usize, f64)> {
+        let arm = Arm::default();
+        let known = self.theta_deg.iter().enumerate().skip(from);
+        known.map(move |(k, theta)| (k, theta[i].expect("it is known") - arm.theta(arm.seconds(k as u64))[i]))
+    }
+
+    /// Checks that the angle of segment `i` is known and near the true one from a sample on.
+    fn assert_near(&self, i: usize, from: usize, limit_deg: f64) {
+        for (k, error) in self.errors_deg(i, from) {
+            assert!(error.abs() < limit_deg, "{error} degrees in sample {k}");
+        }
+    }
+}
+
 fn run(seconds: f64, mut edit: impl FnMut(u64, &mut Sample<N>)) -> Run {
     let mut arm = Arm::default();
     let segments = segments();
@@ -60,22 +76,16 @@ fn until_then_its_angle_is_doubted() {
 #[test]
 fn a_segment_below_others_follows_from_their_sensors() {
     let run = run(90.0, without(1, 1000));
-    let arm = Arm::default();
-    for (k, theta) in run.theta_deg.iter().enumerate().skip(300) {
-        let error = theta[1].expect("it is known") - arm.theta(arm.seconds(k as u64))[1];
+    run.assert_near(1, 300, 4.0);
+    for (k, error) in run.errors_deg(1, 300) {
         let deviation = run.deviation_deg[k][1].expect("it is known");
-        assert!(error.abs() < 4.0 && error.abs() < 4.0 * deviation, "{error} of {deviation} degrees in sample {k}");
+        assert!(error.abs() < 4.0 * deviation, "{error} of {deviation} degrees in sample {k}");
     }
 }
 
 #[test]
 fn a_segment_whose_sensors_return_is_known_again() {
-    let run = run(90.0, without(2, 400));
-    let arm = Arm::default();
-    for (k, theta) in run.theta_deg.iter().enumerate().skip(400) {
-        let error = theta[2].expect("it is known") - arm.theta(arm.seconds(k as u64))[2];
-        assert!(error.abs() < 6.0, "{error} degrees in sample {k}");
-    }
+    run(90.0, without(2, 400)).assert_near(2, 400, 6.0);
 }
 
 #[test]
@@ -88,7 +98,6 @@ fn estimates_do_not_change_where_microseconds_pass_32_bits() {
 
 #[test]
 fn a_bend_sensor_that_was_left_out_stays_so_while_its_imu_is_absent() {
-    let arm = Arm::default();
     let run = run(90.0, |k, sample| {
         if (300..310).contains(&k) {
             sample.bend[1][0] = sample.bend[1][0].map(|counts| counts + 400);
@@ -97,10 +106,7 @@ fn a_bend_sensor_that_was_left_out_stays_so_while_its_imu_is_absent() {
             sample.imu[1] = None;
         }
     });
-    for (k, theta) in run.theta_deg.iter().enumerate().skip(300) {
-        let error = theta[1].expect("it is known") - arm.theta(arm.seconds(k as u64))[1];
-        assert!(error.abs() < 6.0, "{error} degrees in sample {k}");
-    }
+    run.assert_near(1, 300, 6.0);
 }
 
 #[test]
@@ -112,9 +118,5 @@ fn an_imu_that_restarts_across_the_end_of_the_tare_has_its_new_zero() {
             sample.imu[1] = turned(sample.imu[1], 100.0);
         }
     });
-    let arm = Arm::default();
-    for (k, theta) in run.theta_deg.iter().enumerate().skip(20) {
-        let error = theta[1].expect("it is known") - arm.theta(arm.seconds(k as u64))[1];
-        assert!(error.abs() < 6.0, "{error} degrees in sample {k}");
-    }
+    run.assert_near(1, 20, 6.0);
 }

@@ -23,7 +23,7 @@ pub struct Conditions(pub u8);
 
 /// Each bit, from the lowest, and its meaning.
 const NAMES: [(u8, &str); 6] = [
-    (1, "the arm was bent or moving in the tare"),
+    (Conditions::TARE_BAD.0, "the arm was bent or moving in the tare"),
     (1 << 1, "the IMU is absent"),
     (1 << 2, "the IMU has a new zero"),
     (1 << 3, "a bend sensor is not trusted"),
@@ -32,6 +32,8 @@ const NAMES: [(u8, &str); 6] = [
 ];
 
 impl Conditions {
+    /// The arm was bent or moving in the tare.
+    pub const TARE_BAD: Self = Self(1);
     /// The tip was away from its place in the reference pose when a tare was requested, by more than three stated standard
     /// deviations: the arm was bent, or its estimate was wrong.
     pub const BENT_BEFORE_TARE: Self = Self(1 << 5);
@@ -42,10 +44,10 @@ impl Conditions {
         self.0 != 0
     }
 
-    /// Returns whether the arm was bent or moving in the tare.
+    /// Returns whether these conditions hold.
     #[must_use]
-    pub const fn tare_bad(self) -> bool {
-        self.0 & NAMES[0].0 != 0
+    pub const fn contains(self, others: Self) -> bool {
+        self.0 & others.0 == others.0
     }
 }
 

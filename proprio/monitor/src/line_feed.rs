@@ -66,7 +66,7 @@ async fn serve(link: Link, with_history: bool, mut socket: WebSocket) -> Result<
     let program = Arc::new(());
     let (asker, answers) = (Arc::downgrade(&program), messages.clone());
     // The program's begin precedes all answers.
-    let feed = Feed::begin(&link, with_history);
+    let feed = LineFeed::begin(&link, with_history);
     spawn_blocking(move || feed.run(&messages));
     spawn_blocking(move || execute(&link, &asker, &received, &answers));
     loop {
@@ -98,7 +98,7 @@ fn execute(link: &Link, program: &Weak<()>, requests: &Receiver<LineRequest>, me
 }
 
 /// The events of the link for one program.
-struct Feed {
+struct LineFeed {
     line: Option<String>,
     events: Subscription,
     history: Option<Vec<ReceivedBytes>>,
@@ -111,7 +111,7 @@ struct Feed {
 /// The program has left.
 struct Left;
 
-impl Feed {
+impl LineFeed {
     fn begin(link: &Link, with_history: bool) -> Self {
         let line = link.state().port;
         let (events, history) = if with_history { link.subscribe_with_history() } else { (link.subscribe(), None) };

@@ -4,7 +4,7 @@ use proprio_calibration::coverage::{SweepCoverage, SweepReport};
 use proprio_link::Tared;
 use proprio_session::Row;
 use serde::Serialize;
-use telemetry::{Health, Message, RequestOutcome};
+use telemetry::{Conditions, Health, Message, RequestOutcome};
 
 /// Phase of a sweep.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -104,7 +104,10 @@ impl Sweep {
     /// Its state, with the last health of the board; `None` before the first row.
     pub fn status(&self, health: Option<&Health>) -> Option<SweepStatus> {
         let conditions = (1..).zip(health.iter().flat_map(|health| &health.conditions));
-        let bad_tare = conditions.filter(|(_, conditions)| conditions.tare_bad()).map(|(segment, _)| segment).collect();
+        let bad_tare = conditions
+            .filter(|(_, conditions)| conditions.contains(Conditions::TARE_BAD))
+            .map(|(segment, _)| segment)
+            .collect();
         let report = self.coverage.report();
         let faults = report.faults.iter().map(ToString::to_string).collect();
         let (file, tare) = (self.file.clone(), self.tare.clone());

@@ -16,9 +16,9 @@ use crate::types::Condition;
 
 /// Variance rate of an absent heading's own error: 0.5° after a second, growing with the square root of time.
 const ABSENT: Constant = variance_deg(0.5 * 8.0);
-/// Time for which an angle that no sensor tells is kept, µs and time units.
+/// Time for which an angle is kept that is not measured, µs and time units.
 const UNMEASURED_US: u64 = 500_000;
-const UNMEASURED_TIME: Constant = Constant::new(0.5 / TIME_UNIT_S);
+const UNMEASURED_TIME: Constant = Constant::new(UNMEASURED_US as f64 / 1e6 / TIME_UNIT_S);
 /// Standard deviation that such a heading gains: 20° a second, for the arm moves; rad per time unit.
 const UNMEASURED_SPEED: Constant = degrees(20.0 * TIME_UNIT_S);
 
@@ -131,7 +131,7 @@ impl<F: Scalar, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
         }
     }
 
-    /// θ of all segments, from their headings; none of a segment that no sensor has told for a while.
+    /// θ of all segments, from their headings; none of a segment that has not been measured for a while.
     pub(super) fn angles<S>(&mut self, segments: &[SegmentConfig<S>], time_us: u64, corrected: &mut CorrectedArm<N>) {
         let (mut below, mut is_below_read, mut steps_below) = (Turns::ZERO, true, Turns::ZERO);
         let angles = corrected.fused.iter_mut().zip(&mut corrected.imu).zip(&mut corrected.measured);

@@ -50,7 +50,7 @@ pub(super) struct SegmentTrack<F> {
     pub motion: F,
     pub is_heading_read: bool,
     pub heading_read_at_us: u64,
-    /// When the heading was read last, or followed from another one by bend sensors; and the same for θ.
+    /// When the heading was measured last: read, or known from another one by bend sensors; and when θ was.
     pub heading_measured_at_us: u64,
     pub theta_measured_at_us: u64,
     /// θ and θ_bend up to which travel has been counted, and the travel since the last update, rad.

@@ -17,7 +17,7 @@ pub const KNOWN: &[Known] = &[Known {
     fault: OFFSET_TARE,
     invariant: Invariant::Tip,
     reason: "the zero is that of the pose at the tare; an arm that rests bent after a swing is flagged in it only where the \
-             estimate before the tare tells",
+             estimate before the tare was bent, too",
 }];
 
 /// A tare, or a boot with its tare, of an arm that was not straight.

@@ -80,7 +80,7 @@ pub fn soak(seed: u64, seconds: u64, mut progress: impl FnMut(f64)) -> Report {
 /// A fault of the episode, while it is there and shortly after.
 struct Present {
     fault: Fault,
-    begun: Cycles,
+    since: Cycles,
     until: Cycles,
 }
 
@@ -236,7 +236,7 @@ impl<'t> Run<'t> {
             if !fault.is_instant() || is_flip {
                 self.ending.push((end, fault));
             }
-            self.present.push(Present { fault, begun: now, until: end + AFTERWARDS });
+            self.present.push(Present { fault, since: now, until: end + AFTERWARDS });
         }
         for (_, fault) in self.ending.extract_if(.., |(at, _)| *at <= now) {
             match fault {
@@ -279,7 +279,7 @@ impl<'t> Run<'t> {
     fn excuse(&self) -> Excuse {
         let has = |explains: fn(Fault) -> bool| self.present.iter().any(|present| explains(present.fault));
         let unnoticed = self.present.iter().any(|present| {
-            matches!(present.fault, Fault::ImuFrozen(_)) && self.board.machine.now() < present.begun + FROZEN
+            matches!(present.fault, Fault::ImuFrozen(_)) && self.board.machine.now() < present.since + FROZEN
         });
         Excuse { lost: has(loses_messages), held_up: has(|fault| matches!(fault, Fault::IrqMasked(_))), unnoticed }
     }

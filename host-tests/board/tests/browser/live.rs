@@ -51,7 +51,9 @@ fn a_sensor_that_is_unplugged_turns_its_strip_red_within_a_second() {
 fn the_tip_is_shown_with_its_uncertainty_and_without_sensors_is_not_known() {
     let (mut rig, mut browser) = opened(&[]);
     browser.wait_for(r"/^tip x .* mm, y .* mm, ±\d+\.\d mm \(95 %\), heading/.test(document.getElementById('arm-values').textContent)");
-    ["imu6", "bend6a", "bend6b"].iter().for_each(|sensor| rig.inject_fault(&format!("unplug {sensor}")));
+    for sensor in ["imu6", "bend6a", "bend6b"] {
+        rig.inject_fault(&format!("unplug {sensor}"));
+    }
     browser.wait_for(
         "document.getElementById('arm-values').textContent === 'tip not known: no sensor tells the angle of segment 6'",
     );

@@ -5,14 +5,14 @@
 
 use nalgebra::{Matrix4, Vector4};
 
+use super::relation::centred;
+
 /// Power spectral density of the error of a quadratic map, degrees² s: 5° that lasts for a second.
 const NOISE_DEG2_S: f64 = 50.0;
 /// Time within which the drift is followed, s: about a swing of a sweep.
 const FOLLOWED_S: f64 = 30.0;
 /// Standard deviation of offset, slope and curvature before the first reading, degrees.
 const UNKNOWN_DEG: f64 = 3000.0;
-/// Middle of the converter's counts.
-const MIDDLE_COUNTS: f64 = 2048.0;
 
 /// Filter of one bend sensor.
 #[derive(Debug, Clone, Copy)]
@@ -35,7 +35,7 @@ impl DriftFilter {
             return;
         }
         self.covariance[(1, 1)] += NOISE_DEG2_S / (FOLLOWED_S * FOLLOWED_S) * seconds;
-        let u = (f64::from(counts) - MIDDLE_COUNTS) / MIDDLE_COUNTS;
+        let u = centred(counts);
         let row = Vector4::new(1.0, 1.0, u, u * u);
         let cross = self.covariance * row;
         let gain = cross / (row.dot(&cross) + NOISE_DEG2_S / seconds);

@@ -7,13 +7,18 @@ use nalgebra::{Matrix3, Vector3};
 const MEMORY_S: f64 = 60.0;
 /// Time that the sums need before they are judged, s.
 const LEAST_S: f64 = 10.0;
-/// Middle of the converter's counts, for well conditioned sums.
+/// Middle of the converter's counts.
 const MIDDLE_COUNTS: f64 = 2048.0;
+
+/// Counts about the middle of the converter's range, as a share of it: powers of them are well conditioned.
+pub(super) fn centred(counts: u16) -> f64 {
+    (f64::from(counts) - MIDDLE_COUNTS) / MIDDLE_COUNTS
+}
 
 /// Sums over the last swings of a sensor's counts and a value that should follow them.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Relation {
-    /// Sums of 1, u, u², u³, u⁴, with u the counts about the middle, as a share of it; in seconds.
+    /// Sums of 1, u, u², u³, u⁴, with u the [`centred`] counts; in seconds.
     powers: [f64; 5],
     /// Sums of y, u·y, u²·y.
     products: Vector3<f64>,
@@ -25,7 +30,7 @@ impl Relation {
     /// Adds a pair that has held for `seconds`.
     pub fn update(&mut self, seconds: f64, counts: u16, y: f64) {
         let keep = libm::exp(-seconds / MEMORY_S);
-        let u = (f64::from(counts) - MIDDLE_COUNTS) / MIDDLE_COUNTS;
+        let u = centred(counts);
         let basis = Vector3::new(1.0, u, u * u);
         for (power, sum) in self.powers.iter_mut().enumerate() {
             *sum = *sum * keep + seconds * u.powi(power as i32);
