@@ -123,12 +123,14 @@ impl<S: Scalar> HeadingGate<S> {
             self.accept(reading, expected.heading + expected.bias, time_us);
             return Verdict::Restarted(Turns::ZERO, ABSENCE_US);
         };
+        let deviation = self.deviation(reading, scale_error, expected.heading + expected.bias);
+        let absence_us = time_us.saturating_sub(accepted_at_us);
+        let is_far =
+            self.is_far(deviation, expected, above, absence_us) && !self.was_late(deviation, reading, expected);
         if let Some(theta) = self.frozen_theta(reading, expected, time_us) {
             return Verdict::Frozen(theta);
         }
-        let deviation = self.deviation(reading, scale_error, expected.heading + expected.bias);
-        let absence_us = time_us.saturating_sub(accepted_at_us);
-        if self.is_far(deviation, expected, above, absence_us) {
+        if is_far {
             if time_us.saturating_sub(self.suspect_since(time_us)) < CONFIRMATION_US {
                 return Verdict::Absent;
             }
@@ -173,6 +175,15 @@ impl<S: Scalar> HeadingGate<S> {
         // If the next IMU deviates equally, the segment has moved (a push that the bend sensors miss), and the IMU is
         // good.
         !is_within(deviation, limit) && !above().is_some_and(|above| is_within(above - deviation, limit.half()))
+    }
+
+    /// Returns `true` if a deviation is the motion of the bend sensors while the output stood still, too short to be
+    /// frozen: θ has followed the old output since.
+    fn was_late(&self, deviation: Turns, reading: Turns, expected: &HeadingPrediction<S>) -> bool {
+        let Freeze { theta, bend, .. } = self.freeze;
+        let Some((bend, start)) = expected.bend.zip(bend) else { return false };
+        let missed = theta + bend - start - (expected.theta + expected.motion);
+        reading != self.freeze.reading && is_within(deviation - missed.to_turns(), S::constant(JUMP))
     }
 
     /// Deviation of a reading from a predicted one (heading and bias), without whole turns.

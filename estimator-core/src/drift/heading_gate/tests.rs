@@ -218,3 +218,24 @@ fn an_arm_at_rest_does_not_freeze_its_imu() {
         assert!(matches!(verdict, Verdict::Accepted(_)), "{verdict:?} at sample {k}");
     }
 }
+
+#[test]
+fn a_reading_that_was_late_while_the_segment_moved_is_no_new_zero() {
+    let mut gate = tared();
+    // The segment bends by 60° a second; the output stands still for 0.5 s, and θ follows it.
+    let at = |k: u64| 60.0 * (k as f64 * 0.01);
+    let check = |gate: &mut HeadingGate<f64>, k: u64, read: f64, last: f64| {
+        let (motion, bend) = (0.6_f64.to_radians(), Some(at(k).to_radians()));
+        let theta = last.to_radians();
+        let expected = HeadingPrediction { heading: degrees(last + 0.6), motion, theta, bend, ..still() };
+        gate.check(Some(degrees(read)), 0, &expected, || None, SECOND + k * TICK)
+    };
+    let mut last = 0.0;
+    for k in 1..=120 {
+        let read = if (50..100).contains(&k) { at(49) } else { at(k) };
+        let verdict = check(&mut gate, k, read, last);
+        assert!(matches!(verdict, Verdict::Accepted(_)), "{verdict:?} in sample {k}");
+        last = heading_deg(verdict);
+    }
+    assert!((last - at(120)).abs() < 0.1, "{last} degrees");
+}
