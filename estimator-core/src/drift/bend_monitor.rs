@@ -14,11 +14,14 @@ const DIFFERENCE_TIME: Constant = Constant::new(60.0 / TIME_UNIT_S);
 const IGNORED_DIFFERENCE: Constant = degrees(0.2);
 /// A sensor is excluded for this time after its last deviation.
 const DISTRUST_US: u64 = 20_000_000;
-/// One over the threshold of the deviation from the IMUs, and from the twin (1° subtracted first), in predicted
+/// One over the threshold of the deviation from the IMUs, and from the twin (a margin subtracted first), in predicted
 /// standard deviations.
 const DEPARTURE: Constant = Constant::new(1.0 / 4.0);
 const DIFFERENCE_DEPARTURE: Constant = Constant::new(1.0 / 5.0);
 const DIFFERENCE_MARGIN: Constant = degrees(1.0);
+/// The margin while the mean difference in this session is not known, that is in the tare and up to the sensors' first
+/// comparison: twice the largest offset that storage or warmth was seen to give a sensor, 4°.
+const UNKNOWN_DIFFERENCE_MARGIN: Constant = degrees(8.0);
 /// A sensor is stuck if it moves by less than `STUCK` in 10 s while the IMUs move by more than `MOVING`.
 const STUCK_US: u64 = 10_000_000;
 const STUCK: Constant = degrees(1.0);
@@ -67,7 +70,9 @@ pub struct TrustedBend<S> {
 }
 
 impl<S: Scalar> BendMonitor<S> {
-    /// At the start of a session.
+    /// At the start of a session. Not inlined, as the segments' initial values are then made by calls, not by code for
+    /// each of them.
+    #[inline(never)]
     pub const fn new(zero: S) -> Self {
         Self {
             steps: [StepDetector { zero, expected: None, suspect_since_us: None, stepped_at_us: None };
@@ -159,13 +164,11 @@ impl<S: Scalar> BendMonitor<S> {
         self.difference += share * (half - self.difference);
     }
 
-    /// Variance of the mean's offset in excess of the prior, estimated from the difference. `at_tare` the mean covers
-    /// only a second, so that the scatter of the difference is larger.
-    pub fn offset_excess(&self, config: &BendErrorConfig, at_tare: bool) -> S {
+    /// Variance of the mean's offset in excess of the prior, estimated from the difference over a whole minute.
+    pub fn offset_excess(&self, config: &BendErrorConfig) -> S {
         let slow = S::from_q(config.slow_difference);
-        let known = if at_tare { slow + slow + slow } else { slow + slow };
-        let beyond = magnitude(self.difference) - known - S::constant(IGNORED_DIFFERENCE);
-        let is_complete = at_tare || self.averaged >= S::constant(DIFFERENCE_TIME);
+        let beyond = magnitude(self.difference) - slow - slow - S::constant(IGNORED_DIFFERENCE);
+        let is_complete = self.averaged >= S::constant(DIFFERENCE_TIME);
         if beyond < S::zero() || !is_complete {
             return S::zero();
         }
@@ -182,8 +185,9 @@ impl<S: Scalar> BendMonitor<S> {
     ) {
         if let [Some(a), Some(b)] = angles {
             let errors = [a - self.difference - theta, b + self.difference - theta].map(magnitude);
-            let twin = magnitude((a - b).half() - self.difference);
-            let twin = twin - S::constant(DIFFERENCE_MARGIN);
+            let is_known = self.averaged > S::zero();
+            let margin = if is_known { DIFFERENCE_MARGIN } else { UNKNOWN_DIFFERENCE_MARGIN };
+            let twin = magnitude((a - b).half() - self.difference) - S::constant(margin);
             let is_apart = twin > S::zero() && is_beyond(twin, DIFFERENCE_DEPARTURE, S::from_q(config.difference));
             let worse = usize::from(errors[1] > errors[0]);
             let departs = is_beyond(errors[worse], DEPARTURE, S::from_q(config.sensor[worse]));

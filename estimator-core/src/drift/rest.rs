@@ -49,6 +49,8 @@ pub struct RestWindow<S, const N: usize> {
     pub bend: [S; N],
     /// Length of the window, µs.
     pub length_us: u64,
+    /// Time for which the arm has rested at its end, µs.
+    pub rested_us: u64,
 }
 
 impl<S: Scalar> Mean<S> {
@@ -126,7 +128,7 @@ impl<S: Scalar, const N: usize> RestDetector<S, N> {
             }
         }
         self.quiet_us = if is_quiet { self.quiet_us.saturating_add(length_us) } else { 0 };
-        self.is_resting().then_some(RestWindow { headings, bend, length_us })
+        self.is_resting().then_some(RestWindow { headings, bend, length_us, rested_us: self.quiet_us })
     }
 }
 

@@ -24,10 +24,10 @@ fn swing(
         let theta = 30.0 * (k as f64 / 12.0).sin();
         let angles = read(k, theta).map(|angle| angle.map(f64::to_radians));
         let angles = monitor.corrected(angles);
-        monitor.compare(angles, DT, k * TICK);
         let motion = Some(theta.to_radians() - 30.0_f64.to_radians() * ((k as f64 - 1.0) / 12.0).sin());
         monitor.find_steps(&ERRORS, angles, motion, DT, k * TICK);
         monitor.check(&ERRORS, angles, theta.to_radians(), k * TICK);
+        monitor.compare(angles, DT, k * TICK);
         let bend = monitor.mean(angles, true, k * TICK);
         bend.map(|bend| (bend.theta.to_degrees() - theta, bend.is_single))
     };
@@ -129,7 +129,7 @@ fn sensors_that_disagree_widen_the_offset_s_prior() {
     let excess = |half: f64| {
         let mut monitor = BendMonitor::new(0.0);
         swing(&mut monitor, 0..700, |_, theta| [Some(theta + half), Some(theta - half)]);
-        monitor.offset_excess(&ERRORS, false)
+        monitor.offset_excess(&ERRORS)
     };
     // Two slow deviations of 1.5° and 0.2° are no news.
     assert!(excess(3.0).abs() < 1e-12);

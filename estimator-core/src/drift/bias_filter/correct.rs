@@ -1,7 +1,7 @@
 //! The stages of the bias filter for one sample.
 
 use crate::config::ArmConfig;
-use crate::drift::bias_filter::filter::BiasFilter;
+use crate::drift::bias_filter::filter::{BiasFilter, segments_per_sample};
 use crate::drift::bias_filter::track::since;
 use crate::drift::bias_trace::{BiasOperation, BiasTrace};
 use crate::drift::correction::{CorrectedArm, DriftCorrection, SensedArm};
@@ -49,10 +49,4 @@ impl<S: Scalar, F: FusedOps, const N: usize, T: BiasTrace<F>> DriftCorrection<S,
             track.last_bend = track.bend.map(|bend| bend.theta).or(track.last_bend);
         }
     }
-}
-
-/// Number of segments processed in one sample: each segment at least ten times a second.
-fn segments_per_sample<S>(config: &ArmConfig<S>) -> u32 {
-    let (count, rate_millihertz) = (config.segments.len() as u32, config.anchor.sample_rate_millihertz.max(1));
-    (10_000 * count).div_ceil(rate_millihertz).min(count)
 }

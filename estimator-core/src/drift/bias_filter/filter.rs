@@ -1,6 +1,6 @@
 //! State of the bias filter, and its output.
 
-use crate::config::{BendErrorConfig, SegmentConfig};
+use crate::config::{ArmConfig, BendErrorConfig, SegmentConfig};
 use crate::drift::bend_monitor::NEW_ZERO_US;
 use crate::drift::bias_filter::tare_statistics::TareStatistics;
 use crate::drift::bias_filter::track::{SegmentTrack, since};
@@ -48,6 +48,8 @@ pub struct BiasFilter<F, const N: usize, T = ()> {
     pub(super) tare: TareStatistics<F, N>,
     pub(super) segments: [SegmentTrack<F>; N],
     pub(super) rest: RestDetector<F, N>,
+    /// Variance of the resting arm's own creep in a window of rest.
+    pub(super) creep: F,
     pub(super) is_started: bool,
     pub(super) is_tare_bad: bool,
     pub(super) last_us: Option<u64>,
@@ -65,6 +67,7 @@ impl<F: Scalar, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
             tare: TareStatistics::new(zero),
             segments: [SegmentTrack::new(zero); N],
             rest: RestDetector::new(zero),
+            creep: zero,
             is_started: false,
             is_tare_bad: false,
             last_us: None,
@@ -81,7 +84,7 @@ impl<F: Scalar, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
         for track in &mut self.segments {
             *track = SegmentTrack::new(zero);
         }
-        self.rest = RestDetector::new(zero);
+        (self.rest, self.creep) = (RestDetector::new(zero), zero);
         (self.is_started, self.is_tare_bad, self.last_us) = (false, false, None);
         (self.next_segment, self.next_update) = (0, 0);
     }
@@ -163,4 +166,15 @@ impl<F: FusedOps, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
     pub fn finish_covariance(&mut self) {
         self.state.finish_update();
     }
+}
+
+/// Number of segments processed in one sample: each segment at least ten times a second.
+pub(super) fn segments_per_sample<S>(config: &ArmConfig<S>) -> u32 {
+    let (count, rate_millihertz) = (config.segments.len() as u32, config.anchor.sample_rate_millihertz.max(1));
+    (10_000 * count).div_ceil(rate_millihertz).min(count)
+}
+
+/// The segment that follows `i` in turn.
+pub(super) fn following<S>(i: usize, segments: &[SegmentConfig<S>]) -> usize {
+    if i + 1 < segments.len() { i + 1 } else { 0 }
 }

@@ -1,7 +1,7 @@
 //! Start of the bias filter: prior, use of the bend sensors and plausibility of the tare.
 
 use crate::config::{ArmConfig, BiasFilterConfig, SegmentConfig};
-use crate::drift::bias_filter::filter::BiasFilter;
+use crate::drift::bias_filter::filter::{BiasFilter, following, segments_per_sample};
 use crate::drift::bias_trace::BiasTrace;
 use crate::drift::correction::SensedArm;
 use crate::numeric::phase::Turns;
@@ -24,6 +24,7 @@ impl<F: Scalar, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
         filter: &BiasFilterConfig,
         sensed: &SensedArm<S, N>,
     ) -> bool {
+        self.compare_with_reference(config, sensed);
         self.tare.add(sensed, &self.segments);
         if self.tare.samples < config.tare_samples {
             return false;
@@ -41,8 +42,27 @@ impl<F: Scalar, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
             self.keep_bend_of_tare(config.segments);
         }
         self.correct_tracks(sensed.time_us);
-        self.is_started = true;
+        (self.is_started, self.next_segment) = (true, 0);
         true
+    }
+
+    /// Compares the bend sensors of the next segments with their angle in the reference pose, which the arm has in a
+    /// tare: of twins that are too far apart, the one that is further from it is left out from the next sample on.
+    fn compare_with_reference<S: Scalar>(&mut self, config: &ArmConfig<S>, sensed: &SensedArm<S, N>) {
+        if config.tare_samples == 0 {
+            return;
+        }
+        for _ in 0..segments_per_sample(config) {
+            let i = self.next_segment;
+            self.next_segment = following(i, config.segments);
+            let below = i.checked_sub(1).and_then(|below| config.segments.get(below));
+            let below = below.map_or(Turns::ZERO, |below| below.reference);
+            let (Some(segment), Some(bend)) = (config.segments.get(i), sensed.bend.get(i)) else { return };
+            let Some(track) = self.segments.get_mut(i) else { return };
+            let reference = F::from_phase((segment.reference - below).phase());
+            let angles = track.sensor_angles(bend);
+            track.monitor.check(&segment.bend_error, angles, reference, sensed.time_us);
+        }
     }
 
     /// Checks the plausibility of the tare. If it is good, the variance of the offsets in this session is estimated
@@ -67,9 +87,8 @@ impl<F: Scalar, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
         let headings = sensed.headings.iter().zip(config.segments);
         for ((track, tare), (heading, segment)) in self.segments.iter_mut().zip(&self.tare.segments).zip(headings) {
             (track.heading_measured_at_us, track.theta_measured_at_us) = (sensed.time_us, sensed.time_us);
-            let excess = track.monitor.offset_excess(&segment.bend_error, true);
             track.session_offset = F::from_q(filter.offset);
-            track.offset_prior = track.session_offset + excess;
+            track.offset_prior = track.session_offset;
             track.sensors = segment.bend.iter().flatten().count();
             track.last_bend = track.bend.map(|bend| bend.theta);
             track.motion = F::zero();

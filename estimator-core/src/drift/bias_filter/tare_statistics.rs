@@ -1,6 +1,7 @@
 //! Statistics of the tare.
 
 use crate::config::SegmentConfig;
+use crate::drift::bend_monitor::TrustedBend;
 use crate::drift::bias_filter::track::SegmentTrack;
 use crate::drift::correction::SensedArm;
 use crate::numeric::phase::Turns;
@@ -30,6 +31,8 @@ pub(super) struct SegmentTare<F> {
     /// The IMU has restarted with another zero.
     pub has_stepped: bool,
     pub newest_bend: Option<F>,
+    /// One sensor of two is missing.
+    pub is_single: bool,
     pub bend_sum: Turns,
     pub bend_count: u16,
 }
@@ -47,8 +50,14 @@ impl<F: Scalar> SegmentTare<F> {
         self.range = [smaller(lowest, deviation), -smaller(-highest, -deviation)];
     }
 
-    /// Adds a bend angle; returns the size of its change since the last one.
-    fn add_bend(&mut self, theta: F) -> F {
+    /// Adds a bend angle; returns the size of its change since the last one. The sums begin again where a sensor is left
+    /// out or comes back.
+    fn add_bend(&mut self, bend: TrustedBend<F>) -> F {
+        let TrustedBend { theta, is_single } = bend;
+        if is_single != self.is_single {
+            (self.bend_sum, self.bend_count, self.newest_bend) = (Turns::ZERO, 0, None);
+            self.is_single = is_single;
+        }
         if self.bend_count < u16::MAX {
             self.bend_sum = self.bend_sum + theta.to_turns();
             self.bend_count += 1;
@@ -74,6 +83,7 @@ impl<F: Scalar, const N: usize> TareStatistics<F, N> {
             newest: None,
             has_stepped: false,
             newest_bend: None,
+            is_single: false,
             bend_sum: Turns::ZERO,
             bend_count: 0,
         };
@@ -84,7 +94,7 @@ impl<F: Scalar, const N: usize> TareStatistics<F, N> {
         self.samples = self.samples.saturating_add(1);
         let mut moved = F::zero();
         for ((segment, heading), track) in self.segments.iter_mut().zip(&sensed.headings).zip(tracks) {
-            moved += track.bend.map_or(F::zero(), |bend| segment.add_bend(bend.theta));
+            moved += track.bend.map_or(F::zero(), |bend| segment.add_bend(bend));
             if heading.is_read() {
                 segment.add_heading(heading.unwrapped(), moved);
             }

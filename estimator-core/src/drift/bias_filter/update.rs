@@ -3,7 +3,7 @@
 
 use crate::config::{BendErrorConfig, BiasFilterConfig, SegmentConfig};
 use crate::drift::bend_monitor::TrustedBend;
-use crate::drift::bias_filter::filter::BiasFilter;
+use crate::drift::bias_filter::filter::{BiasFilter, following};
 use crate::drift::bias_filter::track::{MAX_RATIO, RestChange, SegmentTrack, bounded_ratio, since};
 use crate::drift::bias_state::{BIAS, OFFSET};
 use crate::drift::bias_trace::BiasTrace;
@@ -45,7 +45,12 @@ const CREEP_TIME: Constant = Constant::new(0.5);
 /// Growth of the offset's variance where one sensor of two is lost, in slow variances of their difference.
 const LOST_SENSOR: Constant = Constant::new(1.5);
 /// Process noise of the heading of a resting arm, 0.02 °/√s, and measurement noise of its change.
-const REST_CREEP: Constant = variance_deg(0.02 * 8.0);
+const REST_NOISE: Constant = variance_deg(0.02 * 8.0);
+/// Creep of the arm itself after a motion: a random walk of its headings of this variance over the time of rest, so that it
+/// slows down. The silicone creeps by up to 12 % of 40°, which is at most 1.8° over that time whatever its time constant.
+const ARM_CREEP: Constant = variance_deg(1.4);
+/// Windows of rest in a time unit.
+const WINDOWS: i32 = 13;
 const REST_READING: Constant = variance_deg(0.064);
 /// Gate of a heading change at rest: one over three predicted standard deviations.
 const REST_GATE: Constant = Constant::new(1.0 / 3.0);
@@ -167,7 +172,6 @@ impl<F: FusedOps, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
         let angles = track.sensor_angles(bend);
         let dt = since(track.processed_at_us.replace(time_us).unwrap_or(time_us), time_us);
         track.mean_theta += smaller(dt / F::constant(CREEP_TIME), F::one()) * (track.theta - track.mean_theta);
-        track.monitor.compare(angles, dt, time_us);
         let motion = are_headings_read.then(|| track.theta - track.processed_theta);
         if track.monitor.find_steps(error, angles, motion, dt, time_us) {
             self.state.inflate_variance(i, OFFSET, F::constant(STEP_VARIANCE));
@@ -178,6 +182,7 @@ impl<F: FusedOps, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
         } else {
             track.monitor.hold_exclusions(time_us);
         }
+        track.monitor.compare(angles, dt, time_us);
         track.processed_theta = track.theta;
         // Without a sensor that has just stepped.
         track.bend = track.monitor.mean(angles, track.has_twins(), time_us);
@@ -188,7 +193,8 @@ impl<F: FusedOps, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
     fn predict(&mut self, i: usize, filter: &BiasFilterConfig, time_us: u64) {
         let Some(track) = self.segments.get(i) else { return };
         if self.rest.is_resting() {
-            self.state.predict_at_rest(i, filter, F::constant(REST_CREEP), time_us);
+            let noise = F::constant(REST_NOISE) + F::from_int(WINDOWS) * self.creep;
+            self.state.predict_at_rest(i, filter, noise, time_us);
         } else {
             self.state.predict(i, filter, track.offset_prior, time_us);
         }
@@ -214,7 +220,7 @@ impl<F: FusedOps, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
         track.is_bend_missing = is_single || (track.bend.is_none() && track.sensors > 0);
         let prior = track.session_offset
             + track.lost_sensor_variance
-            + track.monitor.offset_excess(error, false)
+            + track.monitor.offset_excess(error)
             + scaled_square(F::constant(CREEP_ERROR) * track.mean_theta);
         if prior > track.offset_prior {
             self.state.inflate_variance(i, OFFSET, prior - track.offset_prior);
@@ -250,7 +256,8 @@ impl<F: FusedOps, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
 
     /// Stores the changes over a window of rest for the updates of the segments.
     pub(super) fn evaluate_rest(&mut self, time_us: u64) {
-        let Some(RestWindow { headings, bend, length_us }) = self.rest.window(time_us) else { return };
+        let Some(RestWindow { headings, bend, length_us, rested_us }) = self.rest.window(time_us) else { return };
+        self.creep = F::constant(ARM_CREEP) * (since::<F>(0, length_us) / since(0, rested_us));
         for (track, (heading, bend)) in self.segments.iter_mut().zip(headings.into_iter().zip(bend)) {
             track.rest = heading.map(|heading| RestChange { heading, bend, length_us });
         }
@@ -265,7 +272,7 @@ impl<F: FusedOps, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
         let Some(change) = self.segments.get_mut(j).and_then(|track| track.rest.take()) else { return };
         let dt = since(0, change.length_us);
         let nu = change.heading - self.state.rate_of(j) * dt;
-        let r = F::constant(REST_READING) + scaled_square(change.bend);
+        let r = F::constant(REST_READING) + scaled_square(change.bend) + self.creep;
         let innovation = self.state.innovation_at_rest(j);
         if is_beyond(nu, REST_GATE, innovation.variance * dt * dt + r) {
             return;
@@ -273,11 +280,6 @@ impl<F: FusedOps, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
         self.state.begin_update(innovation, nu / dt, r / dt / dt);
         self.state.add_to_bias(j, nu.to_turns());
     }
-}
-
-/// The segment that follows `i` in turn.
-fn following<S>(i: usize, segments: &[SegmentConfig<S>]) -> usize {
-    if i + 1 < segments.len() { i + 1 } else { 0 }
 }
 
 impl<F: Scalar> SegmentTrack<F> {
