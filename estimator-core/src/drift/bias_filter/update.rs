@@ -46,12 +46,12 @@ const CREEP_TIME: Constant = Constant::new(0.5);
 const LOST_SENSOR: Constant = Constant::new(1.5);
 /// Process noise of the heading of a resting arm, 0.02 °/√s, and measurement noise of its change.
 const REST_NOISE: Constant = variance_deg(0.02 * 8.0);
+const REST_READING: Constant = variance_deg(0.064);
 /// Creep of the arm itself after a motion: a random walk of its headings of this variance over the time of rest, so that it
 /// slows down. The silicone creeps by up to 12 % of 40°, which is at most 1.8° over that time whatever its time constant.
 const ARM_CREEP: Constant = variance_deg(1.4);
 /// Windows of rest in a time unit.
 const WINDOWS: i32 = 13;
-const REST_READING: Constant = variance_deg(0.064);
 /// Gate of a heading change at rest: one over three predicted standard deviations.
 const REST_GATE: Constant = Constant::new(1.0 / 3.0);
 
