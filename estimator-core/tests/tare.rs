@@ -38,7 +38,11 @@ fn wrong_from(first: u64) -> impl FnMut(u64, &mut Sample<N>) {
     }
 }
 
-fn assert_is_named(conditions: &[Condition]) {
+/// Checks that a bend sensor that is wrong from a sample on, before the end of the tare, is left out and named.
+fn assert_left_out(first: u64) {
+    let (clean, _) = run(&Arm::default(), |_, _| {});
+    let (worst, conditions) = run(&Arm::default(), wrong_from(first));
+    assert!(worst < 1.5 * clean + 1.0, "{worst} degrees, {clean} without the fault");
     for condition in &conditions[10..] {
         assert!(condition.bend_implausible == [true, false] && !condition.tare_bad, "{condition:?}");
     }
@@ -46,18 +50,12 @@ fn assert_is_named(conditions: &[Condition]) {
 
 #[test]
 fn a_bend_sensor_that_was_wrong_before_the_tare_is_left_out_and_named() {
-    let (clean, _) = run(&Arm::default(), |_, _| {});
-    let (worst, conditions) = run(&Arm::default(), wrong_from(0));
-    assert!(worst < 1.5 * clean + 1.0, "{worst} degrees, {clean} without the fault");
-    assert_is_named(&conditions);
+    assert_left_out(0);
 }
 
 #[test]
 fn a_bend_sensor_that_becomes_wrong_in_the_tare_is_left_out_and_named() {
-    let (clean, _) = run(&Arm::default(), |_, _| {});
-    let (worst, conditions) = run(&Arm::default(), wrong_from(5));
-    assert!(worst < 1.5 * clean + 1.0, "{worst} degrees, {clean} without the fault");
-    assert_is_named(&conditions);
+    assert_left_out(5);
 }
 
 #[test]

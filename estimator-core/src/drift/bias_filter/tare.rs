@@ -2,6 +2,7 @@
 
 use crate::config::{ArmConfig, BiasFilterConfig, SegmentConfig};
 use crate::drift::bias_filter::filter::{BiasFilter, following, segments_per_sample};
+use crate::drift::bias_filter::tare_statistics::reference_angle;
 use crate::drift::bias_trace::BiasTrace;
 use crate::drift::correction::SensedArm;
 use crate::numeric::phase::Turns;
@@ -55,11 +56,9 @@ impl<F: Scalar, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
         for _ in 0..segments_per_sample(config) {
             let i = self.next_segment;
             self.next_segment = following(i, config.segments);
-            let below = i.checked_sub(1).and_then(|below| config.segments.get(below));
-            let below = below.map_or(Turns::ZERO, |below| below.reference);
             let (Some(segment), Some(bend)) = (config.segments.get(i), sensed.bend.get(i)) else { return };
             let Some(track) = self.segments.get_mut(i) else { return };
-            let reference = F::from_phase((segment.reference - below).phase());
+            let reference = reference_angle(config.segments, i);
             let angles = track.sensor_angles(bend);
             track.monitor.check(&segment.bend_error, angles, reference, sensed.time_us);
         }
@@ -114,11 +113,9 @@ impl<F: Scalar, const N: usize, T: BiasTrace<F>> BiasFilter<F, N, T> {
 
     /// Stores the bend sensors' mean over the tare, by which the first update of each segment is made.
     fn keep_bend_of_tare<S: Scalar>(&mut self, segments: &[SegmentConfig<S>]) {
-        let mut below = Turns::ZERO;
-        for ((track, segment), tare) in self.segments.iter_mut().zip(segments).zip(&self.tare.segments) {
-            let reference: F = F::from_phase((segment.reference - below).phase());
-            below = segment.reference;
-            track.tare_bend = tare.bend_mean().map(|bend| bend - reference);
+        let tracks = self.segments.iter_mut().zip(&self.tare.segments).take(segments.len());
+        for (i, (track, tare)) in tracks.enumerate() {
+            track.tare_bend = tare.bend_mean().map(|bend| bend - reference_angle(segments, i));
         }
     }
 

@@ -107,15 +107,21 @@ impl<F: Scalar, const N: usize> TareStatistics<F, N> {
 
     /// Mean square of the bend angles' distance from the reference pose, as variances are held.
     pub fn bend_variance<S: Scalar>(&self, segments: &[SegmentConfig<S>]) -> F {
-        let (mut sum, mut count, mut below) = (F::zero(), 0, Turns::ZERO);
-        for (segment, tare) in segments.iter().zip(&self.segments) {
-            let reference: F = F::from_phase((segment.reference - below).phase());
-            below = segment.reference;
+        let (mut sum, mut count) = (F::zero(), 0);
+        for (i, tare) in self.segments.iter().enumerate().take(segments.len()) {
             let Some(bend) = tare.bend_mean() else { continue };
             // In sixteenths, so that the sum fits.
-            sum += scaled_square(bend - reference) / F::from_int(16);
+            sum += scaled_square(bend - reference_angle(segments, i)) / F::from_int(16);
             count += 1;
         }
         smaller(sum / F::from_int(count.max(1)), F::one()) * F::from_int(16)
     }
+}
+
+/// Bend angle of segment `i` in the reference pose, rad. Not inlined: only a tare needs it.
+#[inline(never)]
+pub(super) fn reference_angle<F: Scalar, S>(segments: &[SegmentConfig<S>], i: usize) -> F {
+    let of = |i: usize| segments.get(i).map_or(Turns::ZERO, |segment| segment.reference);
+    let below = i.checked_sub(1).map_or(Turns::ZERO, of);
+    F::from_phase((of(i) - below).phase())
 }

@@ -48,9 +48,9 @@ const LOST_SENSOR: Constant = Constant::new(1.5);
 const REST_NOISE: Constant = variance_deg(0.02 * 8.0);
 const REST_READING: Constant = variance_deg(0.064);
 /// Creep of the arm itself after a motion: a random walk of its headings of this variance over the time of rest, so that it
-/// slows down. The silicone creeps by up to 12 % of 40°, which is at most 1.8° over that time whatever its time constant.
+/// slows down. The silicone creeps by up to 12 % of 40°, which is at most 1.8° over that time for any time constant.
 const ARM_CREEP: Constant = variance_deg(1.4);
-/// Windows of rest in a time unit.
+/// Windows of rest in a time unit: 12.8, rounded.
 const WINDOWS: i32 = 13;
 /// Gate of a heading change at rest: one over three predicted standard deviations.
 const REST_GATE: Constant = Constant::new(1.0 / 3.0);
